@@ -1,0 +1,110 @@
+// An expression graph: immutable, shared nodes with exact rational constants.
+//
+// Nodes live in a Graph and are hash-consed: equal expressions are the same node, so equality is a comparison of ids and
+// every common subexpression is stored once. A node's operands always have smaller ids than the node, so every pass over
+// a graph (derivative, substitution, compilation) is a loop, never a recursion: nesting depth cannot overflow the stack.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace achilles {
+
+enum class Operation : std::uint8_t {
+    number,    // exact rational constant
+    pi,        // the circle constant
+    symbol,    // an input, known by its slot
+    add, subtract, multiply, divide, negate,
+    power,     // integer exponent, |exponent| >= 2
+    real_power,  // a^b for a > 0, both operands nodes
+    sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log
+};
+
+class Graph;
+
+// A node of a graph. A small value: copy it freely. It must not outlive its graph.
+class Expression {
+ public:
+    Expression() = default;
+    Expression(Graph* graph, std::uint32_t id) : graph_(graph), id_(id) {}
+
+    Graph& graph() const { return *graph_; }
+    std::uint32_t id() const { return id_; }
+    bool is_zero() const;
+    bool is_one() const;
+    bool is_number() const;
+    friend bool operator==(const Expression&, const Expression&) = default;
+
+ private:
+    Graph* graph_ = nullptr;
+    std::uint32_t id_ = 0;
+};
+
+// Arithmetic builds nodes and simplifies locally: constants fold, 0 and 1 vanish, x - x = 0, like factors gather.
+Expression operator+(Expression a, Expression b);
+Expression operator-(Expression a, Expression b);
+Expression operator*(Expression a, Expression b);
+Expression operator/(Expression a, Expression b);  // throws std::domain_error for the constant divisor 0
+Expression operator-(Expression a);
+Expression power(Expression base, int exponent);
+Expression apply(Operation function, Expression argument);  // one of sqrt ... log
+
+// A rational constant as every scalar type may want to read it.
+struct Constant {
+    double nearest;          // rounded to nearest
+    double low, high;        // low <= exact value <= high, equal where a double is exact
+    std::string numerator;   // exact, decimal digits
+    std::string denominator;
+};
+
+class Graph {
+ public:
+    Graph();
+    Graph(const Graph&);             // ids stay valid in the copy: see adopt()
+    Graph& operator=(const Graph&) = delete;
+    ~Graph();
+
+    Expression number(long numerator, long denominator = 1);
+    // A decimal literal such as 12, 0.5 or 1e-3, exactly. Throws std::out_of_range beyond +-400 in the exponent.
+    Expression decimal(std::string_view digits);
+    Expression pi();
+    Expression symbol(std::uint32_t slot);
+    // The same node of another graph that was copied to or from this one.
+    Expression adopt(Expression other) { return {this, other.id()}; }
+
+    struct Node {
+        Operation operation;
+        std::uint32_t a = 0;   // first operand; the slot of a symbol; the table index of a number
+        std::uint32_t b = 0;   // second operand
+        std::int32_t exponent = 0;
+    };
+    const Node& node(std::uint32_t id) const;
+    std::uint32_t size() const;
+    Constant constant(std::uint32_t id) const;  // of a number node
+    double value(std::uint32_t id) const;       // of a number node, nearest
+
+ private:
+    friend class Expression;
+    friend struct Builder;
+    struct Table;
+    std::unique_ptr<Table> table_;
+};
+
+// d(expression)/d(symbol of that slot), for each slot of a list: one pass, shared nodes.
+std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
+Expression derivative(Expression expression, std::uint32_t slot);
+
+// The expression with symbols replaced: slots[i] becomes values[i].
+Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values);
+
+// True if the value depends on any of these symbols.
+bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
+
+// The expression as text that parse() reads back; symbols print as names[slot].
+std::string to_text(Expression expression, std::span<const std::string> names);
+
+}  // namespace achilles

@@ -1,0 +1,17 @@
+// The name a person probably meant.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace achilles {
+
+// The candidate nearest to `word` in edit distance (insert, delete, replace, swap of neighbours), or "" if none is near
+// enough to be a likely misspelling: at most one edit for words up to 3 letters, a third of the length beyond.
+std::string nearest(std::string_view word, std::span<const std::string> candidates);
+
+// "; did you mean 'x'?" or "".
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace achilles

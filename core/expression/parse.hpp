@@ -1,0 +1,35 @@
+// Text to expression: the language of system files.
+//   + - * / ^ (right-associative, above unary minus), parentheses, functions, pi, decimal numbers, names, x' for rates.
+#pragma once
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "expression/expression.hpp"
+
+namespace achilles {
+
+// What a name means where an expression stands. `allowed` maps a name, primes included ("x", "x'", "gap''"), to its
+// expression; `forbidden` maps names that exist but may not stand here to the reason, a full sentence.
+struct Scope {
+    std::map<std::string, Expression, std::less<>> allowed;
+    std::map<std::string, std::string, std::less<>> forbidden;
+};
+
+// What is wrong, and where: `offset` counts bytes from the start of the text.
+struct ParseError : std::runtime_error {
+    ParseError(std::size_t where, const std::string& message) : std::runtime_error(message), offset(where) {}
+    std::size_t offset;
+};
+
+// Reads one expression. Throws ParseError with a message that names the offender and the nearest allowed name.
+Expression parse(std::string_view text, const Scope& scope, Graph& graph);
+
+// Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy.
+bool is_reserved(std::string_view name);
+// A letter, then letters, digits, underscores.
+bool is_name(std::string_view text);
+
+}  // namespace achilles

@@ -1,0 +1,15 @@
+// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite: null, or empty.
+#pragma once
+
+#include <string>
+
+#include "trajectory.hpp"
+
+namespace achilles {
+
+std::string to_json(const Trajectory& trajectory);
+std::string to_csv(const Trajectory& trajectory);
+std::string summary(const Trajectory& trajectory);
+std::string version();
+
+}  // namespace achilles

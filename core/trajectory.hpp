@@ -1,0 +1,144 @@
+// A completed execution (Defs. 4 and 5 of the paper), as data: phases, the events between them, and how it ended.
+// The central noun of Achilles; read this first.
+//
+// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0. A Zeno event ends a hybrid phase, a release
+// ends a constrained one, impacts happen inside hybrid phases.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulate/options.hpp"
+#include "vector.hpp"
+
+namespace achilles {
+
+class Model;
+
+struct State {
+    Vector q, v;
+};
+
+// Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
+struct Piece {
+    double start = 0.0, end = 0.0;
+    std::size_t first = 0;      // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
+    std::uint32_t degree = 0;
+    bool contact = false;       // on the surface: a sample is projected to h = 0, hdot = 0
+};
+
+struct Phase {
+    enum class Kind { hybrid, constrained };
+    Kind kind = Kind::hybrid;
+    double start = 0.0, end = 0.0;
+    int impacts = 0;
+    std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time
+};
+
+// One inequality of a truncation condition: satisfied when left < right.
+struct Inequality {
+    std::string name;   // "c1: time", ...
+    double left = 0.0, right = 0.0;
+};
+
+// What is proved about a truncated bouncing. Bounds are proved by interval evaluation, except that errors made before
+// tau_k (integration, rounding) and the accumulation over several truncations are not covered.
+struct Certificate {
+    bool certified = false;
+    Conditions conditions = Conditions::paper;
+    Reinitialization reinitialization = Reinitialization::kinetic;
+    bool below_rounding = false;                // completed since no further flight can be resolved
+    double zeno_low = 0.0, zeno_high = 0.0;     // encloses tau_inf
+    double position_bound = 0.0;                // on |q_inf - q*|
+    double velocity_bound = 0.0;                // on |v_inf - v*|
+    std::optional<double> shadowing_position, shadowing_velocity;  // THEORY section 5, at tau_inf
+    double a_min = 0.0, a_max = 0.0;            // of -hddot over the neighbourhood
+    std::string decisive;                       // the inequality with the least margin
+    struct Paper {
+        double e1 = 0.0, e2 = 0.0;              // e' = e r, e'' = e sqrt(r)
+        double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
+    };
+    std::optional<Paper> paper;
+    std::vector<Inequality> inequalities;       // all of them, with both sides
+};
+
+struct Event {
+    enum class Kind { impact, zeno, release };
+    Kind kind = Kind::impact;
+    double t = 0.0;
+    Vector q, v_before, v_after;                // equal velocities where nothing jumps (release, zeno)
+    double impact_speed = 0.0;                  // impact: |hdot| before
+    int impacts = 0;                            // zeno: impacts of the phase it ends
+    struct Truncation {                         // zeno: where the bouncing was cut and what restarted
+        double t = 0.0;
+        Vector q, v_before, v;                  // v: after re-initialisation
+        double impact_speed = 0.0;
+    };
+    std::optional<Truncation> truncation;
+    std::optional<Certificate> certificate;     // zeno
+};
+
+struct Outcome {
+    enum class Kind { end_time, too_many_impacts, not_a_number, left_the_domain, step_too_small, undecided };
+    Kind kind = Kind::end_time;
+    std::string message;
+};
+
+struct Statistics {
+    long steps = 0, evaluations = 0, impacts = 0;
+    double energy_drift = 0.0;  // largest relative change of the energy inside a smooth stretch, at step ends
+    double least_gap = 0.0;     // at step ends
+    double seconds = 0.0;       // wall clock: the only value that may differ between two runs
+};
+
+struct Trajectory {
+    std::shared_ptr<const Model> model;
+    Run run;
+    std::vector<Phase> phases;
+    std::vector<Event> events;           // in time
+    std::vector<Piece> pieces;           // in time
+    std::vector<double> coefficients;
+    double end_time = 0.0;
+    State end;
+    Phase::Kind end_phase = Phase::Kind::hybrid;
+    Outcome outcome;
+    Statistics statistics;
+};
+
+std::string_view to_text(Phase::Kind);
+std::string_view to_text(Event::Kind);
+std::string_view to_text(Outcome::Kind);
+
+// One instant of a trajectory. j counts the events so far (hybrid time): two samples of the same t differ in j.
+struct Sample {
+    double t = 0.0;
+    int j = 0;
+    Phase::Kind phase = Phase::Kind::hybrid;
+    bool contact = false;       // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
+    State state;
+};
+
+// The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
+class Sampler {
+ public:
+    explicit Sampler(const Trajectory& trajectory);
+    ~Sampler();
+    Sample at(double t);
+    // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each step.
+    std::vector<Sample> all(int between = 0);
+
+ private:
+    struct Projection;
+    Sample sample(const Piece& piece, double t) const;
+    const Trajectory& trajectory_;
+    std::unique_ptr<Projection> projection_;
+};
+
+// The trajectory as text, 9 significant digits: what golden tests compare first.
+std::string to_text(const Trajectory& trajectory);
+
+}  // namespace achilles

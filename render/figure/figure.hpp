@@ -1,0 +1,77 @@
+// A figure as data: panels, limits, ticks, curves, markers, all decided. It can be printed, compared and drawn; whoever
+// draws it decides nothing. No ImGui here.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace achilles {
+
+struct Color {
+    std::uint8_t r = 0, g = 0, b = 0, a = 255;
+    friend bool operator==(const Color&, const Color&) = default;
+};
+
+struct Point {
+    double x = 0.0, y = 0.0;
+};
+
+// Lengths are in points of the layout: 1 unit = 1 pixel at scale 1.
+struct Stroke {
+    Color color;
+    double width = 1.5;
+    std::vector<double> dash;  // on, off, ...; empty: solid
+};
+
+struct Curve {
+    std::string label;         // "" : not in the legend
+    Stroke stroke;
+    std::vector<Point> points; // data coordinates; a NaN point breaks the curve
+};
+
+struct Markers {
+    enum class Shape { square, circle, triangle, diamond, bar };  // bar: a vertical line over the whole panel
+    std::string label;
+    Shape shape = Shape::square;
+    Color fill, edge;
+    double size = 6.0;         // across
+    std::vector<Point> points;
+};
+
+struct Tick {
+    double value = 0.0;
+    std::string label;         // "" : minor
+};
+
+struct Axis {
+    std::string label;         // UTF-8; combining dots U+0307, U+0308 stand after the letter they belong to
+    double low = 0.0, high = 1.0;
+    bool logarithmic = false;
+    std::vector<Tick> ticks;
+};
+
+struct Panel {
+    std::string title;         // "(a)", or a view's name
+    Axis x, y;
+    bool equal_axes = false;   // one unit is the same length on both axes
+    std::vector<Curve> curves;
+    std::vector<Markers> markers;
+    bool legend = false;
+    std::array<double, 2> legend_at{1.0, 1.0};  // corner of the plot area: (0,0) bottom left, (1,1) top right
+};
+
+struct Figure {
+    int columns = 1;
+    std::vector<Panel> panels; // row by row
+    Color background{255, 255, 255, 255};
+    Color ink{30, 30, 30, 255};       // axes and text
+    Color grid{225, 225, 225, 255};
+    double text_size = 14.0;   // points
+};
+
+// The figure as text, 9 significant digits: what golden tests compare before pixels.
+std::string to_text(const Figure& figure);
+
+}  // namespace achilles

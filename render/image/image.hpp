@@ -1,0 +1,28 @@
+// Pixels: in and out of PNG files, and how far two images are apart. The only file that includes stb.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace achilles {
+
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::uint8_t> rgb;  // top row first, 3 bytes a pixel
+    friend bool operator==(const Image&, const Image&) = default;
+};
+
+// Throw std::runtime_error with the path and the reason.
+void write_png(const Image& image, const std::filesystem::path& file);
+Image read_png(const std::filesystem::path& file);
+// The PNG file as bytes.
+std::string png_bytes(const Image& image);
+
+// The largest, over 30-pixel tiles, of the tile's mean absolute colour difference (0: equal, 1: black against white).
+// Images of different size are infinitely far apart.
+double worst_tile(const Image& a, const Image& b);
+
+}  // namespace achilles
