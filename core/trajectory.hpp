@@ -23,6 +23,16 @@ struct State {
     Vector q, v;
 };
 
+// Puts a state into the inputs of a program (slots 0 .. 2n - 1, see model/derive.hpp).
+template <class Evaluator>
+void put(Evaluator& evaluator, const State& state) {
+    const auto n = state.q.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        evaluator.input(static_cast<std::size_t>(i)) = state.q[i];
+        evaluator.input(static_cast<std::size_t>(n + i)) = state.v[i];
+    }
+}
+
 // Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
 struct Piece {
     double start = 0.0, end = 0.0;
@@ -133,7 +143,7 @@ class Sampler {
 
  private:
     struct Projection;
-    Sample sample(const Piece& piece, double t) const;
+    State state(const Piece& piece, double t) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
 };

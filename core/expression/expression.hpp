@@ -51,6 +51,7 @@ Expression operator*(Expression a, Expression b);
 Expression operator/(Expression a, Expression b);  // throws std::domain_error for the constant divisor 0
 Expression operator-(Expression a);
 Expression power(Expression base, int exponent);
+Expression real_power(Expression base, Expression exponent);  // base > 0; integers and 1/2 become power and sqrt
 Expression apply(Operation function, Expression argument);  // one of sqrt ... log
 
 // A rational constant as every scalar type may want to read it.
@@ -103,6 +104,9 @@ Expression substitute(Expression expression, std::span<const std::uint32_t> slot
 
 // True if the value depends on any of these symbols.
 bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
+
+// True if the value depends on no symbol at all.
+bool is_constant(Expression expression);
 
 // The expression as text that parse() reads back; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);
