@@ -4,6 +4,13 @@
 
 namespace achilles {
 
+namespace {
+
+// A computed number stands for every number within this relative distance.
+Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
+
+}  // namespace
+
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
     return v_before - (1.0 + e) * contact.hdot * contact.n;
 }
@@ -33,7 +40,7 @@ Contact Surface::at(const State& state) {
 }
 
 double Surface::gap_error(const State& state) {
-    put(gap_, state);
+    for (std::size_t i = 0; i < n_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
     gap_.run();
     return gap_.output(0).rad();
 }
@@ -45,10 +52,11 @@ double Surface::hdot_error(const State& state) {
 }
 
 std::optional<State> Surface::project(State state, bool keep_velocity) {
-    for (int round = 0; round < 6; ++round) {
+    constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
+    for (int round = 0; round <= rounds; ++round) {
         const Contact contact = at(state);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
-        if (std::abs(contact.h) <= gap_error(state)) {
+        if (std::abs(contact.h) <= gap_error(state) * (round < rounds ? 1.0 : 4.0)) {
             if (!keep_velocity) state.v -= contact.hdot * contact.n;
             return state;
         }
@@ -58,12 +66,10 @@ std::optional<State> Surface::project(State state, bool keep_velocity) {
 }
 
 Surface::Normal Surface::normal(const State& state) {
-    // The computed state stands for every state within a few units in the last place.
-    constexpr double ulps = 0x1p-50;
-    const auto around = [](double x) { return Interval(x) + Interval(-ulps * std::abs(x), ulps * std::abs(x)); };
+    constexpr double few_ulps = 0x1p-50;
     for (std::size_t i = 0; i < n_; ++i) {
-        release_enclosure_.input(i) = around(state.q[static_cast<Eigen::Index>(i)]);
-        release_enclosure_.input(n_ + i) = around(state.v[static_cast<Eigen::Index>(i)]);
+        release_enclosure_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
+        release_enclosure_.input(n_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
     }
     release_enclosure_.run();
     return {release_enclosure_.output(0), release_enclosure_.output(1)};

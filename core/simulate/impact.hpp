@@ -29,7 +29,7 @@ class Surface {
     Surface(const Model& model, const Run& run);
 
     Contact at(const State& state);
-    // Bound on the rounding error of h as evaluated at q: the radius of its interval enclosure.
+    // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
     double gap_error(const State& state);
     // The same for hdot.
     double hdot_error(const State& state);

@@ -1,0 +1,48 @@
+#include "expression/nearest.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace achilles {
+
+namespace {
+
+// Edits (insert, delete, replace, swap of neighbours) that turn a into b.
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t replace = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replace});
+            const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string nearest(std::string_view word, std::span<const std::string> candidates) {
+    if (word.size() > 100) return {};  // nobody's misspelling
+    std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
+    std::string best;
+    for (const std::string& candidate : candidates) {
+        if (candidate.size() > 100) continue;
+        const std::size_t edits = distance(word, candidate);
+        if (edits < least && edits < std::max(word.size(), candidate.size())) {
+            least = edits;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
+std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+    const std::string best = nearest(word, candidates);
+    return best.empty() ? "" : "; did you mean '" + best + "'?";
+}
+
+}  // namespace achilles
