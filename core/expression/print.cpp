@@ -1,4 +1,6 @@
 // An expression as text that parse() reads back.
+#include <fmt/format.h>
+
 #include "expression/function_names.hpp"
 #include "expression/graph.hpp"
 
@@ -14,7 +16,7 @@ struct Printed {
     int binding = 5;
 };
 
-std::string inside(const Printed& part, int least) { return part.binding < least ? "(" + part.text + ")" : part.text; }
+std::string inside(const Printed& part, int least) { return part.binding < least ? fmt::format("({})", part.text) : part.text; }
 
 Printed print_number(const Rational& value) {
     const bool fraction = boost::multiprecision::denominator(value) != 1;
@@ -23,20 +25,18 @@ Printed print_number(const Rational& value) {
 
 Printed print_node(Op operation, int exponent, const Printed& a, const Printed& b) {
     switch (operation) {
-        case Op::add: return {a.text + " + " + inside(b, 2), 1};
-        case Op::subtract: return {a.text + " - " + inside(b, 2), 1};
-        case Op::multiply: return {inside(a, 2) + "*" + inside(b, 3), 2};
-        case Op::divide: return {inside(a, 2) + "/" + inside(b, 4), 2};
-        case Op::negate: return {"-" + inside(a, 3), 1};
-        case Op::power: {
-            const std::string number = std::to_string(exponent);
-            return {inside(a, 5) + "^" + (exponent < 0 ? "(" + number + ")" : number), 4};
-        }
-        case Op::real_power: return {inside(a, 5) + "^" + inside(b, 5), 4};
+        case Op::add: return {fmt::format("{} + {}", a.text, inside(b, 2)), 1};
+        case Op::subtract: return {fmt::format("{} - {}", a.text, inside(b, 2)), 1};
+        case Op::multiply: return {fmt::format("{}*{}", inside(a, 2), inside(b, 3)), 2};
+        case Op::divide: return {fmt::format("{}/{}", inside(a, 2), inside(b, 4)), 2};
+        case Op::negate: return {fmt::format("-{}", inside(a, 3)), 1};
+        case Op::power: 
+            return {exponent < 0 ? fmt::format("{}^({})", inside(a, 5), exponent) : fmt::format("{}^{}", inside(a, 5), exponent), 4};
+        case Op::real_power: return {fmt::format("{}^{}", inside(a, 5), inside(b, 5)), 4};
         default: break;
     }
     for (const auto& [name, function] : functions)
-        if (function == operation) return {std::string(name) + "(" + a.text + ")", 5};
+        if (function == operation) return {fmt::format("{}({})", name, a.text), 5};
     return {};
 }
 

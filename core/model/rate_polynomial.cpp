@@ -77,7 +77,7 @@ std::optional<RatePolynomial> expand_in_rates(Expression expression, std::span<c
         const bool binary = is_binary(node.operation), leaf = is_leaf(node.operation);
         if (node.operation == Operation::symbol) {
             Key key{};
-            for (std::size_t i = 0; i < slots.size(); ++i)
+            for (std::size_t i = 0; i < key.size() && i < slots.size(); ++i)
                 if (slots[i] == node.a) key[i] = 1;
             of[id] = {{key, key == Key{} ? e : graph.number(1)}};
         } else if (leaf || (is_free(of[node.a]) && (!binary || is_free(of[node.b])))) {

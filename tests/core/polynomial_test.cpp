@@ -66,7 +66,9 @@ TEST(Polynomials, RandomRootsAgreeWithASearchOnAGrid) {
         if (expected) {
             ASSERT_TRUE(found);
             EXPECT_LE(*found, *expected);
-            if (*found > 1e-6) EXPECT_GT(p(0.5 * *found), -1e-12);
+            if (*found > 1e-6) {
+                EXPECT_GT(p(0.5 * *found), -1e-12);
+            }
             EXPECT_NEAR(p(*found), 0.0, 1e-13);
         }
     }

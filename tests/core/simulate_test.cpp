@@ -25,7 +25,7 @@ void expect_near(const Vector& q, const Vector& v, const nlohmann::json& state, 
 void compare(const Problem& problem, const Bars& bars) {
     SCOPED_TRACE(problem.key);
     const auto model = test::load(problem.asset);
-    Run run = model->default_run();
+    auto run = model->default_run();
     run.options.tolerance = bars.tolerance;
     run.options.end_time = 20.0;
     run.options.truncation = {bars.eps, bars.eps, bars.eps, Conditions::paper, Reinitialization::kinetic};
@@ -78,7 +78,7 @@ TEST(PaperProblems, TightToleranceIsWithin1e9OfTheReferenceDespiteLooseEps) {
 TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
     for (const Problem& problem : test::problems) {
         const auto model = test::load(problem.asset);
-        Run run = model->default_run();
+        auto run = model->default_run();
         run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-9;
         const Trajectory trajectory = simulate(model, run);
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
@@ -97,7 +97,7 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
 TEST(PaperProblems, TheFirstImpactsOfTheReferenceAreNotTruncated) {
     for (const Problem& problem : test::problems) {
         const auto model = test::load(problem.asset);
-        Run run = model->default_run();
+        auto run = model->default_run();
         run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 10.0;
         const Trajectory trajectory = simulate(model, run);
         ASSERT_FALSE(trajectory.events.empty());
@@ -135,7 +135,7 @@ TEST(Restitution, OneNeverTruncatesAndKeepsItsEnergy) {
     SystemDescription description = model->description();
     assign(description, "e=1");
     const auto elastic = std::make_shared<const Model>(description);
-    Run run = elastic->default_run();
+    auto run = elastic->default_run();
     run.options.end_time = 1000.0;
     run.options.max_impacts = 200;
     const Trajectory trajectory = simulate(elastic, run);
@@ -152,7 +152,7 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
     SystemDescription description = model->description();
     assign(description, "e=0");
     const auto plastic = std::make_shared<const Model>(description);
-    const Run run = plastic->default_run();
+    const auto run = plastic->default_run();
     const Trajectory trajectory = simulate(plastic, run);
     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     auto normal = plastic->evaluator(plastic->release(), run.parameters);
@@ -162,7 +162,9 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
         put(normal, State{event.truncation ? event.truncation->q : event.q, v});
         normal.run();
         EXPECT_EQ(event.kind == Event::Kind::zeno, normal.output(0) < 0.0);
-        if (event.kind == Event::Kind::zeno) EXPECT_EQ(event.t, event.truncation->t);
+        if (event.kind == Event::Kind::zeno) {
+            EXPECT_EQ(event.t, event.truncation->t);
+        }
     }
     ASSERT_GE(trajectory.events.size(), 2u);
     EXPECT_EQ(trajectory.events[0].kind, Event::Kind::impact);  // hddot > 0 at the first impact
@@ -172,7 +174,7 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
 TEST(Energy, NeverRisesAtAnImpact) {
     for (const Problem& problem : test::problems) {
         const auto model = test::load(problem.asset);
-        const Run run = model->default_run();
+        const auto run = model->default_run();
         const Trajectory trajectory = simulate(model, run);
         for (const Event& event : test::events_of(trajectory, Event::Kind::impact))
             EXPECT_LT(energy(*model, run, {event.q, event.v_after}), energy(*model, run, {event.q, event.v_before}));
@@ -181,7 +183,7 @@ TEST(Energy, NeverRisesAtAnImpact) {
 
 // ---- starts ----
 
-const char* const floor_text = R"(
+const char* const floor_text = R"toml(
 title = "Ball on a floor"
 [[coordinate]]
 name = "x"
@@ -197,7 +199,7 @@ potential = "g*y"
 [[constraint]]
 gap = "y"
 restitution = 0.5
-)";
+)toml";
 
 Trajectory on_floor(const std::string& start) {
     std::string text = floor_text;
@@ -245,7 +247,7 @@ TEST(Starts, BelowTheFloorIsRefused) { EXPECT_THROW(on_floor("start = -0.5"), In
 TEST(Samples, TimesRiseAndStatesMeetTheEventsTheyBorder) {
     for (const Problem& problem : test::problems) {
         const auto model = test::load(problem.asset);
-        const Run run = model->default_run();
+        const auto run = model->default_run();
         const Trajectory trajectory = simulate(model, run);
         Sampler sampler(trajectory);
         auto surface = model->evaluator(model->surface(), run.parameters);
@@ -260,7 +262,9 @@ TEST(Samples, TimesRiseAndStatesMeetTheEventsTheyBorder) {
             put(surface, samples[i].state);
             surface.run();
             EXPECT_GE(surface.output(0), -1e-12) << "t = " << samples[i].t;
-            if (samples[i].contact) EXPECT_LE(std::abs(surface.output(1)), 1e-13);
+            if (samples[i].contact) {
+                EXPECT_LE(std::abs(surface.output(1)), 1e-13);
+            }
         }
         for (const Event& event : test::events_of(trajectory, Event::Kind::impact)) {
             EXPECT_LE((sampler.at(event.t).state.v - event.v_after).norm(), 1e-12);
