@@ -9,7 +9,7 @@
 namespace achilles {
 
 struct Shape {
-    enum Kind { disc, polyline, text };
+    enum class Kind { disc, polyline, text };
     Kind kind = Kind::polyline;
     std::vector<Point> points;  // world; disc and text: one point, the centre. A NaN point breaks a polyline
     double radius = 0.0;        // disc, in world units

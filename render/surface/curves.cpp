@@ -138,8 +138,7 @@ void CurvePainter::draw(const ImDrawList& list, const ImDrawCmd& command, GLuint
 
     const int fineness = std::max(region.width, region.height) * fineness_ <= largest_texture ? fineness_ : 1;
     reserve_mask(region.width * fineness, region.height * fineness);
-    draw_mask(region, fineness, size.pos.x, static_cast<std::size_t>(first) + header_vertices, size.col,
-              vertex_buffer);
+    draw_mask(region, fineness, size.pos.x, static_cast<std::size_t>(first) + header_vertices, size.col, vertex_buffer);
     composite(region, fineness, bounds.col, target);
 }
 

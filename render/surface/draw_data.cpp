@@ -37,8 +37,7 @@ const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(byt
 
 }  // namespace
 
-Canvas::Canvas(const AddressFunction& address_of, int curve_fineness)
-    : gl_(address_of), curves_(gl_, curve_fineness) {
+Canvas::Canvas(const AddressFunction& address_of, int curve_fineness) : gl_(address_of), curves_(gl_, curve_fineness) {
     program_ = gl_.program(triangle_vertex, triangle_fragment);
     gl_.GenBuffers(1, &vertex_buffer_);
     gl_.GenBuffers(1, &index_buffer_);

@@ -15,57 +15,57 @@ using AddressFunction = std::function<void*(const char*)>;
 constexpr int largest_texture = 16384;
 
 // X(type, name without "gl")
-#define ACHILLES_GL_FUNCTIONS(X)                             \
-    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                 \
-    X(PFNGLATTACHSHADERPROC, AttachShader)                   \
-    X(PFNGLBINDBUFFERPROC, BindBuffer)                       \
-    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)             \
-    X(PFNGLBINDTEXTUREPROC, BindTexture)                     \
-    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)             \
-    X(PFNGLBLENDEQUATIONPROC, BlendEquation)                 \
-    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)         \
-    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)             \
-    X(PFNGLBUFFERDATAPROC, BufferData)                       \
-    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus) \
-    X(PFNGLCLEARCOLORPROC, ClearColor)                       \
-    X(PFNGLCLEARPROC, Clear)                                 \
-    X(PFNGLCOMPILESHADERPROC, CompileShader)                 \
-    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                 \
-    X(PFNGLCREATESHADERPROC, CreateShader)                   \
-    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                 \
-    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)       \
-    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                 \
-    X(PFNGLDELETESHADERPROC, DeleteShader)                   \
-    X(PFNGLDELETETEXTURESPROC, DeleteTextures)               \
-    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)       \
-    X(PFNGLDISABLEPROC, Disable)                             \
-    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)     \
-    X(PFNGLDRAWARRAYSPROC, DrawArrays)                       \
-    X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex) \
-    X(PFNGLENABLEPROC, Enable)                               \
+#define ACHILLES_GL_FUNCTIONS(X)                                 \
+    X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                     \
+    X(PFNGLATTACHSHADERPROC, AttachShader)                       \
+    X(PFNGLBINDBUFFERPROC, BindBuffer)                           \
+    X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                 \
+    X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
+    X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
+    X(PFNGLBLENDEQUATIONPROC, BlendEquation)                     \
+    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                 \
+    X(PFNGLBUFFERDATAPROC, BufferData)                           \
+    X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
+    X(PFNGLCLEARCOLORPROC, ClearColor)                           \
+    X(PFNGLCLEARPROC, Clear)                                     \
+    X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
+    X(PFNGLCREATEPROGRAMPROC, CreateProgram)                     \
+    X(PFNGLCREATESHADERPROC, CreateShader)                       \
+    X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                     \
+    X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)           \
+    X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                     \
+    X(PFNGLDELETESHADERPROC, DeleteShader)                       \
+    X(PFNGLDELETETEXTURESPROC, DeleteTextures)                   \
+    X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)           \
+    X(PFNGLDISABLEPROC, Disable)                                 \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
+    X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
+    X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)   \
+    X(PFNGLENABLEPROC, Enable)                                   \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
-    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)   \
-    X(PFNGLGENBUFFERSPROC, GenBuffers)                       \
-    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)             \
-    X(PFNGLGENTEXTURESPROC, GenTextures)                     \
-    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)             \
-    X(PFNGLGETINTEGERVPROC, GetIntegerv)                     \
-    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                   \
-    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)         \
-    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)       \
-    X(PFNGLLINKPROGRAMPROC, LinkProgram)                     \
-    X(PFNGLPIXELSTOREIPROC, PixelStorei)                     \
-    X(PFNGLREADPIXELSPROC, ReadPixels)                       \
-    X(PFNGLSCISSORPROC, Scissor)                             \
-    X(PFNGLSHADERSOURCEPROC, ShaderSource)                   \
-    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                       \
-    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                 \
-    X(PFNGLUNIFORM1IPROC, Uniform1i)                         \
-    X(PFNGLUNIFORM2FPROC, Uniform2f)                         \
-    X(PFNGLUNIFORM4FPROC, Uniform4f)                         \
-    X(PFNGLUSEPROGRAMPROC, UseProgram)                       \
-    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)     \
-    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)     \
+    X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
+    X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
+    X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
+    X(PFNGLGENTEXTURESPROC, GenTextures)                         \
+    X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
+    X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
+    X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                       \
+    X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
+    X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
+    X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
+    X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
+    X(PFNGLREADPIXELSPROC, ReadPixels)                           \
+    X(PFNGLSCISSORPROC, Scissor)                                 \
+    X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
+    X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
+    X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
+    X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
+    X(PFNGLUNIFORM2FPROC, Uniform2f)                             \
+    X(PFNGLUNIFORM4FPROC, Uniform4f)                             \
+    X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)         \
+    X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
     X(PFNGLVIEWPORTPROC, Viewport)
 
 struct Gl {

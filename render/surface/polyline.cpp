@@ -116,6 +116,8 @@ class Dashes {
     // Adds what is on of the stretch [from, to] of an edge of the given length that starts at arc length `start`.
     void stroke(const Point& a, const Point& b, double start, double length, double from, double to,
                 Pieces& pieces) const {
+        if (to > farthest_dash)
+            return pieces.add(between(a, b, (from - start) / length), between(a, b, (to - start) / length));
         double offset = period_ * std::floor(from / period_);
         for (; offset < to; offset += period_) {
             double at = offset;
@@ -132,6 +134,9 @@ class Dashes {
     }
 
  private:
+    // Arc lengths beyond lose the dash's phase to rounding, and far beyond adding a period would change nothing.
+    static constexpr double farthest_dash = 1e12;
+
     std::vector<double> lengths_;
     double cap_, period_ = 0.0;
 };
