@@ -42,7 +42,10 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
         if (!(at >= from - 0.5 && at <= to + 0.5)) continue;
-        result.push_back({&tick, static_cast<float>(std::round(at - line / 2.0))});
+        // Next to a corner a tick continues the box, rather than lie beside its line.
+        const auto first = static_cast<float>(std::round(at - line / 2.0));
+        const float snapped = first < from + line ? from - line : first > to - 2.0F * line ? to : first;
+        result.push_back({&tick, snapped});
     }
     return result;
 }
@@ -163,9 +166,11 @@ PanelMap::PanelMap(const Panel& panel, Rectangle plot)
 void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
     for (const Placed& p : placed(panel.x, map.x, plot.x, plot.x + plot.width, m.line))
-        if (!p.tick->label.empty()) bar(list, p.at, plot.y, m.line, plot.height, style.grid);
+        if (!p.tick->label.empty() && p.at >= plot.x && p.at < plot.x + plot.width)
+            bar(list, p.at, plot.y, m.line, plot.height, style.grid);
     for (const Placed& p : placed(panel.y, map.y, plot.y, plot.y + plot.height, m.line))
-        if (!p.tick->label.empty()) bar(list, plot.x, p.at, plot.width, m.line, style.grid);
+        if (!p.tick->label.empty() && p.at >= plot.y && p.at < plot.y + plot.height)
+            bar(list, plot.x, p.at, plot.width, m.line, style.grid);
 }
 
 void paint_axes(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,

@@ -107,17 +107,19 @@ void paint_legend(const Panel& panel, const Figure& style, ImDrawList* list, Rec
     for (const Entry& entry : entries) longest = std::max(longest, label_width(*entry.label, m.text));
     const auto rows = static_cast<float>(entries.size());
     const float wanted_x = 3.0F * pad + 2.0F * m.text + longest, wanted_y = 2.0F * pad + rows * 1.3F * m.text;
-    // In a small panel the legend shrinks; too small to read, it goes.
-    const float zoom = std::min({1.0F, room_x / wanted_x, room_y / wanted_y});
-    if (zoom < 0.6F) return;
+    // In a small panel the legend shrinks rather than hide the data; too small to read, it goes.
+    constexpr float smallest = 0.6F, largest_share = 0.3F;
+    const float share = std::sqrt(largest_share * plot.width * plot.height / (wanted_x * wanted_y));
+    const float zoom = std::min({1.0F, room_x / wanted_x, room_y / wanted_y, std::max(share, 0.8F)});
+    if (zoom < smallest) return;
     const float text = m.text * zoom, row = 1.3F * text, sample = 2.0F * text;
     const Rectangle box =
         on_pixels({plot.x + inset + static_cast<float>(panel.legend_at[0]) * (room_x - wanted_x * zoom),
                    plot.y + inset + static_cast<float>(1.0 - panel.legend_at[1]) * (room_y - wanted_y * zoom),
                    wanted_x * zoom, wanted_y * zoom});
-    Color paper = style.background;
-    paper.a = 230;
-    list->AddRectFilled({box.x, box.y}, {box.x + box.width, box.y + box.height}, packed(paper));
+    list->AddRectFilled({box.x, box.y}, {box.x + box.width, box.y + box.height}, packed(style.grid));
+    list->AddRectFilled({box.x + m.line, box.y + m.line}, {box.x + box.width - m.line, box.y + box.height - m.line},
+                        packed(style.background));
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const float y = box.y + pad * zoom + (static_cast<float>(i) + 0.5F) * row;
         paint_sample(entries[i], list, box.x + pad * zoom, std::round(y), sample, m);
