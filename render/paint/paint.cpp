@@ -28,7 +28,7 @@ Rectangle on_pixels(Rectangle r) {
 Rectangle with_equal_units(const Panel& panel, Rectangle plot) {
     const double wide = panel.x.high - panel.x.low, high = panel.y.high - panel.y.low;
     const double unit = std::min(plot.width / wide, plot.height / high);
-    if (!panel.equal_axes || !(unit > 0.0) || !std::isfinite(unit)) return plot;
+    if (!panel.equal_axes || !(unit > 0.0) || !std::isfinite(unit) || !std::isfinite(high)) return plot;
     const auto width = static_cast<float>(unit * wide), height = static_cast<float>(unit * high);
     return on_pixels({plot.x + (plot.width - width) / 2.0F, plot.y + (plot.height - height) / 2.0F, width, height});
 }

@@ -35,24 +35,17 @@ std::string& last_glfw_error() {
     return text;
 }
 
-// GLFW counts no references; we do.
-class Glfw {
- public:
-    Glfw() {
-        glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
-        if (users_ == 0 && glfwInit() == GLFW_FALSE)
-            throw std::runtime_error("no window can be opened: " + last_glfw_error());
-        ++users_;
-    }
-    ~Glfw() {
-        if (--users_ == 0) glfwTerminate();
-    }
-    Glfw(const Glfw&) = delete;
-    Glfw& operator=(const Glfw&) = delete;
+bool display_is_named() {
+    const char* display = std::getenv("DISPLAY");
+    return display != nullptr && *display != '\0';
+}
 
- private:
-    static inline int users_ = 0;
-};
+// Starts GLFW, once. It is never stopped: that would unload the graphics driver, which not every driver survives, and
+// the process's end does the same.
+bool glfw_works() {
+    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
+    return display_is_named() && glfwInit() == GLFW_TRUE;
+}
 
 // A letter key by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard.
 int code_of(int code, int scancode) {
@@ -120,7 +113,6 @@ struct Window::Implementation {
     void restyle();
     void frame(const FrameFunction& draw);
 
-    Glfw library;
     GLFWwindow* window;
     Interface interface;
     std::optional<Canvas> canvas;
@@ -134,6 +126,9 @@ struct Window::Implementation {
 };
 
 GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const std::string& title) {
+    if (!glfw_works())
+        throw std::runtime_error("no window can be opened: " +
+                                 (display_is_named() ? last_glfw_error() : "the variable DISPLAY names no display"));
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
@@ -294,15 +289,6 @@ Image Window::picture() {
 
 std::vector<std::string> Window::dropped() { return std::exchange(implementation_->files, {}); }
 
-bool Window::display_available() {
-    const char* display = std::getenv("DISPLAY");
-    if (display == nullptr || *display == '\0') return false;
-    try {
-        const Glfw library;
-        return true;
-    } catch (const std::runtime_error&) {
-        return false;
-    }
-}
+bool Window::display_available() { return glfw_works(); }
 
 }  // namespace achilles
