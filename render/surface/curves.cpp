@@ -107,6 +107,9 @@ void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenS
         const bool here = is_finite(points[i]), next = i + 1 < points.size() && is_finite(points[i + 1]);
         list->PrimWriteVtx(here ? vec(points[i]) : ImVec2(0.0F, 0.0F), {here && next ? pen_down : pen_up, 0.0F}, 0);
     }
+    // No index points at these vertices: what follows counts from behind them, or a long curve would use up 16 bits.
+    list->_CmdHeader.VtxOffset = static_cast<unsigned>(list->VtxBuffer.Size);
+    list->_OnChangedVtxOffset();
 }
 
 bool is_curve(const ImDrawCmd& command) { return command.UserCallback == curve_mark; }

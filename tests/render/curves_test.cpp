@@ -90,6 +90,15 @@ TEST(Curves, what_is_drawn_afterwards_is_in_its_place) {
     EXPECT_GT(support::darkness(image, 300, 150), 250);
 }
 
+TEST(Curves, a_long_curve_may_be_the_last_thing_drawn) {
+    Offscreen surface(support::options());
+    std::vector<Point> saw;
+    for (int i = 0; i < 100000; ++i) saw.push_back({50.0 + i * 0.005, i % 2 == 0 ? 50.0 : 250.0});
+    const Image image = curve(surface, saw, {black, 1.0, {}});
+    EXPECT_GT(support::darkness(image, 300, 150), 250);
+    EXPECT_EQ(support::darkness(image, 300, 300), 0);
+}
+
 TEST(Curves, thinning_cannot_be_seen) {
     Offscreen surface(support::options());
     std::vector<Point> fine, coarse;
