@@ -33,11 +33,28 @@ bool has_tick_labels(const Axis& axis) {
 // A tick with its place on the screen.
 struct Placed {
     const Tick* tick;
-    float at;  // the first pixel of its line
+    float at;       // the first pixel of its line
+    bool labelled;  // false also where its label would touch another
 };
 
+// Of ticks with labels `length` long only every second, third, ... keeps its label, as room demands; zero always does.
+void drop_labels(std::vector<Placed>& ticks, float length) {
+    std::vector<Placed*> labelled;
+    for (Placed& p : ticks)
+        if (p.labelled) labelled.push_back(&p);
+    float nearest = std::numeric_limits<float>::infinity();
+    std::size_t zero = 0;
+    for (std::size_t i = 0; i < labelled.size(); ++i) {
+        if (i > 0) nearest = std::min(nearest, std::abs(labelled[i]->at - labelled[i - 1]->at));
+        if (labelled[i]->tick->value == 0.0) zero = i;
+    }
+    const auto every = static_cast<std::size_t>(std::clamp(std::ceil(length / std::max(nearest, 1.0F)), 1.0F,
+                                                           std::max(static_cast<float>(labelled.size()), 1.0F)));
+    for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == zero % every;
+}
+
 // The ticks within the plot's side, which runs from `from` to `to` in pixels.
-std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line) {
+std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length) {
     std::vector<Placed> result;
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
@@ -45,29 +62,19 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
         // Next to a corner a tick continues the box, rather than lie beside its line.
         const auto first = static_cast<float>(std::round(at - line / 2.0));
         const float snapped = first < from + line ? from - line : first > to - 2.0F * line ? to : first;
-        result.push_back({&tick, snapped});
+        result.push_back({&tick, snapped, !tick.label.empty()});
     }
+    drop_labels(result, length);
     return result;
 }
 
-// The labelled ticks, or every second, third, ... so that labels `length` long stay apart. Zero keeps its label.
-std::vector<Placed> readable(const std::vector<Placed>& ticks, float length) {
-    std::vector<Placed> labelled;
-    for (const Placed& p : ticks)
-        if (!p.tick->label.empty()) labelled.push_back(p);
-    if (labelled.size() < 2) return labelled;
-    float nearest = std::numeric_limits<float>::infinity();
-    std::size_t zero = 0;
-    for (std::size_t i = 0; i < labelled.size(); ++i) {
-        if (i > 0) nearest = std::min(nearest, std::abs(labelled[i].at - labelled[i - 1].at));
-        if (labelled[i].tick->value == 0.0) zero = i;
-    }
-    const std::size_t every = nearest >= 1.0F ? static_cast<std::size_t>(std::ceil(length / nearest)) : labelled.size();
-    std::vector<Placed> result;
-    for (std::size_t i = zero % std::max<std::size_t>(every, 1); i < labelled.size();
-         i += std::max<std::size_t>(every, 1))
-        result.push_back(labelled[i]);
-    return result;
+std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
+    return placed(panel.x, PanelMap(panel, plot).x, plot.x, plot.x + plot.width, m.line,
+                  widest_label(panel.x, m.text) + m.text * 0.7F);
+}
+
+std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
+    return placed(panel.y, PanelMap(panel, plot).y, plot.y, plot.y + plot.height, m.line, m.text * 1.2F);
 }
 
 // The size at which a label is at most `room` long.
@@ -78,13 +85,11 @@ float fitting(const std::string& label, float text, float room) {
 
 void paint_x(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,
              const Metrics& m) {
-    const PanelMap map(panel, plot);
     const float bottom = plot.y + plot.height + m.line;
-    const auto ticks = placed(panel.x, map.x, plot.x, plot.x + plot.width, m.line);
-    for (const Placed& p : ticks)
-        bar(list, p.at, bottom, m.line, p.tick->label.empty() ? m.minor_tick : m.tick, style.ink);
     const float below = bottom + m.tick + m.gap;
-    for (const Placed& p : readable(ticks, widest_label(panel.x, m.text) + m.text * 0.7F)) {
+    for (const Placed& p : ticks_x(panel, plot, m)) {
+        bar(list, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
+        if (!p.labelled) continue;
         const float width = label_width(p.tick->label, m.text);
         paint_label(list, p.at + (m.line - width) / 2.0F, below, p.tick->label, style.ink, m.text);
     }
@@ -99,23 +104,21 @@ void paint_x(const Panel& panel, const Figure& style, ImDrawList* list, Rectangl
 
 void paint_y(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,
              const Metrics& m) {
-    const PanelMap map(panel, plot);
     const float left = plot.x - m.line;
-    const auto ticks = placed(panel.y, map.y, plot.y, plot.y + plot.height, m.line);
-    for (const Placed& p : ticks) {
-        const float length = p.tick->label.empty() ? m.minor_tick : m.tick;
+    for (const Placed& p : ticks_y(panel, plot, m)) {
+        const float length = p.labelled ? m.tick : m.minor_tick;
         bar(list, left - length, p.at, length, m.line, style.ink);
-    }
-    for (const Placed& p : readable(ticks, m.text * 1.2F)) {
+        if (!p.labelled) continue;
         const float width = label_width(p.tick->label, m.text);
         // Digits have no descenders: their middle is a little above the middle of the line.
         paint_label(list, left - m.tick - m.gap - width, p.at - m.text * 0.52F + m.line / 2.0F, p.tick->label,
                     style.ink, m.text);
     }
     if (panel.y.label.empty()) return;
-    const float size = fitting(panel.y.label, m.text, plot.height + room.top + room.bottom);
+    const float size = fitting(panel.y.label, m.text, plot.height + room.top);
     const float width = label_width(panel.y.label, size);
-    const float lowest = plot.y + plot.height + room.bottom;
+    // It ends above the line of the x axis' label.
+    const float lowest = plot.y + plot.height + room.bottom - (panel.x.label.empty() ? 0.0F : m.text * 1.3F);
     const float start =
         std::clamp(plot.y + (plot.height + width) / 2.0F, std::min(plot.y - room.top + width, lowest), lowest);
     paint_label(list, plot.x - room.left, start, panel.y.label, style.ink, size, 90);
@@ -160,16 +163,21 @@ double AxisMap::operator()(double value) const {
     return from_ + ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
 }
 
+double AxisMap::value(double pixel) const {
+    const double value = low_ + (pixel - from_) / factor_;
+    return logarithmic_ ? std::pow(10.0, value) : value;
+}
+
 PanelMap::PanelMap(const Panel& panel, Rectangle plot)
     : x(panel.x, plot.x, double{plot.x} + plot.width), y(panel.y, double{plot.y} + plot.height, plot.y) {}
 
 void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& m) {
-    const PanelMap map(panel, plot);
-    for (const Placed& p : placed(panel.x, map.x, plot.x, plot.x + plot.width, m.line))
-        if (!p.tick->label.empty() && p.at >= plot.x && p.at < plot.x + plot.width)
+    // Not beside the box, which has lines of its own.
+    for (const Placed& p : ticks_x(panel, plot, m))
+        if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
             bar(list, p.at, plot.y, m.line, plot.height, style.grid);
-    for (const Placed& p : placed(panel.y, map.y, plot.y, plot.y + plot.height, m.line))
-        if (!p.tick->label.empty() && p.at >= plot.y && p.at < plot.y + plot.height)
+    for (const Placed& p : ticks_y(panel, plot, m))
+        if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
             bar(list, plot.x, p.at, plot.width, m.line, style.grid);
 }
 

@@ -31,6 +31,8 @@ class AxisMap {
     // `from` is the pixel of axis.low, `to` of axis.high.
     AxisMap(const Axis& axis, double from, double to);
     double operator()(double value) const;
+    // From pixels back to data, for the mouse.
+    double value(double pixel) const;
 
  private:
     bool logarithmic_;
@@ -41,6 +43,7 @@ struct PanelMap {
     PanelMap(const Panel& panel, Rectangle plot);
     AxisMap x, y;
     Point operator()(const Point& data) const { return {x(data.x), y(data.y)}; }
+    Point data(const Point& pixel) const { return {x.value(pixel.x), y.value(pixel.y)}; }
 };
 
 void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& metrics);

@@ -107,10 +107,11 @@ void paint_legend(const Panel& panel, const Figure& style, ImDrawList* list, Rec
     for (const Entry& entry : entries) longest = std::max(longest, label_width(*entry.label, m.text));
     const auto rows = static_cast<float>(entries.size());
     const float wanted_x = 3.0F * pad + 2.0F * m.text + longest, wanted_y = 2.0F * pad + rows * 1.3F * m.text;
-    // In a small panel the legend shrinks rather than hide the data; too small to read, it goes.
-    constexpr float smallest = 0.6F, largest_share = 0.3F;
+    // In a small panel the legend shrinks rather than hide the data, as long as it can be read; without room it goes.
+    constexpr float largest_share = 0.3F, readable_pixels = 11.0F;
+    const float smallest = std::clamp(readable_pixels / m.text, 0.6F, 1.0F);
     const float share = std::sqrt(largest_share * plot.width * plot.height / (wanted_x * wanted_y));
-    const float zoom = std::min({1.0F, room_x / wanted_x, room_y / wanted_y, std::max(share, 0.8F)});
+    const float zoom = std::min({1.0F, room_x / wanted_x, room_y / wanted_y, std::max(share, smallest)});
     if (zoom < smallest) return;
     const float text = m.text * zoom, row = 1.3F * text, sample = 2.0F * text;
     const Rectangle box =

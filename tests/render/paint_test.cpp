@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "paint/axes.hpp"
 #include "paint/label.hpp"
 #include "paint/mechanism.hpp"
 #include "render/samples.hpp"
@@ -104,6 +105,15 @@ TEST(Paint, tells_where_the_plot_area_is) {
         // 4 by 3 units with equal axes.
         EXPECT_NEAR(plot.width / plot.height, 4.0F / 3.0F, 0.01F);
     });
+}
+
+TEST(Paint, maps_data_to_pixels_and_back) {
+    for (const Panel& panel : {samples::bouncing(), samples::decay()}) {
+        const PanelMap map(panel, {10, 20, 300, 200});
+        EXPECT_NEAR(map({panel.x.low, panel.y.low}).y, 220.0, 1e-9);
+        EXPECT_NEAR(map({panel.x.high, panel.y.high}).x, 310.0, 1e-9);
+        EXPECT_NEAR(map.data(map({2.0, 0.01})).y, 0.01, 1e-9);
+    }
 }
 
 // Lies: each of these changes must be seen.
