@@ -2,12 +2,12 @@
 //
 // Every result is computed to nearest and widened outward: an arithmetic result x by 2^-52 |x| plus the least denormal,
 // which is at least one unit in the last place (2^-53 |x| is not enough: at a power of two 1 + 2^-53 rounds back to 1),
-// a library function's by as many units as libm may err. Assumed of libm, and tested: sqrt is correctly rounded; sin, cos,
-// tan, asin, acos, atan, exp, log and pow err by less than 2 units in the last place, sinh, cosh and tanh by less than 4
-// (glibc documents 1 and 2). No rounding mode is changed, so no compiler option can break a proof.
+// a library function's by as many units as libm may err. Assumed of libm, and tested: sqrt is correctly rounded; sin,
+// cos, tan, asin, acos, atan, exp, log and pow err by less than 2 units in the last place, sinh, cosh and tanh by less
+// than 4 (glibc documents 1 and 2). No rounding mode is changed, so no compiler option can break a proof.
 //
-// Where a function is not defined on the whole argument, or an operation has no bound, the result is undefined(): both ends
-// are NaN. It propagates, and no comparison with it is true, so it can never be mistaken for a proof.
+// Where a function is not defined on the whole argument, or an operation has no bound, the result is undefined(): both
+// ends are NaN. It propagates, and no comparison with it is true, so it can never be mistaken for a proof.
 #pragma once
 
 #include <algorithm>
@@ -99,7 +99,8 @@ inline Interval square(const Interval& a) {
                            std::numeric_limits<double>::infinity());
 }
 
-// The part of `a` that is not negative: for what cannot be, a sum of squares, whose lower end rounding has moved below 0.
+// The part of `a` that is not negative: for what cannot be, a sum of squares, whose lower end rounding has moved below
+// 0.
 inline Interval nonnegative(const Interval& a) {
     return detail::clamped(a, 0.0, std::numeric_limits<double>::infinity());
 }
@@ -153,8 +154,8 @@ inline Interval atan(const Interval& a) { return detail::widened(std::atan(a.lo(
 
 namespace detail {
 
-// The multiples m of pi/2 that may lie inside an interval: first <= m <= last. `known` is false where the argument is too
-// large, or too wide, to tell.
+// The multiples m of pi/2 that may lie inside an interval: first <= m <= last. `known` is false where the argument is
+// too large, or too wide, to tell.
 struct Quarters {
     bool known = false;
     double first = 0.0, last = -1.0;
@@ -177,7 +178,8 @@ inline Interval wave(const Interval& a, double at_lo, double at_hi, int top, int
     if (!a.is_defined()) return a;
     const Quarters q = quarters(a);
     if (!q.known) return {-1.0, 1.0};
-    const double low = q.meet(bottom) ? -1.0 : std::min(at_lo, at_hi), high = q.meet(top) ? 1.0 : std::max(at_lo, at_hi);
+    const double low = q.meet(bottom) ? -1.0 : std::min(at_lo, at_hi),
+                 high = q.meet(top) ? 1.0 : std::max(at_lo, at_hi);
     return clamped(widened(low, high, 2), -1.0, 1.0);
 }
 
@@ -198,8 +200,9 @@ inline Interval pow(const Interval& a, const Interval& b) {
     const double p = std::pow(a.lo(), b.lo()), q = std::pow(a.lo(), b.hi()), r = std::pow(a.hi(), b.lo()),
                  s = std::pow(a.hi(), b.hi());
     if (std::isnan(p + q + r + s)) return Interval::undefined();
-    return detail::clamped(detail::widened(std::min(std::min(p, q), std::min(r, s)),
-                                           std::max(std::max(p, q), std::max(r, s)), 2), 0.0, entire.hi());
+    return detail::clamped(
+        detail::widened(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)), 2), 0.0,
+        entire.hi());
 }
 
 }  // namespace achilles

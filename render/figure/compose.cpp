@@ -18,7 +18,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 class Values {
  public:
     Values(const Program& program, const Trajectory& trajectory)
-        : evaluator_(trajectory.model->evaluator(program, trajectory.run.parameters)), layout_(trajectory.model->layout()) {}
+        : evaluator_(trajectory.model->evaluator(program, trajectory.run.parameters)),
+          layout_(trajectory.model->layout()) {}
     void set(const Sample& sample) {
         put(evaluator_, sample.state);
         evaluator_.input(layout_.t()) = sample.t;
@@ -82,7 +83,8 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     return Sampler(trajectory).all(between);
 }
 
-Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view, const Theme& theme) {
+Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+              const Theme& theme) {
     const auto& quantities = view.quantities_;
     const std::size_t curves = quantities.size() - 1;
     Panel panel;

@@ -30,7 +30,8 @@ double multiple(double i, double step) {
 }
 
 std::string superscript(int exponent) {
-    const char* digits[] = {"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074", "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    const char* digits[] = {"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
+                            "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
     std::string text = exponent < 0 ? "\u207B" : "";
     for (const char digit : std::to_string(std::abs(exponent))) text += digits[digit - '0'];
     return text;
@@ -48,7 +49,7 @@ int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(s
 
 std::string tick_label(double value, double step) {
     const double size = std::max(std::abs(value), step);
-    if (size < 1e5 && step >= 1e-4) return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
+    if (size < 1e5 && (step >= 1e-4 || size >= 1e-2)) return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
     if (value == 0.0) return "0";
     const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-12));
     const double mantissa = value / std::pow(10.0, exponent);
