@@ -37,7 +37,7 @@ void OutputFiles::add(const std::string& path) {
     file.path = path;
     std::error_code problem;
     // A link is followed: what it points at is replaced, not the link.
-    file.target = fs::weakly_canonical(path, problem);
+    file.target = fs::weakly_canonical(fs::absolute(path), problem);
     if (problem) file.target = path;
     for (const File& other : files_)
         if (other.target == file.target) throw InputError(path, {}, "two outputs cannot go to the same place");
