@@ -59,6 +59,7 @@ std::vector<Point> outline(const Shape& shape, const Placement& placement) {
     if (shape.kind == Shape::Kind::disc) {
         const Point center = placement.pixel(shape.points.front());
         const double radius = shape.radius * placement.unit;
+        if (!(radius > 0.0) || !is_finite({radius, 0.0})) return points;
         // Corners stay within 0.02 px of the circle.
         const int corners = std::clamp(static_cast<int>(std::numbers::pi * std::sqrt(radius / 0.04)), 16, 720);
         for (int i = 0; i < corners; ++i) {
@@ -74,7 +75,11 @@ std::vector<Point> outline(const Shape& shape, const Placement& placement) {
 
 void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double scale) {
     if (!std::all_of(rim.begin(), rim.end(), is_finite)) return;
-    std::vector<Point> corners = thinned(rim, 0.05);
+    // Cutting ears takes the square of the number of corners.
+    constexpr std::size_t most_corners = 1000;
+    double tolerance = 0.05;
+    std::vector<Point> corners = thinned(rim, tolerance);
+    while (corners.size() > most_corners && tolerance < 10.0) corners = thinned(rim, tolerance *= 2.0);
     if (corners.size() < 4) return;
     corners.pop_back();  // the first again
     fill_polygon(list, corners, IM_COL32(color.r, color.g, color.b, color.a));

@@ -103,7 +103,8 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     IMGUI_CHECKVERSION();
     ImGuiContext* before = ImGui::GetCurrentContext();
     context_ = ImGui::CreateContext();
-    activate();
+    ImGui::SetCurrentContext(before);
+    const Active active(*this);
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;  // nothing is remembered between runs
     io.LogFilename = nullptr;
@@ -111,15 +112,18 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     map_keys(io);
     restyle(options.scale, options.dark);
-    if (before != nullptr) ImGui::SetCurrentContext(before);
 }
 
 Interface::~Interface() { ImGui::DestroyContext(context_); }
 
-void Interface::activate() const { ImGui::SetCurrentContext(context_); }
+Interface::Active::Active(const Interface& interface) : before_(ImGui::GetCurrentContext()) {
+    ImGui::SetCurrentContext(interface.context_);
+}
+
+Interface::Active::~Active() { ImGui::SetCurrentContext(before_); }
 
 void Interface::restyle(double scale, bool dark) {
-    activate();
+    const Active active(*this);
     build_fonts(scale);
     ImGuiStyle style;  // from the defaults: scaling twice would round twice
     colors(style, dark);
@@ -150,7 +154,6 @@ void Interface::build_fonts(double scale) {
 }
 
 const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int height, double seconds) {
-    activate();
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
     io.DeltaTime = static_cast<float>(seconds);

@@ -18,11 +18,20 @@ class Interface {
     Interface(const Interface&) = delete;
     Interface& operator=(const Interface&) = delete;
 
-    // Makes this ImGui's current context.
-    void activate() const;
+    // Makes this ImGui's current context for a while: a frame of one surface may draw a picture on another.
+    class Active {
+     public:
+        explicit Active(const Interface& interface);
+        ~Active();
+        Active(const Active&) = delete;
+        Active& operator=(const Active&) = delete;
+
+     private:
+        ImGuiContext* before_;
+    };
     // Rebuilds fonts and style for this scale; the font texture must be loaded again afterwards.
     void restyle(double scale, bool dark);
-    // One frame of the draw function, `seconds` after the last.
+    // One frame of the draw function, `seconds` after the last. Must be active, like all that follows from it.
     const ImDrawData& frame(const FrameFunction& draw, int width, int height, double seconds);
     // The colour behind everything.
     const float (&background() const)[3] { return background_; }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "surface/draw_data.hpp"
 #include "surface/interface.hpp"
@@ -72,27 +73,23 @@ struct Offscreen::Implementation {
                                         OSMESA_CONTEXT_MINOR_VERSION,
                                         3,
                                         0};
-        context = os_mesa().create(attributes.data(), nullptr);
+        context.reset(os_mesa().create(attributes.data(), nullptr));
         if (context == nullptr) throw std::runtime_error("libOSMesa.so.8 cannot make an OpenGL 3.3 context");
+        const Interface::Active active(interface);
         const Current current(*this);
         canvas.emplace([](const char* name) { return reinterpret_cast<void*>(os_mesa().address(name)); },
                        surface.curve_fineness);
-        interface.activate();
         canvas->load_fonts();
     }
     ~Implementation() {
-        {
-            const Current current(*this);
-            canvas.reset();
-        }
-        os_mesa().destroy(context);
+        const Current current(*this);
+        canvas.reset();
     }
 
     // OSMesa and a window's driver share one notion of a current context, so ours is current only while we use it.
     struct Current {
         explicit Current(Implementation& owner) {
-            if (os_mesa().make_current(owner.context, owner.buffer.data(), GL_UNSIGNED_BYTE, 1, 1) == GL_FALSE)
-                throw std::runtime_error("libOSMesa.so.8 cannot use its context");
+            os_mesa().make_current(owner.context.get(), owner.buffer.data(), GL_UNSIGNED_BYTE, 1, 1);
         }
         ~Current() { os_mesa().make_current(nullptr, nullptr, 0, 0, 0); }
         Current(const Current&) = delete;
@@ -100,14 +97,16 @@ struct Offscreen::Implementation {
     };
 
     const ImDrawData& advance(const FrameFunction& draw, const Input& input) {
-        interface.activate();
         apply(input);
         return interface.frame(draw, options.width, options.height, frame_seconds);
     }
 
     SurfaceOptions options;
     Interface interface;
-    OSMesaContext context = nullptr;
+    struct Destroy {
+        void operator()(OSMesaContext made) const { os_mesa().destroy(made); }
+    };
+    std::unique_ptr<std::remove_pointer_t<OSMesaContext>, Destroy> context;
     std::array<unsigned char, 4> buffer{};  // OSMesa wants one; we draw into a texture
     std::optional<Canvas> canvas;
 };
@@ -124,15 +123,20 @@ Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input
         held.wheel = held.wheel_sideways = 0.0;  // what happened once must not happen again
         held.text.clear();
     }
-    const Implementation::Current current(*implementation_);
+    const Interface::Active active(implementation_->interface);
     const ImDrawData& data = implementation_->advance(draw, held);
+    const Implementation::Current current(*implementation_);
     implementation_->canvas->draw(data, implementation_->interface.background());
     return implementation_->canvas->read();
 }
 
-void Offscreen::step(const FrameFunction& draw, const Input& input) { implementation_->advance(draw, input); }
+void Offscreen::step(const FrameFunction& draw, const Input& input) {
+    const Interface::Active active(implementation_->interface);
+    implementation_->advance(draw, input);
+}
 
 void Offscreen::restyle(double scale, bool dark) {
+    const Interface::Active active(implementation_->interface);
     implementation_->interface.restyle(scale, dark);
     const Implementation::Current current(*implementation_);
     implementation_->canvas->load_fonts();

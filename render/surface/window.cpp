@@ -47,6 +47,20 @@ bool glfw_works() {
     return display_is_named() && glfwInit() == GLFW_TRUE;
 }
 
+// The size asked for, or what the monitor has room for. GLFW multiplies it by the monitor's scale.
+std::pair<int, int> fitting_size(const SurfaceOptions& surface) {
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    if (monitor == nullptr) return {surface.width, surface.height};
+    int x = 0, y = 0, width = 0, height = 0;
+    float across = 1.0F, down = 1.0F;
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    glfwGetMonitorContentScale(monitor, &across, &down);
+    const auto fit = [](int wanted, int room, float scale) {
+        return std::max(room > 0 ? std::min(wanted, static_cast<int>(static_cast<float>(room) / scale)) : wanted, 1);
+    };
+    return {fit(surface.width, width, across), fit(surface.height, height, down)};
+}
+
 // A letter key by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard.
 int code_of(int code, int scancode) {
     if (code < GLFW_KEY_A || code > GLFW_KEY_Z) return code;
@@ -60,26 +74,21 @@ int code_of(int code, int scancode) {
 
 struct Window::Implementation {
     Implementation(const SurfaceOptions& surface, const std::string& title)
-        : window(open(surface, title)), interface(with_scale(surface, window)) {
+        : owned(open(surface, title), glfwDestroyWindow), window(owned.get()), interface(with_scale(surface, window)) {
         float across = 1.0F, down = 1.0F;
         glfwGetWindowContentScale(window, &across, &down);
         monitor_scale = across;
         scale = surface.scale;
         dark = surface.dark;
-        try {
-            const Current current(window);
-            glfwSwapInterval(1);
-            canvas.emplace([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); },
-                           surface.curve_fineness);
-            interface.activate();
-            canvas->load_fonts();
-        } catch (...) {
-            glfwDestroyWindow(window);
-            throw;
-        }
-        listen();
+        const Interface::Active active(interface);
+        const Current current(window);
+        glfwSwapInterval(1);
+        canvas.emplace([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); },
+                       surface.curve_fineness);
+        canvas->load_fonts();
         set_clipboard();
         make_cursors();
+        listen();
     }
     ~Implementation() {
         {
@@ -88,7 +97,6 @@ struct Window::Implementation {
         }
         for (GLFWcursor* cursor : cursors)
             if (cursor != nullptr) glfwDestroyCursor(cursor);
-        glfwDestroyWindow(window);
     }
 
     // OSMesa and the window's driver share one notion of a current context, so ours is current only while we use it.
@@ -113,6 +121,7 @@ struct Window::Implementation {
     void restyle();
     void frame(const FrameFunction& draw);
 
+    std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)> owned;
     GLFWwindow* window;
     Interface interface;
     std::optional<Canvas> canvas;
@@ -136,7 +145,8 @@ GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const st
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     glfwWindowHintString(GLFW_X11_CLASS_NAME, "achilles");
     glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "achilles");
-    GLFWwindow* made = glfwCreateWindow(surface.width, surface.height, title.c_str(), nullptr, nullptr);
+    const auto [width, height] = fitting_size(surface);
+    GLFWwindow* made = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (made == nullptr) throw std::runtime_error("no OpenGL 3.3 window can be opened: " + last_glfw_error());
     return made;
 }
@@ -192,7 +202,6 @@ void Window::Implementation::listen_to_keyboard() {
 }
 
 void Window::Implementation::set_clipboard() {
-    interface.activate();
     ImGuiIO& io = ImGui::GetIO();
     io.ClipboardUserData = window;
     io.GetClipboardTextFn = [](void* w) { return glfwGetClipboardString(static_cast<GLFWwindow*>(w)); };
@@ -221,7 +230,7 @@ void Window::Implementation::wait() {
     if (moving || unsettled > 0 || !events.empty()) {
         glfwPollEvents();
     } else {
-        interface.activate();
+        const Interface::Active active(interface);
         glfwWaitEventsTimeout(ImGui::GetIO().WantTextInput ? blink_seconds : sleep_seconds);
         unsettled = std::max(unsettled, 1);
     }
@@ -230,6 +239,7 @@ void Window::Implementation::wait() {
 
 void Window::Implementation::restyle() {
     interface.restyle(scale * monitor_scale, dark);
+    const Current current(window);
     canvas->load_fonts();
     stale = false;
 }
@@ -243,12 +253,12 @@ void Window::Implementation::frame(const FrameFunction& draw) {
     const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, 1e-4, 0.1);
     last_frame = now;
     unsettled = std::max(unsettled - 1, 0);
-    const Current current(window);
+    const Interface::Active active(interface);
     if (stale) restyle();
-    interface.activate();
     apply(events.next());
     const ImDrawData& data = interface.frame(draw, width, height, step);
     show_cursor();
+    const Current current(window);
     canvas->draw(data, interface.background());
     canvas->show();
     glfwSwapBuffers(window);

@@ -12,7 +12,7 @@ namespace achilles {
 
 class Window {
  public:
-    // Throws std::runtime_error if there is no display or no OpenGL 3.3.
+    // Throws std::runtime_error if there is no display or no OpenGL 3.3. The window is no larger than the monitor.
     Window(const SurfaceOptions& options, const std::string& title);
     ~Window();
     Window(const Window&) = delete;

@@ -149,6 +149,32 @@ TEST(Mechanism, is_placed_in_the_middle_with_equal_axes) {
     EXPECT_DOUBLE_EQ(placement.world(placement.pixel({0.3, -0.7})).y, -0.7);
 }
 
+TEST(Mechanism, survives_shapes_that_make_no_sense) {
+    Offscreen surface(support::options(300, 200));
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Drawing drawing = samples::mechanism();
+    for (Shape shape : samples::mechanism().shapes) {
+        shape.radius = nan;
+        drawing.shapes.push_back(shape);
+        shape.radius = 1e30;
+        drawing.shapes.push_back(shape);
+        shape.points.front() = {nan, 1.0};
+        drawing.shapes.push_back(shape);
+        shape.points.assign(3, {1.0, 1.0});
+        drawing.shapes.push_back(shape);
+        shape.points.clear();
+        drawing.shapes.push_back(shape);
+    }
+    Shape comb;
+    for (int i = 0; i < 5000; ++i) comb.points.push_back({-1.0 + i * 4e-4, i % 2 == 0 ? 0.0 : 1.0});
+    comb.closed = comb.fill = true;
+    drawing.shapes.push_back(comb);
+    for (const double low : {-2.0, 2.0, nan, -1e300}) {
+        drawing.x_low = low;
+        surface.frame([&] { paint(drawing, ImGui::GetBackgroundDrawList(), {0, 0, 300, 200}); });
+    }
+}
+
 TEST(Mechanism, fills_a_polygon_with_a_dent) {
     Offscreen surface(support::options());
     Drawing drawing;

@@ -172,6 +172,22 @@ TEST_F(OnDisplay, a_window_draws_the_bytes_of_offscreen) {
     EXPECT_EQ(window.picture(), expected);
 }
 
+TEST_F(OnDisplay, a_frame_may_draw_a_picture_offscreen) {
+    Offscreen surface(support::options());
+    const Image expected = surface.frame(everything, 3);
+    Window window(support::options(), "achilles");
+    int frames = 0;
+    Image inner;
+    window.run([&] {
+        ImGui::Begin("outer");
+        if (++frames == 2) inner = surface.frame(everything, 3);
+        ImGui::End();
+        if (frames == 3) window.close();
+    });
+    EXPECT_EQ(inner, expected);
+    EXPECT_EQ(window.picture().width, 600);
+}
+
 TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
     Window window(support::options(200, 100), "achilles");
     window.keep_drawing(false);
