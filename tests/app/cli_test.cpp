@@ -190,5 +190,19 @@ TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
         EXPECT_NE(answer.out.find(part), std::string::npos) << part;
 }
 
+TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {
+    const Folder folder;
+    const Answer answer = folder.run("paper");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4"}) {
+        const auto file = folder.path() / "achilles-paper" / (std::string(name) + ".png");
+        EXPECT_EQ(content(file).substr(1, 3), "PNG") << name;
+        EXPECT_NE(answer.out.find("/achilles-paper/" + std::string(name) + ".png\n"), std::string::npos) << answer.out;
+    }
+    EXPECT_NE(answer.out.find("2.72514217"), std::string::npos);
+    EXPECT_EQ(answer.out.rfind(content(folder.path() / "achilles-paper/table.txt"), 0), 0u);
+    EXPECT_EQ(folder.run("paper --out /dev/null/x").status, 2);
+}
+
 }  // namespace
 }  // namespace achilles::test
