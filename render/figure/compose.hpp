@@ -38,6 +38,10 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory);
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme);
 
+// Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
+// gets room at the top.
+void place_legend(Panel& panel);
+
 // A grid of panels.
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns);
 

@@ -62,8 +62,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     add_surface(panels.back(), theme);
     add(pendulum, of_pendulum, view("(e)", "t", "theta1"));
     add(pendulum, of_pendulum, view("(f)", "t", "theta2"));
-    panels[0].legend = true;
-    panels[0].legend_at = {1.0, 0.0};
+    place_legend(panels[0]);
 
     std::vector<NamedFigure> figures;
     Figure page;
@@ -73,7 +72,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     for (Panel panel : panels) {
         Figure single = page;
         single.panels.push_back(panel);
-        single.panels[0].legend = true;
+        place_legend(single.panels[0]);
         figures.push_back({"fig4" + panel.title.substr(1, 1), 900, 600, single});
     }
     page.columns = 2;

@@ -49,7 +49,8 @@ int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(s
 
 std::string tick_label(double value, double step) {
     const double size = std::max(std::abs(value), step);
-    if (size < 1e5 && (step >= 1e-4 || size >= 1e-2)) return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
+    if (size < 1e5 && (step >= 1e-4 || size >= 1e-2))
+        return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
     if (value == 0.0) return "0";
     const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-12));
     const double mantissa = value / std::pow(10.0, exponent);

@@ -144,13 +144,28 @@ TEST(Composing, AnglesAreShownInDegrees) {
     EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);
 }
 
+TEST(Composing, ALegendHidesNoCurve) {
+    const auto model = test::load("double_pendulum");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    for (const ViewDescription& view : model->description().views) {
+        Panel panel = compose(trajectory, plot_samples(trajectory), PreparedView(*model, view), light_theme());
+        place_legend(panel);
+        for (const Curve& curve : panel.curves) {
+            for (const Point& p : curve.points) {
+                const double x = (p.x - panel.x.low) / (panel.x.high - panel.x.low);
+                const double y = (p.y - panel.y.low) / (panel.y.high - panel.y.low);
+                EXPECT_FALSE(std::abs(x - panel.legend_at[0]) < 0.29 && std::abs(y - panel.legend_at[1]) < 0.29);
+            }
+        }
+    }
+}
+
 TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());
     const Panel panel = compose(trajectory, plot_samples(trajectory),
                                 PreparedView(*model, model->description().views[5]), light_theme());
-    for (const Point& p : panel.curves[1].points)
-        EXPECT_TRUE(std::isnan(p.x) || p.y >= -1e-9) << p.y;
+    for (const Point& p : panel.curves[1].points) EXPECT_TRUE(std::isnan(p.x) || p.y >= -1e-9) << p.y;
     double most = 0.0;
     for (const Point& p : panel.curves[1].points)
         if (!std::isnan(p.y)) most = std::max(most, p.y);
