@@ -216,11 +216,11 @@ void Model::check_start(const Run& run) const {
     if (!h.is_defined())
         throw description_.error(description_.gap.at,
                                  "the gap cannot be evaluated at the start: a function is outside its domain");
-    const double error = h.rad();
-    if (h.mid() < -4.0 * error)
-        throw description_.error(description_.gap.at, fmt::format("the gap is negative at the start: h = {}", h.mid()),
+    const double error = rad(h);
+    if (mid(h) < -4.0 * error)
+        throw description_.error(description_.gap.at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
                                  "choose a start with h(q) >= 0");
-    if (std::abs(h.mid()) <= 4.0 * error) {
+    if (std::abs(mid(h)) <= 4.0 * error) {
         auto surface = evaluator(surface_, run.parameters);
         put(surface, start);
         surface.run();
