@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "app/program.hpp"
 
@@ -14,6 +15,8 @@ using nlohmann::json;
 struct Refusal {
     std::string name, arguments, message;
 };
+
+void PrintTo(const Refusal& refusal, std::ostream* out) { *out << refusal.arguments; }
 
 class Refused : public testing::TestWithParam<Refusal> {};
 
