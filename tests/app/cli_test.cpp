@@ -177,6 +177,14 @@ TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
 }
 
+TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {
+    const Folder folder;
+    folder.put("run.csv", "old");
+    EXPECT_EQ(folder.run("simulate ball_on_sine --csv run.csv --json /dev/full").status, 2);
+    EXPECT_EQ(content(folder.path() / "run.csv"), "old");
+    EXPECT_EQ(folder.files().size(), 1u);
+}
+
 TEST(Cli, OutputReplacesAFileThroughALink) {
     const Folder folder;
     folder.put("old.json", "old");
