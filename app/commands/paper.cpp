@@ -53,8 +53,8 @@ int draw_paper(const fs::path& folder, double scale) {
     const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + ".png")).string(); };
     for (const NamedFigure& figure : figures) files.add(file_of(figure));
     files.add(table_file);
-    for (const NamedFigure& figure : figures) files.write(file_of(figure), png(figure, scale));
-    files.write(table_file, table);
+    for (const NamedFigure& figure : figures) files.put(file_of(figure), png(figure, scale));
+    files.put(table_file, table);
     files.commit();
 
     fmt::print("{}\n", table);

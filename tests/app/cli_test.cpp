@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "app/program.hpp"
 
@@ -14,6 +15,8 @@ using nlohmann::json;
 struct Refusal {
     std::string name, arguments, message;
 };
+
+void PrintTo(const Refusal& refusal, std::ostream* out) { *out << refusal.arguments; }
 
 class Refused : public testing::TestWithParam<Refusal> {};
 
@@ -172,6 +175,14 @@ TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     EXPECT_EQ(answer.status, 3);
     EXPECT_NE(answer.err.find("achilles: the run stopped early: "), std::string::npos) << answer.err;
     EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
+}
+
+TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {
+    const Folder folder;
+    folder.put("run.csv", "old");
+    EXPECT_EQ(folder.run("simulate ball_on_sine --csv run.csv --json /dev/full").status, 2);
+    EXPECT_EQ(content(folder.path() / "run.csv"), "old");
+    EXPECT_EQ(folder.files().size(), 1u);
 }
 
 TEST(Cli, OutputReplacesAFileThroughALink) {
