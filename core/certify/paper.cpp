@@ -10,7 +10,7 @@ namespace {
 Interval norm(const std::vector<Interval>& x) {
     Interval sum(0.0);
     for (const Interval& entry : x) sum = sum + square(entry);
-    return sqrt(sum);
+    return sqrt(nonnegative(sum));
 }
 
 double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {

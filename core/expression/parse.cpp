@@ -72,7 +72,6 @@ class Parser {
     }
 
     Expression sum() {
-        const Level level(*this);
         Expression left = product();
         for (;;) {
             if (take('+')) {

@@ -146,6 +146,7 @@ void Model::compile() {
     surface_ = program({{e.gap, e.hdot}, e.n, e.g, {e.W}});
     bounds_ = program({{e.hddot}, e.n, e.f});
     energy_ = program({{e.energy, e.kinetic, e.potential}});
+    force_ = program({{e.lambda}});
     restitution_ = program({{e.restitution}});
 }
 

@@ -40,6 +40,7 @@ class Model {
     const Program& surface() const { return surface_; }  // h, hdot, n (n), g (n), W
     const Program& bounds() const { return bounds_; }    // hddot, n (n), f (n): what Def. 7 needs over a box
     const Program& energy() const { return energy_; }    // T + V, T, V
+    const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
 
     // An evaluator of one of the programs above with the parameters' values in place.
@@ -73,7 +74,7 @@ class Model {
     std::unique_ptr<Graph> graph_;
     Equations equations_;
     std::vector<std::string> slot_names_;
-    Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, restitution_;
+    Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, force_, restitution_;
 };
 
 }  // namespace achilles

@@ -99,6 +99,11 @@ inline Interval square(const Interval& a) {
                            std::numeric_limits<double>::infinity());
 }
 
+// The part of `a` that is not negative: for what cannot be, a sum of squares, whose lower end rounding has moved below 0.
+inline Interval nonnegative(const Interval& a) {
+    return detail::clamped(a, 0.0, std::numeric_limits<double>::infinity());
+}
+
 // x^n, tight: even powers do not forget that x x >= 0. Found before the generic integer_power of scalar.hpp.
 inline Interval integer_power(const Interval& a, int n) {
     const auto raise = [](double x, unsigned m) {

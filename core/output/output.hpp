@@ -10,6 +10,8 @@ namespace achilles {
 std::string to_json(const Trajectory& trajectory);
 std::string to_csv(const Trajectory& trajectory);
 std::string summary(const Trajectory& trajectory);
+// What a certificate says, in one sentence.
+std::string sentence(const Certificate& certificate);
 std::string version();
 
 }  // namespace achilles

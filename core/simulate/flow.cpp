@@ -134,8 +134,8 @@ Flow::Obstacle Flow::Stepper::accept() {
 }
 
 Flow::Obstacle Flow::Stepper::advance(double dt) {
-    // Shorter than the resolution of time is no step.
-    const double least = 1e-15 * std::max(1e-3, std::abs(t));
+    // Shorter than half the resolution of time is no step.
+    const double least = 1e-16 * std::max(1e-3, std::abs(t));
     bool finite = true;
     for (; dt > least; dt *= 0.25) {
         set(dt);

@@ -87,6 +87,8 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
         const Trajectory tiny = simulate(model, run);
         EXPECT_EQ(tiny.outcome.kind, Outcome::Kind::end_time) << tiny.outcome.message;
         for (const Event& event : test::events_of(tiny, Event::Kind::zeno)) {
+            EXPECT_TRUE(event.certificate->certified);
+            if (problem.key == "double_pendulum") continue;  // its gap is a coordinate, exact near 0: 1e-14 can be met
             EXPECT_TRUE(event.certificate->below_rounding);
             EXPECT_GT(event.certificate->velocity_bound, 1e-14);  // the bound it has, not the one that was asked for
             EXPECT_LT(event.certificate->velocity_bound, 1e-5);
@@ -205,7 +207,9 @@ Trajectory on_floor(const std::string& start) {
     std::string text = floor_text;
     text.replace(text.find("START"), 5, start);
     const auto model = test::typed(text);
-    return simulate(model, model->default_run());
+    const Trajectory trajectory = simulate(model, model->default_run());
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    return trajectory;
 }
 
 TEST(Starts, AtRestInContactStaysThere) {
