@@ -1,0 +1,196 @@
+// The left column: which system, and every value a hand may change.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "figure/label.hpp"
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+constexpr float label_width = 62.0F;
+
+// One slider: what is shown and how.
+struct Slider {
+    std::string label, id, unit, about;
+    double value = 0.0, low = 0.0, high = 1.0;
+    int digits = 4;
+};
+
+// printf's format, for ImGui: the value and its unit.
+std::string value_format(const Slider& slider) {
+    std::string unit = slider.unit.empty() ? "" : " " + slider.unit;
+    for (std::size_t at = unit.find('%'); at != std::string::npos; at = unit.find('%', at + 2)) unit.insert(at, "%");
+    return fmt::format("%.{}g{}", slider.digits, unit);
+}
+
+bool is_logarithmic(double low, double high) { return low > 0.0 && high / low >= 100.0; }
+
+// Shows one; true where the hand has changed the value.
+bool moved(Slider& slider, PanelState& state) {
+    label(slider.label, units(label_width));
+    tooltip(slider.about);
+    ImGui::SameLine(0.0F, 0.0F);
+    ImGui::SetNextItemWidth(-1.0F);
+    const ImGuiSliderFlags flags = is_logarithmic(slider.low, slider.high) ? ImGuiSliderFlags_Logarithmic : 0;
+    const double before = slider.value;
+    const bool changed = ImGui::SliderScalar(("##" + slider.id).c_str(), ImGuiDataType_Double, &slider.value,
+                                             &slider.low, &slider.high, value_format(slider).c_str(), flags);
+    remember(state, slider.id);
+    tooltip(slider.about);
+    return changed && slider.value != before;
+}
+
+// A typographer's unit: m/s^2 becomes m/s\u00b2.
+std::string pretty_unit(std::string unit) {
+    for (const auto& [plain, raised] : {std::pair{"^2", "\u00b2"}, std::pair{"^3", "\u00b3"}})
+        for (std::size_t at = unit.find(plain); at != std::string::npos; at = unit.find(plain))
+            unit.replace(at, 2, raised);
+    return unit;
+}
+
+void choose_system(const Session& session, PanelState& state, Commands& commands) {
+    ImGui::SetNextItemWidth(-1.0F);
+    if (ImGui::BeginCombo("##system", session.description().title.c_str(), ImGuiComboFlags_HeightLargest)) {
+        for (const SystemEntry& entry : state.systems) {
+            const bool is_open = entry.name == session.system();
+            if (ImGui::Selectable((entry.title + "##" + entry.name).c_str(), is_open))
+                commands.emplace_back(command::Open{entry.name});
+            remember(state, "open " + entry.name);
+        }
+        ImGui::EndCombo();
+    }
+    remember(state, "systems");
+    if (session.description().source.empty()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(session.description().source.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void parameters(const Session& session, PanelState& state, Commands& commands) {
+    const auto& all = session.description().parameters;
+    if (all.empty()) return;
+    section("Parameters");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const ParameterDescription& p = all[i];
+        const bool is_angle = p.unit == "rad";
+        const double factor = is_angle ? degrees_per_radian : 1.0;
+        Slider slider{typeset_name(p.name),
+                      "set " + p.name,
+                      is_angle ? "\u00b0" : pretty_unit(p.unit),
+                      p.about,
+                      session.run().parameters[i] * factor,
+                      p.range[0] * factor,
+                      p.range[1] * factor};
+        if (moved(slider, state)) commands.emplace_back(command::Set{p.name, slider.value / factor});
+    }
+}
+
+// A coordinate's start, or the rate at the start.
+void start_value(const Session& session, std::size_t i, bool is_rate, PanelState& state, Commands& commands) {
+    const CoordinateDescription& c = session.description().coordinates[i];
+    const bool is_angle = c.unit == "rad";
+    const double factor = is_angle ? degrees_per_radian : 1.0;
+    const auto& range = is_rate ? c.rate_range : c.range;
+    const Vector& values = is_rate ? session.run().v : session.run().q;
+    const std::string name = is_rate ? c.name + "'" : c.name;
+    std::string unit = is_angle ? "\u00b0" : pretty_unit(c.unit);
+    if (is_rate && !unit.empty()) unit += "/s";
+    Slider slider{typeset_name(name) + "(0)",
+                  "set " + name,
+                  unit,
+                  fmt::format("{} of {} at the start", is_rate ? "rate" : "value", c.name),
+                  values[static_cast<Eigen::Index>(i)] * factor,
+                  range[0] * factor,
+                  range[1] * factor};
+    if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value / factor});
+}
+
+// The first and the last entry of a pair of choices; the entry that is not available yet is grey and says why.
+template <class Value, class Make>
+void choice(const char* id, const std::string& title, const std::string& about, Value now,
+            std::initializer_list<Value> all, PanelState& state, Commands& commands, const Make& make,
+            std::optional<Value> unavailable = {}) {
+    label(title, units(100.0F));
+    tooltip(about);
+    ImGui::SameLine(0.0F, 0.0F);
+    const float width =
+        (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemInnerSpacing.x) / static_cast<float>(all.size());
+    bool first = true;
+    for (const Value value : all) {
+        if (!first) ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+        first = false;
+        const bool is_off = unavailable == value;
+        const std::string word(to_text(value));
+        ImGui::BeginDisabled(is_off);
+        const ImGuiCol color = value == now ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg;
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(color));
+        if (ImGui::Button((word + "##" + id).c_str(), {width, 0.0F}) && value != now)
+            commands.emplace_back(make(value));
+        ImGui::PopStyleColor();
+        remember(state, std::string(id) + " " + word);
+        ImGui::EndDisabled();
+        tooltip(is_off ? "not available yet" : about);
+    }
+}
+
+void truncation(const Session& session, PanelState& state, Commands& commands) {
+    const Truncation& t = session.run().options.truncation;
+    section("Truncation of Zeno bouncing");
+    const auto eps = [&](const char* name, const char* id, double value, const char* about) {
+        Slider slider{name, id, "", about, value, 1e-12, 1e-1, 3};
+        return moved(slider, state) ? slider.value : value;
+    };
+    // One slider for all three, and one for each.
+    const double all = eps("\u03b5", "eps", t.eps_q, "all three bounds below at once");
+    const double q = eps("   \u03b5 q", "eps q", t.eps_q, "bound on the error of the position at the Zeno point");
+    const double v = eps("   \u03b5 v", "eps v", t.eps_v, "bound on the error of the velocity at the Zeno point");
+    const double time = eps("   \u03b5 t", "eps t", t.eps_t, "bound on the error of the Zeno time, s");
+    if (all != t.eps_q)
+        commands.emplace_back(command::Eps{all, all, all});
+    else if (q != t.eps_q || v != t.eps_v || time != t.eps_t)
+        commands.emplace_back(command::Eps{q, v, time});
+    choice<Conditions>(
+        "conditions", "conditions", "which inequalities must hold before the bouncing is cut short", t.conditions,
+        {Conditions::paper, Conditions::sharp}, state, commands, [](Conditions c) { return command::UseConditions{c}; },
+        Conditions::sharp);
+    choice<Reinitialization>("reinitialization", "restart",
+                             "the velocity the constrained motion starts with: the paper's "
+                             "euclidean projection, or the kinetic one of a plastic impact",
+                             t.reinitialization, {Reinitialization::euclidean, Reinitialization::kinetic}, state,
+                             commands, [](Reinitialization r) { return command::UseReinitialization{r}; });
+}
+
+void integration(const Session& session, PanelState& state, Commands& commands) {
+    const Options& o = session.run().options;
+    section("Integration");
+    Slider tolerance{"tolerance", "tolerance", "",   "local error per step, absolute and relative",
+                     o.tolerance, 1e-14,       1e-4, 3};
+    if (moved(tolerance, state)) commands.emplace_back(command::Tolerance{tolerance.value});
+    const double longest = std::max(50.0, 2.0 * o.end_time);
+    Slider end{"end", "end", "s", "the run stops here at the latest", o.end_time, 0.1, longest, 4};
+    if (moved(end, state)) commands.emplace_back(command::End{end.value});
+}
+
+}  // namespace
+
+void show_controls(const Session& session, PanelState& state, Commands& commands) {
+    choose_system(session, state, commands);
+    parameters(session, state, commands);
+    section("Start");
+    for (std::size_t i = 0; i < session.description().coordinates.size(); ++i) {
+        start_value(session, i, false, state, commands);
+        start_value(session, i, true, state, commands);
+    }
+    truncation(session, state, commands);
+    integration(session, state, commands);
+}
+
+}  // namespace achilles
