@@ -174,7 +174,8 @@ void integration(const Session& session, PanelState& state, Commands& commands) 
     Slider tolerance{"tolerance", "tolerance", "",   "local error per step, absolute and relative",
                      o.tolerance, 1e-14,       1e-4, 3};
     if (moved(tolerance, state)) commands.emplace_back(command::Tolerance{tolerance.value});
-    const double longest = std::max(50.0, 2.0 * o.end_time);
+    // Of the file, not of the run: a range that grew with the value would run away under the hand.
+    const double longest = std::max(50.0, 2.0 * session.description().options.end_time);
     Slider end{"end", "end", "s", "the run stops here at the latest", o.end_time, 0.1, longest, 4};
     if (moved(end, state)) commands.emplace_back(command::End{end.value});
 }
