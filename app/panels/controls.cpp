@@ -1,8 +1,12 @@
 // The left column: which system, and every value a hand may change.
 #include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <numbers>
 
 #include "figure/label.hpp"
@@ -13,7 +17,8 @@ namespace achilles {
 namespace {
 
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-constexpr float label_width = 62.0F;
+// The columns of a row, at scale 1: what it is, the slider, its value.
+constexpr float label_width = 76.0F, value_width = 78.0F;
 
 // One slider: what is shown and how.
 struct Slider {
@@ -22,28 +27,55 @@ struct Slider {
     int digits = 4;
 };
 
-// printf's format, for ImGui: the value and its unit.
-std::string value_format(const Slider& slider) {
-    std::string unit = slider.unit.empty() ? "" : " " + slider.unit;
-    for (std::size_t at = unit.find('%'); at != std::string::npos; at = unit.find('%', at + 2)) unit.insert(at, "%");
-    return fmt::format("%.{}g{}", slider.digits, unit);
+bool is_logarithmic(double low, double high) { return low > 0.0 && high / low >= 100.0; }
+
+double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
+
+// A thin track behind a slider whose own frame is invisible.
+void paint_track(float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float y = std::floor(at.y + 0.5F * ImGui::GetFrameHeight()), half = units(2.0F);
+    ImGui::GetWindowDrawList()->AddRectFilled({at.x, y - half}, {at.x + width, y + half},
+                                              ImGui::GetColorU32(ImGuiCol_Border), half);
 }
 
-bool is_logarithmic(double low, double high) { return low > 0.0 && high / low >= 100.0; }
+// The slider alone. ImGui would write the value over the grab; ours stands beside it, so its text is hidden, except
+// while it is typed over (Ctrl and click). Fifteen digits: ImGui takes the precision of a logarithmic scale from here.
+bool slid(Slider& slider, float width) {
+    const std::string id = "##" + slider.id;
+    const bool typing = ImGui::TempInputIsActive(ImGui::GetID(id.c_str()));
+    if (!typing) paint_track(width);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, typing ? ImGui::GetColorU32(ImGuiCol_FrameBg) : 0U);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgActive, typing ? ImGui::GetColorU32(ImGuiCol_FrameBg) : 0U);
+    ImGui::PushStyleColor(ImGuiCol_FrameBgHovered, 0U);
+    ImGui::PushStyleColor(ImGuiCol_Text, typing ? ImGui::GetColorU32(ImGuiCol_Text) : 0U);
+    ImGui::SetNextItemWidth(width);
+    const double before = slider.value;
+    ImGui::SliderScalar(id.c_str(), ImGuiDataType_Double, &slider.value, &slider.low, &slider.high, "%.15g",
+                        is_logarithmic(slider.low, slider.high) ? ImGuiSliderFlags_Logarithmic : 0);
+    ImGui::PopStyleColor(4);
+    if (slider.value == before) return false;
+    if (!typing) slider.value = rounded(slider.value, slider.digits);
+    return slider.value != before;
+}
 
 // Shows one; true where the hand has changed the value.
 bool moved(Slider& slider, PanelState& state) {
+    const std::string about = slider.about + (slider.about.empty() ? "" : "\n") + "Ctrl and click to type a value";
     label(slider.label, units(label_width));
-    tooltip(slider.about);
+    tooltip(about);
     ImGui::SameLine(0.0F, 0.0F);
-    ImGui::SetNextItemWidth(-1.0F);
-    const ImGuiSliderFlags flags = is_logarithmic(slider.low, slider.high) ? ImGuiSliderFlags_Logarithmic : 0;
-    const double before = slider.value;
-    const bool changed = ImGui::SliderScalar(("##" + slider.id).c_str(), ImGuiDataType_Double, &slider.value,
-                                             &slider.low, &slider.high, value_format(slider).c_str(), flags);
+    const float width = ImGui::GetContentRegionAvail().x - units(value_width);
+    const bool changed = slid(slider, width);
     remember(state, slider.id);
-    tooltip(slider.about);
-    return changed && slider.value != before;
+    tooltip(about);
+    ImGui::SameLine(0.0F, 0.0F);
+    const std::string text = number(rounded(slider.value, slider.digits + 2), "{:.6g}") +
+                             (slider.unit.empty() ? "" : "\u2009" + slider.unit);
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text.c_str());
+    return changed;
 }
 
 // A typographer's unit: m/s^2 becomes m/s\u00b2.
@@ -54,9 +86,28 @@ std::string pretty_unit(std::string unit) {
     return unit;
 }
 
+// "double pendulum" for the file double_pendulum.toml: short enough for the column, whatever the title.
+std::string short_name(const std::string& system) {
+    std::string name = std::filesystem::path(system).stem().string();
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+void paragraph(const std::string& text, const Color& color) {
+    if (text.empty()) return;
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(color));
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
 void choose_system(const Session& session, PanelState& state, Commands& commands) {
     ImGui::SetNextItemWidth(-1.0F);
-    if (ImGui::BeginCombo("##system", session.description().title.c_str(), ImGuiComboFlags_HeightLargest)) {
+    const bool is_down =
+        ImGui::BeginCombo("##system", short_name(session.system()).c_str(), ImGuiComboFlags_HeightLargest);
+    remember(state, "systems");
+    if (is_down) {
         for (const SystemEntry& entry : state.systems) {
             const bool is_open = entry.name == session.system();
             if (ImGui::Selectable((entry.title + "##" + entry.name).c_str(), is_open))
@@ -65,13 +116,10 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
         }
         ImGui::EndCombo();
     }
-    remember(state, "systems");
-    if (session.description().source.empty()) return;
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(session.description().source.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {units(8.0F), units(2.0F)});
+    paragraph(session.description().title, text_color());
+    paragraph(session.description().source, faint_color());
+    ImGui::PopStyleVar();
 }
 
 void parameters(const Session& session, PanelState& state, Commands& commands) {
@@ -118,7 +166,7 @@ template <class Value, class Make>
 void choice(const char* id, const std::string& title, const std::string& about, Value now,
             std::initializer_list<Value> all, PanelState& state, Commands& commands, const Make& make,
             std::optional<Value> unavailable = {}) {
-    label(title, units(100.0F));
+    label(title, units(label_width));
     tooltip(about);
     ImGui::SameLine(0.0F, 0.0F);
     const float width =
@@ -143,16 +191,16 @@ void choice(const char* id, const std::string& title, const std::string& about, 
 
 void truncation(const Session& session, PanelState& state, Commands& commands) {
     const Truncation& t = session.run().options.truncation;
-    section("Truncation of Zeno bouncing");
+    section("Truncation of the bouncing");
     const auto eps = [&](const char* name, const char* id, double value, const char* about) {
         Slider slider{name, id, "", about, value, 1e-12, 1e-1, 3};
         return moved(slider, state) ? slider.value : value;
     };
     // One slider for all three, and one for each.
-    const double all = eps("\u03b5", "eps", t.eps_q, "all three bounds below at once");
-    const double q = eps("   \u03b5 q", "eps q", t.eps_q, "bound on the error of the position at the Zeno point");
-    const double v = eps("   \u03b5 v", "eps v", t.eps_v, "bound on the error of the velocity at the Zeno point");
-    const double time = eps("   \u03b5 t", "eps t", t.eps_t, "bound on the error of the Zeno time, s");
+    const double all = eps("\u03b5, all", "eps", t.eps_q, "all three bounds below at once");
+    const double q = eps("   position", "eps q", t.eps_q, "bound on the error of the position at the Zeno point");
+    const double v = eps("   velocity", "eps v", t.eps_v, "bound on the error of the velocity at the Zeno point");
+    const double time = eps("   time", "eps t", t.eps_t, "bound on the error of the Zeno time, s");
     if (all != t.eps_q)
         commands.emplace_back(command::Eps{all, all, all});
     else if (q != t.eps_q || v != t.eps_v || time != t.eps_t)

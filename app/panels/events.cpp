@@ -59,14 +59,17 @@ int reached(const Session& session) {
 
 std::string state_text(const Session& session, const Event& event) {
     const auto& coordinates = session.description().coordinates;
-    std::string text;
+    std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? 57.29577951308232 : 1.0;
-        text += fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
-                            number(event.q[static_cast<Eigen::Index>(i)] * factor, "{:.6g}"), is_angle ? "\u00b0" : "");
+        const auto at = static_cast<Eigen::Index>(i);
+        positions += fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
+                                 number(event.q[at] * factor, "{:.5g}"), is_angle ? "\u00b0" : "");
+        rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
+                             number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
     }
-    return text;
+    return positions + rates;
 }
 
 void show_header(PanelState& state) {
@@ -75,7 +78,7 @@ void show_header(PanelState& state) {
     const float right = ImGui::GetContentRegionMax().x;
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
-                                   std::pair{speed_at, "speed"}, std::pair{state_at, "state"}}) {
+                                   std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
         if (at != number_at) ImGui::SameLine();
         ImGui::SetCursorPosX(left + units(at));
         ImGui::TextUnformatted(text);
@@ -138,7 +141,8 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
 void show_events(const Session& session, PanelState& state, Commands& commands) {
     show_header(state);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
-    ImGui::BeginChild("list");
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(4.0F), units(6.0F)});
+    ImGui::BeginChild("list", {0.0F, 0.0F}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
     const std::vector<Row> all = rows(session, state.show_impacts, width);
     const int present = reached(session);
@@ -152,13 +156,17 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
             show_row(session, row, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();
+    ImGui::PopStyleVar();
     ImGui::PopStyleColor();
 }
 
 void show_status(const Session& session, const PanelState& state) {
     const Trajectory& trajectory = session.trajectory();
     const Statistics& s = trajectory.statistics;
-    ImGui::AlignTextToFramePadding();
+    const ImVec2 corner = ImGui::GetWindowPos();
+    ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
+                                        ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::SetCursorPosY(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()));
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
             fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));
@@ -168,10 +176,11 @@ void show_status(const Session& session, const PanelState& state) {
         tooltip(trajectory.outcome.message);
         ImGui::SameLine(0.0F, units(24.0F));
     }
-    std::string text = fmt::format("{} impacts     {} steps     least gap {}     energy drift {}     {}", s.impacts,
-                                   s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
-                                   to_text(trajectory.run.options.method));
-    if (state.in_window) text += fmt::format("     {:.1f} ms", s.seconds * 1e3);
+    std::string text =
+        fmt::format("{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
+                    s.impacts, s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
+                    to_text(trajectory.run.options.method));
+    if (state.in_window) text += fmt::format("   \u00b7   {:.1f} ms", s.seconds * 1e3);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();

@@ -36,7 +36,7 @@ Parts lay_out(const Session& session) {
     const float padding = ImGui::GetStyle().WindowPadding.y;
     const float status = ImGui::GetFrameHeight() + units(8.0F);
     const float left = std::floor(std::clamp(0.2F * size.x, units(288.0F), units(340.0F)));
-    const float events = std::floor(std::max(units(170.0F), 0.24F * size.y));
+    const float events = std::floor(std::max(units(180.0F), 0.27F * size.y));
     const float width = size.x - left, height = size.y - status - events;
     const float centre = std::floor(0.46F * width);
     const float timeline = timeline_height() + 2.0F * padding;

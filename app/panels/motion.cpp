@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "paint/marker.hpp"
 #include "paint/mechanism.hpp"
@@ -137,6 +138,32 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         commands.emplace_back(command::Play{});
 }
 
+// The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below.
+void show_state(const Session& session, ImVec2 at) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
+    const Phase::Kind phase = session.now().phase;
+    const Color color = phase_color(session.theme(), phase);
+    list->AddRectFilled({at.x, at.y + 0.25F * size}, {at.x + units(10.0F), at.y + 0.25F * size + units(10.0F)},
+                        packed(color), units(2.0F));
+    paint_label(list, at.x + units(16.0F), at.y, legend_text(phase), text_color(), size);
+    const auto& coordinates = session.description().coordinates;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const bool is_angle = coordinates[i].unit == "rad";
+        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const auto index = static_cast<Eigen::Index>(i);
+        const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
+        const std::string rate_unit = unit.empty() ? "" : unit + "/s";
+        const float x = at.x + units(130.0F + 130.0F * static_cast<float>(i));
+        const auto text = [&](const std::string& name, double value, const std::string& of) {
+            return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;
+        };
+        paint_label(list, x, at.y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
+        paint_label(list, x, at.y + line, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
+                    faint_color(), size);
+    }
+}
+
 }  // namespace
 
 void show_mechanism(const Session& session) {
@@ -144,9 +171,11 @@ void show_mechanism(const Session& session) {
     if (area.width < 2.0F || area.height < 2.0F) return;
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
+    const float strip = 2.0F * ImGui::GetTextLineHeightWithSpacing() + units(8.0F);
+    show_state(session, {area.x + units(12.0F), area.y + units(8.0F)});
     const Drawing drawing =
         session.mechanism().draw(session.now().state, session.run().parameters, session.limits(), session.theme());
-    paint(drawing, ImGui::GetWindowDrawList(), area, units(1.0F));
+    paint(drawing, ImGui::GetWindowDrawList(), {area.x, area.y + strip, area.width, area.height - strip}, units(1.0F));
 }
 
 float timeline_height() {
