@@ -71,7 +71,7 @@ bool moved(Slider& slider, PanelState& state) {
     tooltip(about);
     ImGui::SameLine(0.0F, 0.0F);
     const std::string text = number(rounded(slider.value, slider.digits + 2), "{:.6g}") +
-                             (slider.unit.empty() ? "" : "\u2009" + slider.unit);
+                             (slider.unit.empty() || slider.unit[0] == '\xc2' ? slider.unit : "\u00a0" + slider.unit);
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text.c_str());

@@ -1,7 +1,8 @@
-// Below: what happened, event by event, and what is proved of it; and one line about the run.
+// Below: what happened, event by event, and what is proved of it.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "figure/label.hpp"
 #include "output/output.hpp"
@@ -14,7 +15,7 @@ namespace {
 
 // Where the columns of the list begin, at scale 1, from its left edge.
 constexpr float sign_at = 14.0F, number_at = 34.0F, kind_at = 78.0F, time_at = 174.0F, speed_at = 300.0F,
-                state_at = 410.0F;
+                state_at = 410.0F, list_padding = 4.0F;
 
 // A line of the list: an event, or one line of what its certificate says.
 struct Row {
@@ -74,7 +75,7 @@ std::string state_text(const Session& session, const Event& event) {
 
 void show_header(PanelState& state) {
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    const float left = ImGui::GetCursorPosX();
+    const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
@@ -132,8 +133,9 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
         std::find_if(all.begin(), all.end(), [&](const Row& r) { return static_cast<int>(r.event) >= event; });
     const float y = static_cast<float>(row - all.begin()) * ImGui::GetTextLineHeightWithSpacing();
     const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
+    // By whole lines: none is cut at the top.
     if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
-        ImGui::SetScrollY(std::max(0.0F, y - 0.3F * height));
+        ImGui::SetScrollY(std::max(0.0F, std::floor((y - 0.3F * height) / line) * line));
 }
 
 }  // namespace
@@ -141,8 +143,12 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
 void show_events(const Session& session, PanelState& state, Commands& commands) {
     show_header(state);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(4.0F), units(6.0F)});
-    ImGui::BeginChild("list", {0.0F, 0.0F}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
+    // As high as whole lines are.
+    const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
+    const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
+                         units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
+    ImGui::BeginChild("list", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
     const std::vector<Row> all = rows(session, state.show_impacts, width);
     const int present = reached(session);
@@ -157,32 +163,6 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
         }
     ImGui::EndChild();
     ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
-}
-
-void show_status(const Session& session, const PanelState& state) {
-    const Trajectory& trajectory = session.trajectory();
-    const Statistics& s = trajectory.statistics;
-    const ImVec2 corner = ImGui::GetWindowPos();
-    ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
-                                        ImGui::GetColorU32(ImGuiCol_Border));
-    ImGui::SetCursorPosY(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()));
-    if (trajectory.outcome.kind != Outcome::Kind::end_time) {
-        const std::string early =
-            fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));
-        ImGui::PushStyleColor(ImGuiCol_Text, packed(error_color()));
-        ImGui::TextUnformatted(early.c_str());
-        ImGui::PopStyleColor();
-        tooltip(trajectory.outcome.message);
-        ImGui::SameLine(0.0F, units(24.0F));
-    }
-    std::string text =
-        fmt::format("{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
-                    s.impacts, s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
-                    to_text(trajectory.run.options.method));
-    if (state.in_window) text += fmt::format("   \u00b7   {:.1f} ms", s.seconds * 1e3);
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
 }
 

@@ -14,6 +14,8 @@ constexpr ImGuiWindowFlags fixed_window = ImGuiWindowFlags_NoTitleBar | ImGuiWin
 constexpr ImGuiWindowFlags still_window =
     fixed_window | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
+constexpr float card_padding = 10.0F;
+
 // A window that fills its part of the surface.
 template <class Content>
 void part(const char* name, const Rectangle& area, ImGuiWindowFlags flags, const Content& content) {
@@ -67,7 +69,7 @@ std::vector<MessageLine> lines_of(const std::string& message) {
 }
 
 void show_quoted(const std::string& line) {
-    const float advance = std::ceil(ImGui::CalcTextSize("m").x * 0.72F);
+    const float advance = std::ceil(ImGui::CalcTextSize("m").x * 0.64F);
     ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy({advance, ImGui::GetTextLineHeight()});
     for (std::size_t i = 0; i < line.size();) {
@@ -82,8 +84,8 @@ void show_quoted(const std::string& line) {
 }  // namespace
 
 float error_height(const Session& session, float width) {
-    const float wrap = width - 2.0F * ImGui::GetStyle().WindowPadding.x;
-    float height = 2.0F * ImGui::GetStyle().WindowPadding.y;
+    const float wrap = width - 2.0F * (ImGui::GetStyle().WindowPadding.x + units(card_padding));
+    float height = ImGui::GetStyle().WindowPadding.y + 2.0F * units(card_padding);
     for (const MessageLine& line : lines_of(session.error()))
         height +=
             ImGui::GetStyle().ItemSpacing.y +
@@ -92,17 +94,25 @@ float error_height(const Session& session, float width) {
 }
 
 void show_error(const Session& session) {
+    const Rectangle area = remaining();
+    const ImVec2 low{area.x, area.y},
+        high{area.x + area.width, area.y + area.height + ImGui::GetStyle().WindowPadding.y};
+    ImGui::GetWindowDrawList()->AddRectFilled(low, high, IM_COL32(253, 236, 234, 255), units(4.0F));
+    ImGui::GetWindowDrawList()->AddRect(low, high, packed(error_color(), 0.35F), units(4.0F));
+    ImGui::SetCursorScreenPos({low.x + units(card_padding), low.y + units(card_padding)});
+    ImGui::BeginGroup();
     for (const MessageLine& line : lines_of(session.error())) {
         if (line.quoted) {
             show_quoted(line.text);
             continue;
         }
         ImGui::PushStyleColor(ImGuiCol_Text, packed(error_color()));
-        ImGui::PushTextWrapPos(0.0F);
+        ImGui::PushTextWrapPos(ImGui::GetContentRegionMax().x - units(card_padding));
         ImGui::TextUnformatted(line.text.c_str());
         ImGui::PopTextWrapPos();
         ImGui::PopStyleColor();
     }
+    ImGui::EndGroup();
 }
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
@@ -110,9 +120,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     const Parts parts = lay_out(session);
     part("controls", parts.controls, fixed_window, [&] { show_controls(session, state, commands); });
     if (parts.error.height > 0.0F) {
-        ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(253, 236, 234, 255));
         part("error", parts.error, still_window, [&] { show_error(session); });
-        ImGui::PopStyleColor();
     }
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });

@@ -73,46 +73,6 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
                             {x, track.top + units(5.0F)}, packed(text_color()));
 }
 
-// A coloured sign and what it stands for, on the current line.
-void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
-    const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::Dummy({units(16.0F), ImGui::GetFrameHeight()});
-    sign(ImGui::GetWindowDrawList(), {at.x + units(8.0F), at.y + 0.5F * ImGui::GetFrameHeight()});
-    ImGui::SameLine(0.0F, units(2.0F));
-    ImGui::AlignTextToFramePadding();
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopStyleColor();
-}
-
-void show_legend(const Session& session) {
-    const Event::Kind events[] = {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
-    const Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
-    const float gap = units(12.0F);
-    float width = 0.0F;
-    for (const Phase::Kind kind : phases)
-        width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
-    for (const Event::Kind kind : events)
-        width += ImGui::CalcTextSize(event_markers(session.theme(), kind).label.c_str()).x + units(18.0F) + gap;
-    ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < width) return ImGui::NewLine();
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - width + gap);
-    for (const Phase::Kind kind : phases) {
-        legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
-            list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
-                                packed(phase_color(session.theme(), kind), 0.85F));
-        });
-        ImGui::SameLine(0.0F, gap);
-    }
-    for (const Event::Kind kind : events) {
-        const Markers markers = event_markers(session.theme(), kind);
-        legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
-            paint_marker(list, markers, {c.x, c.y}, units(1.0F));
-        });
-        if (kind != Event::Kind::release) ImGui::SameLine(0.0F, gap);
-    }
-}
-
 // Play or pause. A pause names its instant, so that a replayed journal stops at the same picture.
 void play_button(const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 size{units(40.0F), ImGui::GetFrameHeight()};
@@ -138,8 +98,10 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         commands.emplace_back(command::Play{});
 }
 
-// The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below.
-void show_state(const Session& session, ImVec2 at) {
+// The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
+// the height it took.
+float show_state(const Session& session, ImVec2 at, float width) {
+    constexpr float first = 130.0F, column = 130.0F;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
     const Phase::Kind phase = session.now().phase;
@@ -148,20 +110,24 @@ void show_state(const Session& session, ImVec2 at) {
                         packed(color), units(2.0F));
     paint_label(list, at.x + units(16.0F), at.y, legend_text(phase), text_color(), size);
     const auto& coordinates = session.description().coordinates;
+    const auto columns = static_cast<std::size_t>(std::max(1.0F, (width - units(first)) / units(column)));
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? 57.29577951308232 : 1.0;
         const auto index = static_cast<Eigen::Index>(i);
         const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
         const std::string rate_unit = unit.empty() ? "" : unit + "/s";
-        const float x = at.x + units(130.0F + 130.0F * static_cast<float>(i));
+        const float x = at.x + units(first + column * static_cast<float>(i % columns));
+        const float y = at.y + 2.0F * line * static_cast<float>(i / columns);
         const auto text = [&](const std::string& name, double value, const std::string& of) {
             return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;
         };
-        paint_label(list, x, at.y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
-        paint_label(list, x, at.y + line, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
+        paint_label(list, x, y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
+        paint_label(list, x, y + line, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
                     faint_color(), size);
     }
+    const std::size_t rows = (coordinates.size() + columns - 1) / columns;
+    return 2.0F * line * static_cast<float>(std::max<std::size_t>(rows, 1)) + units(8.0F);
 }
 
 }  // namespace
@@ -171,8 +137,7 @@ void show_mechanism(const Session& session) {
     if (area.width < 2.0F || area.height < 2.0F) return;
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
-    const float strip = 2.0F * ImGui::GetTextLineHeightWithSpacing() + units(8.0F);
-    show_state(session, {area.x + units(12.0F), area.y + units(8.0F)});
+    const float strip = show_state(session, {area.x + units(12.0F), area.y + units(8.0F)}, area.width - units(24.0F));
     const Drawing drawing =
         session.mechanism().draw(session.now().state, session.run().parameters, session.limits(), session.theme());
     paint(drawing, ImGui::GetWindowDrawList(), {area.x, area.y + strip, area.width, area.height - strip}, units(1.0F));
@@ -187,7 +152,6 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(fmt::format("t = {:.3f} s", session.time()).c_str());
-    show_legend(session);
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);
