@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "assets.hpp"
@@ -69,6 +70,7 @@ int run(std::vector<std::string> words) {
         put_default_command(program, words);
         std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
         program.parse(words);
+        if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
         return status;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);

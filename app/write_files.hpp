@@ -7,8 +7,8 @@
 
 namespace achilles {
 
-// A set of files. Each is opened under a temporary name when it is added, so that a path that cannot be written is
-// known before the work; all get their names at the end. "-" is standard output.
+// A set of files. Whether each can be written is tried when it is added, before the work; nothing stays behind if the
+// work is interrupted. At the end all are written under temporary names and then get their own. "-" is standard output.
 class OutputFiles {
  public:
     OutputFiles() = default;
@@ -18,17 +18,18 @@ class OutputFiles {
 
     // Throws InputError if the file cannot be written, or was added before.
     void add(const std::string& path);
-    // What the file will hold. Throws InputError (the disk is full).
-    void write(const std::string& path, const std::string& content);
-    // Gives all files their names. Throws InputError.
+    // What an added file will hold.
+    void put(const std::string& path, std::string content);
+    // Writes all. Throws InputError (the disk is full); then no file has changed.
     void commit();
 
  private:
     struct File {
-        std::string path;                         // as given
+        std::string path, content;                // as given
         std::filesystem::path target, temporary;  // no temporary: written in place (a device, standard output)
-        int descriptor = -1;
+        bool written = false;                     // the temporary is there
     };
+    static int open_temporary(const File& file);
     std::vector<File> files_;
 };
 

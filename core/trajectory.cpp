@@ -18,7 +18,8 @@ Sampler::~Sampler() = default;
 
 State Sampler::state(const Piece& piece, double t) const {
     const auto n = trajectory_.run.q.size();
-    const double theta = piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
+    const double theta =
+        piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
     State state{Vector::Zero(n), Vector::Zero(n)};
     for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
         const double* block = trajectory_.coefficients.data() + piece.first + 2 * static_cast<std::size_t>(n) * k;
@@ -70,7 +71,8 @@ std::vector<Sample> Sampler::all(int between) {
         bool any = false;
         for (; j < events.size() && events[j].t <= until; any = true) {
             const Event& event = events[j];
-            const bool shown = !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
+            const bool shown =
+                !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
             if (event.kind == Event::Kind::impact && !shown)
                 add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before});
             ++j;
@@ -90,7 +92,8 @@ std::vector<Sample> Sampler::all(int between) {
         add(piece.end, in, contact, state(piece, piece.end));
     }
     if (pass_events(trajectory_.end_time) || samples.empty())
-        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_phase == Phase::Kind::constrained, trajectory_.end);
+        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_phase == Phase::Kind::constrained,
+            trajectory_.end);
     return samples;
 }
 

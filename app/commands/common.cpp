@@ -81,6 +81,15 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     add_number(command, "--eps-t", overrides.eps_t, "time, s");
 }
 
+void add_scale_option(CLI::App& command, double& scale) {
+    const auto take_scale = [&scale](const std::string& text) {
+        scale = number_from("--scale", text);
+        if (!(scale >= 0.25 && scale <= 8.0))
+            throw InputError("--scale " + text, {}, "the scale must lie in [0.25, 8]");
+    };
+    command.add_option_function<std::string>("--scale", take_scale, "of text and strokes (default 1)")->type_name("S");
+}
+
 void add_size_options(CLI::App& command, int& width, int& height, double& scale) {
     const auto take_size = [&width, &height](const std::string& text) {
         const std::size_t x = text.find('x');
@@ -94,12 +103,7 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale)
     };
     command.add_option_function<std::string>("--size", take_size, fmt::format("pixels (default {}x{})", width, height))
         ->type_name("WxH");
-    const auto take_scale = [&scale](const std::string& text) {
-        scale = number_from("--scale", text);
-        if (!(scale >= 0.25 && scale <= 8.0))
-            throw InputError("--scale " + text, {}, "the scale must lie in [0.25, 8]");
-    };
-    command.add_option_function<std::string>("--scale", take_scale, "of text and strokes (default 1)")->type_name("S");
+    add_scale_option(command, scale);
 }
 
 }  // namespace achilles

@@ -16,6 +16,9 @@ namespace achilles {
 // --set and everything that goes over a system's options.
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
 
+// --scale S.
+void add_scale_option(CLI::App& command, double& scale);
+
 // --size WxH and --scale S.
 void add_size_options(CLI::App& command, int& width, int& height, double& scale);
 

@@ -1,7 +1,8 @@
 #include "simulate/simulate.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "assets.hpp"
 #include "commands/commands.hpp"
@@ -25,22 +26,21 @@ int run(const Arguments& arguments) {
         open_system(find_system(arguments.system), arguments.settings, arguments.overrides));
     const Run run = model->default_run();
     model->check(run);
-    // Opened before the work: a path that cannot be written is bad input, not a loss at the end.
+    // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
     if (!arguments.json.empty()) files.add(arguments.json);
     if (!arguments.csv.empty()) files.add(arguments.csv);
 
     const Trajectory trajectory = simulate(model, run);
-    if (!arguments.json.empty()) files.write(arguments.json, to_json(trajectory));
-    if (!arguments.csv.empty()) files.write(arguments.csv, to_csv(trajectory));
+    if (!arguments.json.empty()) files.put(arguments.json, to_json(trajectory));
+    if (!arguments.csv.empty()) files.put(arguments.csv, to_csv(trajectory));
     if (arguments.json.empty() && arguments.csv.empty()) {
         files.add("-");
-        files.write("-", summary(trajectory));
+        files.put("-", summary(trajectory));
     }
     files.commit();
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    if (arguments.json != "-" && arguments.csv != "-")
-        std::fprintf(stderr, "achilles: the run stopped early: %s\n", trajectory.outcome.message.c_str());
+    fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
 }
 

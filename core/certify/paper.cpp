@@ -10,7 +10,7 @@ namespace {
 Interval norm(const std::vector<Interval>& x) {
     Interval sum(0.0);
     for (const Interval& entry : x) sum = sum + square(entry);
-    return sqrt(nonnegative(sum));
+    return sqrt(sum);
 }
 
 double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {
@@ -41,7 +41,7 @@ PaperConditions::PaperConditions(const Model& model, const Run& run)
 bool PaperConditions::hopeless(const Collision& collision) {
     put(point_, State{collision.before.q, collision.restart});
     point_.run();
-    const double e = e_.mid(), w = collision.speed, a = -point_.output(0);
+    const double e = mid(e_), w = collision.speed, a = -point_.output(0);
     if (!(a > 0.0) || !(e < 1.0)) return true;
     const double time = 2.0 * e * w / (a * (1.0 - e));
     const double eta = norm(point_, 1, n_), zeta = norm(point_, 1 + n_, n_);

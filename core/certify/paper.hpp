@@ -1,12 +1,13 @@
 // The paper's reliable truncation (Def. 7, Thm. 3; THEORY section 3), proved by interval evaluation.
 //
-// Over a neighbourhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*), here the box around it together
-// with v-, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r), beta = |v*| + eps_v',
-// eta = max |n|, zeta = max |f|. With w = |hdot| at the collision,
+// Over a neighbourhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*), here the box around it
+// together with v-, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r), beta = |v*| +
+// eps_v', eta = max |n|, zeta = max |f|. With w = |hdot| at the collision,
 //
 //     c1 = a_min (1 - e')/(2 e) eps_t          c2 = a_min (1 - e')/(2 e beta) eps_q'
 //     c3 = eps_v' / ((1 + e) eta/(1 - e'') + 2 e zeta/(a_min (1 - e')) + 1/|g(q*)|)      Euclidean R*
-//     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic: the restart is s itself
+//     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic: the restart is s
+//     itself
 //
 // w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q, |v_inf - v*| < eps_v.
 #pragma once
@@ -25,8 +26,8 @@ class PaperConditions {
 
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     std::optional<Certificate> hold(const Collision& collision);
-    // What can be proved here whatever the tolerances: the least neighbourhood, doubling from theirs, whose own conditions
-    // hold. For a collision after which no further flight can be resolved.
+    // What can be proved here whatever the tolerances: the least neighbourhood, doubling from theirs, whose own
+    // conditions hold. For a collision after which no further flight can be resolved.
     std::optional<Certificate> widest(const Collision& collision);
 
  private:

@@ -14,19 +14,32 @@ Expression outer_derivative(Expression e) {
     Graph& graph = e.graph();
     const Expression u = Builder::first(e), one = graph.number(1), two = graph.number(2);
     switch (Builder::node(e).operation) {
-        case Op::sqrt: return one / (two * e);
-        case Op::sin: return apply(Op::cos, u);
-        case Op::cos: return -apply(Op::sin, u);
-        case Op::tan: return one + power(e, 2);
-        case Op::asin: return one / apply(Op::sqrt, one - power(u, 2));
-        case Op::acos: return -(one / apply(Op::sqrt, one - power(u, 2)));
-        case Op::atan: return one / (one + power(u, 2));
-        case Op::sinh: return apply(Op::cosh, u);
-        case Op::cosh: return apply(Op::sinh, u);
-        case Op::tanh: return one - power(e, 2);
-        case Op::exp: return e;
-        case Op::log: return one / u;
-        default: throw std::logic_error("not a function");
+        case Op::sqrt:
+            return one / (two * e);
+        case Op::sin:
+            return apply(Op::cos, u);
+        case Op::cos:
+            return -apply(Op::sin, u);
+        case Op::tan:
+            return one + power(e, 2);
+        case Op::asin:
+            return one / apply(Op::sqrt, one - power(u, 2));
+        case Op::acos:
+            return -(one / apply(Op::sqrt, one - power(u, 2)));
+        case Op::atan:
+            return one / (one + power(u, 2));
+        case Op::sinh:
+            return apply(Op::cosh, u);
+        case Op::cosh:
+            return apply(Op::sinh, u);
+        case Op::tanh:
+            return one - power(e, 2);
+        case Op::exp:
+            return e;
+        case Op::log:
+            return one / u;
+        default:
+            throw std::logic_error("not a function");
     }
 }
 
@@ -37,16 +50,23 @@ Expression derivative_of(Expression e, Expression da, Expression db) {
     if (is_leaf(node.operation)) return graph.number(0);
     const Expression a{&graph, node.a}, b{&graph, node.b};
     switch (node.operation) {
-        case Op::add: return da + db;
-        case Op::subtract: return da - db;
-        case Op::multiply: return da * b + a * db;
-        case Op::divide: return (da - e * db) / b;
-        case Op::negate: return -da;
-        case Op::power: return graph.number(node.exponent) * power(a, node.exponent - 1) * da;
+        case Op::add:
+            return da + db;
+        case Op::subtract:
+            return da - db;
+        case Op::multiply:
+            return da * b + a * db;
+        case Op::divide:
+            return (da - e * db) / b;
+        case Op::negate:
+            return -da;
+        case Op::power:
+            return graph.number(node.exponent) * power(a, node.exponent - 1) * da;
         case Op::real_power:
             if (db.is_zero()) return b * real_power(a, b - graph.number(1)) * da;
             return e * (db * apply(Op::log, a) + b * da / a);
-        default: return da.is_zero() ? da : outer_derivative(e) * da;
+        default:
+            return da.is_zero() ? da : outer_derivative(e) * da;
     }
 }
 
@@ -54,14 +74,22 @@ Expression derivative_of(Expression e, Expression da, Expression db) {
 Expression rebuild(Expression e, Expression a, Expression b) {
     const Graph::Node node = Builder::node(e);
     switch (node.operation) {
-        case Op::add: return a + b;
-        case Op::subtract: return a - b;
-        case Op::multiply: return a * b;
-        case Op::divide: return a / b;
-        case Op::negate: return -a;
-        case Op::power: return power(a, node.exponent);
-        case Op::real_power: return real_power(a, b);
-        default: return apply(node.operation, a);
+        case Op::add:
+            return a + b;
+        case Op::subtract:
+            return a - b;
+        case Op::multiply:
+            return a * b;
+        case Op::divide:
+            return a / b;
+        case Op::negate:
+            return -a;
+        case Op::power:
+            return power(a, node.exponent);
+        case Op::real_power:
+            return real_power(a, b);
+        default:
+            return apply(node.operation, a);
     }
 }
 

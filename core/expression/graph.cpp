@@ -32,7 +32,8 @@ double round_down(const Rational& value) {
     double guess = value.convert_to<double>();
     if (!std::isfinite(guess)) guess = guess > 0 ? largest : -largest;
     while (Rational(guess) > value) guess = std::nextafter(guess, -infinity);
-    for (double next = std::nextafter(guess, infinity); Rational(next) <= value; next = std::nextafter(next, infinity)) {
+    for (double next = std::nextafter(guess, infinity); Rational(next) <= value;
+         next = std::nextafter(next, infinity)) {
         guess = next;
         if (guess == largest) break;
     }
@@ -107,7 +108,8 @@ Constant Graph::constant(std::uint32_t id) const {
     const Rational& value = table_->numbers[table_->nodes[id].a];
     const double low = round_down(value);
     const double high = -round_down(-value);
-    const bool low_is_nearer = std::isfinite(low) && (!std::isfinite(high) || value - Rational(low) <= Rational(high) - value);
+    const bool low_is_nearer =
+        std::isfinite(low) && (!std::isfinite(high) || value - Rational(low) <= Rational(high) - value);
     return {low_is_nearer ? low : high, low, high, boost::multiprecision::numerator(value).str(),
             boost::multiprecision::denominator(value).str()};
 }

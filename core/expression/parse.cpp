@@ -15,7 +15,8 @@ namespace {
 // Deeper than any formula a person writes, shallow enough for every stack.
 constexpr int deepest = 200;
 
-constexpr std::array<std::string_view, 9> not_smooth{"abs", "min", "max", "floor", "ceil", "round", "sign", "mod", "fmod"};
+constexpr std::array<std::string_view, 9> not_smooth{"abs",   "min",  "max", "floor", "ceil",
+                                                     "round", "sign", "mod", "fmod"};
 constexpr std::array<std::string_view, 5> reserved{"t", "pi", "gap", "lambda", "energy"};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -201,7 +202,8 @@ class Parser {
     Expression call(std::string_view word, Operation function, std::size_t begin) {
         const std::size_t open = at_;
         if (!take('('))
-            throw ParseError(begin, "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)");
+            throw ParseError(begin,
+                             "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)");
         const Expression argument = sum();
         if (peek() == ',') throw ParseError(at_, "the function " + quoted(word) + " takes one argument");
         close(open);
@@ -210,7 +212,9 @@ class Parser {
 
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
         if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
-            throw ParseError(begin, quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives");
+            throw ParseError(
+                begin,
+                quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives");
         std::vector<std::string> known;
         for (const auto& [word, function] : functions) known.emplace_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {

@@ -15,8 +15,7 @@ class Factorisation {
             for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - power(lower_[j * n + k], 2) * pivots_[k];
             for (std::size_t i = j + 1; i < n; ++i) {
                 Expression entry = M[i * n + j];
-                for (std::size_t k = 0; k < j; ++k)
-                    entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
+                for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
                 lower_[i * n + j] = entry / pivots_[j];
             }
         }

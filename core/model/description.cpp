@@ -22,8 +22,8 @@ class SystemReader {
 
     void read(const toml::table& root) {
         const TableReader file(d_, root, "a system file",
-                               {"title", "source", "coordinate", "parameter", "lagrangian", "constraint", "run", "truncation",
-                                "drawing", "view", "extra"});
+                               {"title", "source", "coordinate", "parameter", "lagrangian", "constraint", "run",
+                                "truncation", "drawing", "view", "extra"});
         d_.title = file.string("title");
         d_.source = file.string("source", "");
         for (const toml::table* table : file.tables("coordinate")) read_coordinate(*table);
@@ -43,7 +43,8 @@ class SystemReader {
         const toml::node& node = reader.require("name");
         const Location at = inside_quotes(node, d_.source_text);
         if (!is_name(name))
-            reader.fail(at, fmt::format("'{}' is no name", name), "a name is a letter, then letters, digits and underscores");
+            reader.fail(at, fmt::format("'{}' is no name", name),
+                        "a name is a letter, then letters, digits and underscores");
         if (is_reserved(name))
             reader.fail(at, fmt::format("the name '{}' is taken: it has a meaning of its own in expressions", name));
         if (!names_.insert(name).second) reader.fail(at, fmt::format("the name '{}' is used twice", name));
@@ -109,7 +110,8 @@ class SystemReader {
         const toml::node& restitution = reader.require("restitution");
         if (restitution.is_number()) {
             const double e = reader.number("restitution", 0.0);
-            if (!(e >= 0.0 && e <= 1.0)) reader.fail(restitution, fmt::format("the restitution must lie in [0, 1], but it is {}", e));
+            if (!(e >= 0.0 && e <= 1.0))
+                reader.fail(restitution, fmt::format("the restitution must lie in [0, 1], but it is {}", e));
             // The parameter's slider range is [0, 1] where the restitution is a parameter.
         }
         for (ParameterDescription& p : d_.parameters)
@@ -117,8 +119,8 @@ class SystemReader {
     }
 
     template <class Value>
-    Value word(const TableReader& reader, const char* key, Value otherwise, std::optional<Value> (*from)(std::string_view),
-               const std::vector<std::string>& choices) {
+    Value word(const TableReader& reader, const char* key, Value otherwise,
+               std::optional<Value> (*from)(std::string_view), const std::vector<std::string>& choices) {
         if (reader.find(key) == nullptr) return otherwise;
         const std::string text = reader.string(key);
         const auto value = from(text);
@@ -133,7 +135,8 @@ class SystemReader {
         Options& o = d_.options;
         if (const toml::node* node = file.find("run")) {
             if (!node->is_table()) file.fail(*node, "'run' must be a table: write [run]");
-            const TableReader reader(d_, *node->as_table(), "[run]", {"end_time", "tolerance", "method", "max_impacts"});
+            const TableReader reader(d_, *node->as_table(), "[run]",
+                                     {"end_time", "tolerance", "method", "max_impacts"});
             o.end_time = reader.positive("end_time", o.end_time);
             o.tolerance = reader.positive("tolerance", o.tolerance);
             o.method = word<Method>(reader, "method", o.method, method_from, {"taylor", "dopri5"});
@@ -152,14 +155,15 @@ class SystemReader {
         t.eps_v = reader.positive("eps_v", t.eps_v);
         t.eps_t = reader.positive("eps_t", t.eps_t);
         t.conditions = word<Conditions>(reader, "conditions", t.conditions, conditions_from, {"paper", "sharp"});
-        t.reinitialization = word<Reinitialization>(reader, "reinitialization", t.reinitialization, reinitialization_from,
-                                                    {"euclidean", "kinetic"});
+        t.reinitialization = word<Reinitialization>(reader, "reinitialization", t.reinitialization,
+                                                    reinitialization_from, {"euclidean", "kinetic"});
     }
 
     void read_drawing(const toml::table& table) {
         using Shape = DrawingDescription::Shape;
-        const TableReader reader(d_, table, "[[drawing]]",
-                                 {"shape", "at", "radius", "from", "to", "over", "points", "text", "color", "width", "fill"});
+        const TableReader reader(
+            d_, table, "[[drawing]]",
+            {"shape", "at", "radius", "from", "to", "over", "points", "text", "color", "width", "fill"});
         DrawingDescription drawing;
         drawing.at = reader.at();
         const std::string shape = reader.string("shape");
@@ -180,8 +184,12 @@ class SystemReader {
                 point("from");
                 point("to");
                 break;
-            case Shape::curve: read_curve(reader, drawing); break;
-            case Shape::polyline: read_points(reader, drawing); break;
+            case Shape::curve:
+                read_curve(reader, drawing);
+                break;
+            case Shape::polyline:
+                read_points(reader, drawing);
+                break;
             case Shape::text:
                 point("at");
                 drawing.text = reader.string("text");
@@ -197,7 +205,8 @@ class SystemReader {
     }
 
     static bool is_color(const std::string& text) {
-        return text.size() == 7 && text[0] == '#' && text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+        return text.size() == 7 && text[0] == '#' &&
+               text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
     }
 
     void read_curve(const TableReader& reader, DrawingDescription& drawing) {
@@ -218,7 +227,8 @@ class SystemReader {
         const toml::node& node = reader.require("points");
         const toml::array* points = node.as_array();
         if (points == nullptr || points->size() < 2)
-            reader.fail(node, "'points' must be an array of at least two points, as in [[\"0\", \"0\"], [\"x\", \"y\"]]");
+            reader.fail(node,
+                        "'points' must be an array of at least two points, as in [[\"0\", \"0\"], [\"x\", \"y\"]]");
         for (const toml::node& entry : *points) drawing.points.push_back(reader.pair(entry, "points"));
     }
 
@@ -274,8 +284,10 @@ SystemDescription parse_system(std::string text, std::string name) {
 SystemDescription read_system(const std::filesystem::path& file) {
     std::error_code problem;
     if (!std::filesystem::exists(file, problem)) throw InputError(file.string(), {}, "there is no such file");
-    if (std::filesystem::is_directory(file, problem)) throw InputError(file.string(), {}, "this is a folder, not a system file");
-    if (std::filesystem::file_size(file, problem) > (8u << 20)) throw InputError(file.string(), {}, "a system file may not be larger than 8 MiB");
+    if (std::filesystem::is_directory(file, problem))
+        throw InputError(file.string(), {}, "this is a folder, not a system file");
+    if (std::filesystem::file_size(file, problem) > (8u << 20))
+        throw InputError(file.string(), {}, "a system file may not be larger than 8 MiB");
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
@@ -288,7 +300,8 @@ void assign(SystemDescription& description, std::string_view name_value) {
         throw InputError("--set " + std::string(name_value), {}, message, hint);
     };
     const std::size_t equals = name_value.find('=');
-    if (equals == std::string_view::npos) fail("a value is missing", "write --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
+    if (equals == std::string_view::npos)
+        fail("a value is missing", "write --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
     const std::string name(name_value.substr(0, equals)), written(name_value.substr(equals + 1));
     double value = 0.0;
     const auto [end, problem] = std::from_chars(written.data(), written.data() + written.size(), value);

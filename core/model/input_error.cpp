@@ -32,7 +32,8 @@ std::string with_caret(std::string line, int column) {
     for (char& c : line)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
     const auto letters = [](std::string_view text) {
-        return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
+        return static_cast<std::size_t>(
+            std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
     };
     const std::size_t indent = before.size() + letters(std::string_view(line).substr(0, std::min(at, line.size())));
     return "\n    " + before + line + after + "\n    " + std::string(indent, ' ') + "^";
@@ -50,7 +51,7 @@ std::string whole_message(const std::string& file, Location at, const std::strin
 }  // namespace
 
 InputError::InputError(std::string in_file, Location place, std::string what_is_wrong, std::string what_is_right,
-                       std::string line)
+                       const std::string& line)
     : std::runtime_error(whole_message(in_file, place, what_is_wrong, what_is_right, line)),
       file(std::move(in_file)),
       message(std::move(what_is_wrong)),
@@ -64,7 +65,8 @@ InputError SystemDescription::error(Location at, const std::string& message, con
         if (begin != std::string::npos) ++begin;
     }
     std::string line;
-    if (at.line > 0 && begin != std::string::npos) line = source_text.substr(begin, source_text.find('\n', begin) - begin);
+    if (at.line > 0 && begin != std::string::npos)
+        line = source_text.substr(begin, source_text.find('\n', begin) - begin);
     return {file, at, message, hint, line};
 }
 

@@ -42,7 +42,8 @@ Names names_of(const SystemDescription& description, const Layout& layout, Graph
 void allow(Scope& scope, const Scope& names) { scope.allowed.insert(names.allowed.begin(), names.allowed.end()); }
 
 void forbid(Scope& scope, const Scope& names, const std::string& why) {
-    for (const auto& [name, symbol] : names.allowed) scope.forbidden.emplace(name, fmt::format(fmt::runtime(why), name));
+    for (const auto& [name, symbol] : names.allowed)
+        scope.forbidden.emplace(name, fmt::format(fmt::runtime(why), name));
 }
 
 // Words that mean something in views only.
@@ -56,7 +57,8 @@ Scope position_scope(const Names& names, const char* what) {
     Scope scope;
     allow(scope, names.coordinates);
     allow(scope, names.parameters);
-    forbid(scope, names.rates, fmt::format("the rate {{}} may not stand in the {}: it depends on coordinates alone", what));
+    forbid(scope, names.rates,
+           fmt::format("the rate {{}} may not stand in the {}: it depends on coordinates alone", what));
     forbid_outputs(scope);
     return scope;
 }
@@ -111,9 +113,10 @@ void Model::read_mass_matrix() {
     const auto polynomial = expand_in_rates(equations_.kinetic, rates, offender);
     const std::string wanted = "kinetic energy must be quadratic in the rates, as in m/2*x'^2";
     if (!polynomial)
-        throw description_.error(description_.kinetic.at,
-                                 fmt::format("the kinetic energy is no polynomial in the rates: {}",
-                                             to_text(offender, slot_names_)), wanted);
+        throw description_.error(
+            description_.kinetic.at,
+            fmt::format("the kinetic energy is no polynomial in the rates: {}", to_text(offender, slot_names_)),
+            wanted);
     equations_.M.assign(n * n, graph_->number(0));
     for (const auto& [exponents, coefficient] : *polynomial) {
         std::vector<std::size_t> factors;
@@ -125,7 +128,8 @@ void Model::read_mass_matrix() {
         if (factors.size() != 2)
             throw description_.error(description_.kinetic.at,
                                      fmt::format("the term {} of the kinetic energy is of degree {} in the rates",
-                                                 to_text(term, slot_names_), factors.size()), wanted);
+                                                 to_text(term, slot_names_), factors.size()),
+                                     wanted);
         const std::size_t i = factors[0], j = factors[1];  // T = sum of c_ij v_i v_j over i <= j
         equations_.M[i * n + j] = equations_.M[j * n + i] = i == j ? graph_->number(2) * coefficient : coefficient;
     }
@@ -178,14 +182,18 @@ void Model::check(const Run& run) const {
     if (options.max_impacts < 1) fail({}, "max_impacts must be at least 1");
     for (std::size_t i = 0; i < run.parameters.size(); ++i)
         if (!std::isfinite(run.parameters[i]))
-            fail(description_.parameters[i].at, fmt::format("the parameter '{}' is not finite", slot_names_[2 * layout_.n + i]));
+            fail(description_.parameters[i].at,
+                 fmt::format("the parameter '{}' is not finite", slot_names_[2 * layout_.n + i]));
     for (int i = 0; i < n(); ++i) {
         const auto& coordinate = description_.coordinates[static_cast<std::size_t>(i)];
-        if (!std::isfinite(run.q[i])) fail(coordinate.start_at, fmt::format("the start of '{}' is not finite", coordinate.name));
-        if (!std::isfinite(run.v[i])) fail(coordinate.rate_at, fmt::format("the rate of '{}' is not finite", coordinate.name));
+        if (!std::isfinite(run.q[i]))
+            fail(coordinate.start_at, fmt::format("the start of '{}' is not finite", coordinate.name));
+        if (!std::isfinite(run.v[i]))
+            fail(coordinate.rate_at, fmt::format("the rate of '{}' is not finite", coordinate.name));
     }
     const double e = evaluator(restitution_, run.parameters).output(0);
-    if (!(e >= 0.0 && e <= 1.0)) fail(description_.restitution.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e));
+    if (!(e >= 0.0 && e <= 1.0))
+        fail(description_.restitution.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e));
     check_start(run);
 }
 
@@ -196,30 +204,34 @@ void Model::check_start(const Run& run) const {
     flight.run();
     for (std::size_t i = 0; i < layout_.n; ++i)
         if (!(flight.output(layout_.n + 1 + i) > 0.0))
-            throw description_.error(description_.kinetic.at,
-                                     fmt::format("the mass matrix is not positive definite at the start (pivot {} is {})", i + 1,
-                                                 flight.output(layout_.n + 1 + i)),
-                                     "every coordinate needs a positive inertia");
+            throw description_.error(
+                description_.kinetic.at,
+                fmt::format("the mass matrix is not positive definite at the start (pivot {} is {})", i + 1,
+                            flight.output(layout_.n + 1 + i)),
+                "every coordinate needs a positive inertia");
     auto gap = evaluator<Interval>(gap_, run.parameters);
     put(gap, start);
     gap.run();
     const Interval h = gap.output(0);
     if (!h.is_defined())
-        throw description_.error(description_.gap.at, "the gap cannot be evaluated at the start: a function is outside its domain");
-    const double error = h.rad();
-    if (h.mid() < -4.0 * error)
-        throw description_.error(description_.gap.at, fmt::format("the gap is negative at the start: h = {}", h.mid()),
+        throw description_.error(description_.gap.at,
+                                 "the gap cannot be evaluated at the start: a function is outside its domain");
+    const double error = rad(h);
+    if (mid(h) < -4.0 * error)
+        throw description_.error(description_.gap.at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
                                  "choose a start with h(q) >= 0");
-    if (std::abs(h.mid()) <= 4.0 * error) {
+    if (std::abs(mid(h)) <= 4.0 * error) {
         auto surface = evaluator(surface_, run.parameters);
         put(surface, start);
         surface.run();
         if (!(surface.output(2 + 2 * layout_.n) > 0.0))
-            throw description_.error(description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined");
+            throw description_.error(description_.gap.at,
+                                     "dh = 0 at the start, which is in contact: the normal is not defined");
     }
     for (std::size_t i = 0; i <= layout_.n; ++i)
         if (!std::isfinite(flight.output(i)))
-            throw description_.error(description_.kinetic.at, "the acceleration is not finite at the start: a function is outside its domain");
+            throw description_.error(description_.kinetic.at,
+                                     "the acceleration is not finite at the start: a function is outside its domain");
 }
 
 Program Model::compile_view(std::span<const Text> texts) const {

@@ -58,8 +58,8 @@ class Model {
     // gap clearly negative, dh = 0 in contact, eps, tolerance or end time not positive.
     void check(const Run& run) const;
 
-    // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy
-    // (view) or over coordinates and parameters, plus a curve's own parameter (drawing). Throw InputError.
+    // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
+    // energy (view) or over coordinates and parameters, plus a curve's own parameter (drawing). Throw InputError.
     Program compile_view(std::span<const Text> texts) const;
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 

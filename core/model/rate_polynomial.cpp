@@ -42,10 +42,14 @@ bool is_free(const RatePolynomial& p) { return p.empty() || (p.size() == 1 && p.
 // The polynomial of one node whose operands' polynomials are known.
 std::optional<RatePolynomial> combine(Expression e, const RatePolynomial& a, const RatePolynomial& b) {
     switch (Builder::node(e).operation) {
-        case Operation::add: return plus(a, b, false);
-        case Operation::subtract: return plus(a, b, true);
-        case Operation::negate: return plus({}, a, true);
-        case Operation::multiply: return times(a, b);
+        case Operation::add:
+            return plus(a, b, false);
+        case Operation::subtract:
+            return plus(a, b, true);
+        case Operation::negate:
+            return plus({}, a, true);
+        case Operation::multiply:
+            return times(a, b);
         case Operation::divide: {
             if (!is_free(b)) return std::nullopt;
             RatePolynomial result;
@@ -59,7 +63,8 @@ std::optional<RatePolynomial> combine(Expression e, const RatePolynomial& a, con
             for (int i = 1; i < exponent && result; ++i) result = times(*result, a);
             return result;
         }
-        default: return std::nullopt;  // a function of a rate
+        default:
+            return std::nullopt;  // a function of a rate
     }
 }
 

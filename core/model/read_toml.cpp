@@ -16,19 +16,27 @@ Location location_of(const toml::source_region& region) {
 
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
-        case toml::node_type::table: return "a table";
-        case toml::node_type::array: return "an array";
-        case toml::node_type::string: return "a string";
+        case toml::node_type::table:
+            return "a table";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::string:
+            return "a string";
         case toml::node_type::integer:
-        case toml::node_type::floating_point: return "a number";
-        case toml::node_type::boolean: return "true or false";
-        default: return "a date or time";
+        case toml::node_type::floating_point:
+            return "a number";
+        case toml::node_type::boolean:
+            return "true or false";
+        default:
+            return "a date or time";
     }
 }
 
 bool is_number(const toml::node& node) { return node.is_number(); }
 
-double number_of(const toml::node& node) { return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get(); }
+double number_of(const toml::node& node) {
+    return node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
+}
 
 }  // namespace
 
@@ -58,7 +66,8 @@ TableReader::TableReader(const SystemDescription& description, const toml::table
         if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
         std::string list;
         for (const std::string& word : names) list += (list.empty() ? "" : ", ") + word;
-        fail(location_of(key.source()), fmt::format("unknown key '{}' in {}{}", key.str(), name_, did_you_mean(key.str(), names)),
+        fail(location_of(key.source()),
+             fmt::format("unknown key '{}' in {}{}", key.str(), name_, did_you_mean(key.str(), names)),
              fmt::format("{} takes: {}", name_, list));
     }
 }

@@ -9,7 +9,8 @@
 
 namespace achilles {
 
-// One table of a system file. Every getter throws the description's InputError where the value is not what it should be.
+// One table of a system file. Every getter throws the description's InputError where the value is not what it should
+// be.
 class TableReader {
  public:
     // `name` is how messages call the table, e.g. "[[coordinate]]". Keys that are not in `known` are errors.

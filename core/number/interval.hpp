@@ -1,205 +1,321 @@
-// Interval arithmetic that is sound in round-to-nearest. The only file that knows rounding.
+// Interval: a closed set of reals [lo, hi] that provably contains the exact value. The only file that knows rounding.
 //
-// Every result is computed to nearest and widened outward: an arithmetic result x by 2^-52 |x| plus the least denormal,
-// which is at least one unit in the last place (2^-53 |x| is not enough: at a power of two 1 + 2^-53 rounds back to 1),
-// a library function's by as many units as libm may err. Assumed of libm, and tested: sqrt is correctly rounded; sin, cos,
-// tan, asin, acos, atan, exp, log and pow err by less than 2 units in the last place, sinh, cosh and tanh by less than 4
-// (glibc documents 1 and 2). No rounding mode is changed, so no compiler option can break a proof.
+// Sound in round-to-nearest (THEORY section 9; rounding modes do not reach libm, and optimisers ignore them): every
+// result is widened outward. An IEEE operation is off by at most half an ulp, and ulp(x) <= 2^-52 |x| for normal x, so
+//     exact value of x op y  in  fl(x op y) +- (2^-52 |fl(x op y)| + least denormal).
+// Not 2^-53: at a power of two 1 + 2^-53 rounds back to 1, and the widening is lost.
 //
-// Where a function is not defined on the whole argument, or an operation has no bound, the result is undefined(): both ends
-// are NaN. It propagates, and no comparison with it is true, so it can never be mistaken for a proof.
+// Assumed of libm, which is not proved but measured (glibc's tables of known errors; Zimmermann et al., "Accuracy of
+// mathematical functions"): errors below 1 ulp for sin cos tan asin acos atan exp log pow, where we allow 2, and up to
+// 2.3 ulp for sinh cosh tanh, where we allow 4; and arguments of any size are reduced exactly.
+//
+// Endpoints may be infinite (lo = -inf, hi = +inf): then the set is unbounded. What has no value is undefined(), whose
+// endpoints are NaN: a domain violation, division by an interval that contains 0, a NaN. It propagates, and no
+// comparison with it is ever true: it cannot be mistaken for a proof. Prove with certainly_...(), never by negating a
+// question.
 #pragma once
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 
+#if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0
+#error "Interval needs IEEE double arithmetic: no -ffast-math, no x87"
+#endif
+
 namespace achilles {
+
+namespace rounding {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double largest = std::numeric_limits<double>::max();
+inline constexpr double least = std::numeric_limits<double>::denorm_min();
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();  // 2^-52
+inline constexpr int libm = 2;                                             // ulps allowed to libm
+inline constexpr int hyperbolic = 4;                                       // ulps allowed to sinh, cosh, tanh
+
+// Above every real that is within `ulps` ulps of one whose nearest double is x. A -inf that overflow made is lifted to
+// a double first. NaN stays NaN.
+inline double up(double x, int ulps = 1) {
+    const double y = x < -largest ? -largest : x;
+    return y + ulps * (epsilon * std::abs(y) + least);
+}
+inline double down(double x, int ulps = 1) {
+    const double y = x > largest ? largest : x;
+    return y - ulps * (epsilon * std::abs(y) + least);
+}
+// The same for sums, differences and roots: there a denormal result is exact, so that 0 stays 0.
+inline double sum_up(double x) {
+    const double y = x < -largest ? -largest : x;
+    return y + epsilon * std::abs(y);
+}
+inline double sum_down(double x) {
+    const double y = x > largest ? largest : x;
+    return y - epsilon * std::abs(y);
+}
+
+}  // namespace rounding
 
 class Interval {
  public:
-    constexpr Interval() = default;
-    constexpr Interval(double x) : lo_(x), hi_(x) {}  // NOLINT: a number is an interval
-    constexpr Interval(int x) : lo_(x), hi_(x) {}     // NOLINT
-    // The interval [lo, hi]; undefined unless lo <= hi.
-    constexpr Interval(double lo, double hi) : lo_(lo <= hi ? lo : nan), hi_(lo <= hi ? hi : nan) {}
+    Interval() = default;                   // [0, 0]
+    Interval(double x) : Interval(x, x) {}  // NOLINT: a double is a point
+    Interval(int x) : lo_(x), hi_(x) {}     // NOLINT
+    // Undefined where this is no set of reals: lo > hi, a NaN, lo = +inf, hi = -inf.
+    Interval(double lo, double hi) : lo_(lo), hi_(hi) {
+        if (!(lo <= hi) || lo > rounding::largest || hi < -rounding::largest) *this = undefined();
+    }
 
-    static constexpr Interval undefined() { return {nan, nan}; }
-    static constexpr Interval pi() { return {0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1}; }
+    double lo() const { return lo_; }
+    double hi() const { return hi_; }
 
-    constexpr double lo() const { return lo_; }
-    constexpr double hi() const { return hi_; }
-    constexpr bool is_defined() const { return lo_ <= hi_; }
-    constexpr double mid() const { return lo_ + 0.5 * (hi_ - lo_); }
-    constexpr double width() const { return hi_ - lo_; }
-    constexpr double rad() const { return 0.5 * (hi_ - lo_); }
+    static Interval pi() { return trusted(0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1); }
+    static Interval undefined() {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        return trusted(nan, nan);
+    }
+    // Every real.
+    static Interval everything() { return trusted(-rounding::infinity, rounding::infinity); }
+
+    bool is_defined() const { return lo_ <= hi_; }
     bool contains(double x) const { return lo_ <= x && x <= hi_; }
-    bool contains(const Interval& other) const { return lo_ <= other.lo_ && other.hi_ <= hi_; }
-    // Largest and least absolute value.
-    double mag() const { return std::max(std::abs(lo_), std::abs(hi_)); }
-    double mig() const { return lo_ > 0.0 ? lo_ : hi_ < 0.0 ? -hi_ : 0.0 * lo_; }
+    bool contains(const Interval& x) const { return lo_ <= x.lo_ && x.hi_ <= hi_; }
+
+    Interval& operator+=(const Interval& b) { return *this = *this + b; }
+    Interval& operator-=(const Interval& b) { return *this = *this - b; }
+    Interval& operator*=(const Interval& b) { return *this = *this * b; }
+    Interval& operator/=(const Interval& b) { return *this = *this / b; }
+
+    friend Interval operator-(const Interval& a) { return trusted(-a.hi_, -a.lo_); }
+    friend Interval operator+(const Interval& a, const Interval& b) {
+        return trusted(rounding::sum_down(a.lo_ + b.lo_), rounding::sum_up(a.hi_ + b.hi_));
+    }
+    friend Interval operator-(const Interval& a, const Interval& b) {
+        return trusted(rounding::sum_down(a.lo_ - b.hi_), rounding::sum_up(a.hi_ - b.lo_));
+    }
+    friend Interval operator*(const Interval& a, const Interval& b) {
+        return corners(a, b, a.lo_ * b.lo_, a.lo_ * b.hi_, a.hi_ * b.lo_, a.hi_ * b.hi_);
+    }
+    friend Interval operator/(const Interval& a, const Interval& b) {
+        if (!(b.lo_ > 0.0 || b.hi_ < 0.0)) return undefined();
+        return corners(a, b, a.lo_ / b.lo_, a.lo_ / b.hi_, a.hi_ / b.lo_, a.hi_ / b.hi_);
+    }
+
+    // [lo, hi] known to be ordered, or both NaN: no check.
+    static Interval trusted(double lo, double hi) {
+        Interval result;
+        result.lo_ = lo;
+        result.hi_ = hi;
+        return result;
+    }
 
  private:
-    static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    // The hull of four corner values, widened. A NaN corner of defined operands is 0 inf or inf / inf, whose limits
+    // together with the other three corners are bounded by taking it as 0.
+    static Interval corners(const Interval& a, const Interval& b, double p, double q, double r, double s) {
+        if (std::isnan(p + q + r + s)) {  // NaN corner, or merely inf - inf here
+            if (!a.is_defined() || !b.is_defined()) return undefined();
+            for (double* corner : {&p, &q, &r, &s}) *corner = std::isnan(*corner) ? 0.0 : *corner;
+        }
+        return trusted(rounding::down(std::min(std::min(p, q), std::min(r, s))),
+                       rounding::up(std::max(std::max(p, q), std::max(r, s))));
+    }
+
     double lo_ = 0.0, hi_ = 0.0;
 };
 
-inline constexpr Interval entire{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+// --- Questions. A doubtful or undefined answer is false.
 
-// True only where it holds for every pair of members.
-constexpr bool certainly_less(const Interval& a, const Interval& b) { return a.hi() < b.lo(); }
-constexpr bool certainly_positive(const Interval& a) { return a.lo() > 0.0; }
-constexpr bool certainly_negative(const Interval& a) { return a.hi() < 0.0; }
+inline bool certainly_less(const Interval& a, const Interval& b) { return a.hi() < b.lo(); }
+inline bool certainly_positive(const Interval& a) { return a.lo() > 0.0; }
+inline bool certainly_negative(const Interval& a) { return a.hi() < 0.0; }
 
-namespace detail {
+// --- Sizes. Of undefined(): mag, rad and width are +inf (std::max cannot lose that, as it loses a NaN), mig is 0.
 
-// [lo, hi] widened by `ulps` units in the last place or more.
-constexpr Interval widened(double lo, double hi, int ulps = 1) {
-    const double relative = ulps * 0x1p-52, least = ulps * std::numeric_limits<double>::denorm_min();
-    return {lo - (relative * (lo < 0.0 ? -lo : lo) + least), hi + (relative * (hi < 0.0 ? -hi : hi) + least)};
+// The greatest |x|.
+inline double mag(const Interval& a) {
+    return a.is_defined() ? std::max(std::abs(a.lo()), std::abs(a.hi())) : rounding::infinity;
+}
+// The least |x|.
+inline double mig(const Interval& a) { return std::max({0.0, a.lo(), -a.hi()}); }
+// A double inside, near the middle; NaN of undefined().
+inline double mid(const Interval& a) {
+    const double lo = std::max(a.lo(), -rounding::largest), hi = std::min(a.hi(), rounding::largest);
+    return std::clamp(0.5 * lo + 0.5 * hi, lo, hi);
+}
+// hi - lo, rounded up.
+inline double width(const Interval& a) {
+    return a.is_defined() ? rounding::sum_up(a.hi() - a.lo()) : rounding::infinity;
+}
+// A radius about mid() that covers the interval.
+inline double rad(const Interval& a) {
+    if (!a.is_defined()) return rounding::infinity;
+    const double centre = mid(a);
+    return rounding::sum_up(std::max(a.hi() - centre, centre - a.lo()));
 }
 
-// The hull of four values; undefined if one of them, or their sum, is not a number (0 times infinity).
-inline Interval hull_of(double p, double q, double r, double s) {
-    if (std::isnan(p + q + r + s)) return Interval::undefined();
-    return widened(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
-}
-
-// The part of `a` between two bounds that the function never crosses.
-inline Interval clamped(const Interval& a, double low, double high) {
-    if (!a.is_defined()) return a;
-    return {std::max(a.lo(), low), std::min(a.hi(), high)};
-}
-
-}  // namespace detail
-
-inline Interval operator-(const Interval& a) { return {-a.hi(), -a.lo()}; }
-inline Interval operator+(const Interval& a, const Interval& b) {
-    return detail::widened(a.lo() + b.lo(), a.hi() + b.hi());
-}
-inline Interval operator-(const Interval& a, const Interval& b) {
-    return detail::widened(a.lo() - b.hi(), a.hi() - b.lo());
-}
-inline Interval operator*(const Interval& a, const Interval& b) {
-    return detail::hull_of(a.lo() * b.lo(), a.lo() * b.hi(), a.hi() * b.lo(), a.hi() * b.hi());
-}
-// Undefined where b contains 0.
-inline Interval operator/(const Interval& a, const Interval& b) {
-    if (!(b.lo() > 0.0 || b.hi() < 0.0)) return Interval::undefined();
-    return detail::hull_of(a.lo() / b.lo(), a.lo() / b.hi(), a.hi() / b.lo(), a.hi() / b.hi());
-}
+// --- Sets
 
 inline Interval hull(const Interval& a, const Interval& b) {
     if (!a.is_defined() || !b.is_defined()) return Interval::undefined();
-    return {std::min(a.lo(), b.lo()), std::max(a.hi(), b.hi())};
+    return Interval::trusted(std::min(a.lo(), b.lo()), std::max(a.hi(), b.hi()));
 }
-inline Interval abs(const Interval& a) { return {a.mig(), a.mag()}; }
+inline Interval abs(const Interval& a) {
+    return a.is_defined() ? Interval::trusted(mig(a), mag(a)) : Interval::undefined();
+}
+inline Interval max(const Interval& a, const Interval& b) {
+    if (!a.is_defined() || !b.is_defined()) return Interval::undefined();
+    return Interval::trusted(std::max(a.lo(), b.lo()), std::max(a.hi(), b.hi()));
+}
+
+// --- Powers
+
+namespace rounding {
+
+// Bounds of x^n, x >= 0, by repeated squaring; n > 0.
+inline double power_up(double x, unsigned n) {
+    double result = 1.0;
+    for (; n != 0; n >>= 1) {
+        if (n & 1u) result = up(result * x);
+        if (n > 1) x = up(x * x);
+    }
+    return result;
+}
+inline double power_down(double x, unsigned n) {
+    double result = 1.0;
+    for (; n != 0; n >>= 1) {
+        if (n & 1u) result = std::max(0.0, down(result * x));
+        if (n > 1) x = std::max(0.0, down(x * x));
+    }
+    return result;
+}
+
+}  // namespace rounding
+
 inline Interval square(const Interval& a) {
-    return detail::clamped(detail::widened(a.mig() * a.mig(), a.mag() * a.mag()), 0.0,
-                           std::numeric_limits<double>::infinity());
-}
-
-// The part of `a` that is not negative: for what cannot be, a sum of squares, whose lower end rounding has moved below 0.
-inline Interval nonnegative(const Interval& a) {
-    return detail::clamped(a, 0.0, std::numeric_limits<double>::infinity());
-}
-
-// x^n, tight: even powers do not forget that x x >= 0. Found before the generic integer_power of scalar.hpp.
-inline Interval integer_power(const Interval& a, int n) {
-    const auto raise = [](double x, unsigned m) {
-        Interval base(x), result(1.0);
-        for (; m != 0; m >>= 1) {
-            if ((m & 1u) != 0) result = result * base;
-            if (m > 1) base = base * base;
-        }
-        return result;
-    };
-    const unsigned m = n < 0 ? 0u - static_cast<unsigned>(n) : static_cast<unsigned>(n);
-    if (m == 2 && n > 0) return square(a);
     if (!a.is_defined()) return a;
-    const bool even = m % 2 == 0;
-    const Interval low = raise(even ? a.mig() : a.lo(), m), high = raise(even ? a.mag() : a.hi(), m);
-    const Interval power = detail::clamped(hull(low, high), even ? 0.0 : entire.lo(), entire.hi());
-    return n < 0 ? Interval(1.0) / power : power;
+    const double least = mig(a), most = mag(a);
+    return Interval::trusted(std::max(0.0, rounding::down(least * least)), rounding::up(most * most));
+}
+
+// x^n for an integer n, tight for even n.
+inline Interval integer_power(const Interval& a, int n) {
+    if (n == 2) return square(a);
+    if (!a.is_defined()) return a;
+    if (n == 0) return {1};
+    const unsigned m = n < 0 ? 0u - static_cast<unsigned>(n) : static_cast<unsigned>(n);
+    Interval result;
+    if (a.lo() >= 0.0 || m % 2 == 0) {
+        result = Interval::trusted(rounding::power_down(mig(a), m), rounding::power_up(mag(a), m));
+    } else {
+        const double hi = a.hi() >= 0.0 ? rounding::power_up(a.hi(), m) : -rounding::power_down(-a.hi(), m);
+        result = Interval::trusted(-rounding::power_up(-a.lo(), m), hi);
+    }
+    return n < 0 ? Interval(1) / result : result;
+}
+
+// a^b for a > 0: monotone in each variable, so its extremes are at the corners. Undefined where a <= 0 is possible.
+inline Interval pow(const Interval& a, const Interval& b) {
+    if (!(a.lo() > 0.0) || !b.is_defined()) return Interval::undefined();
+    const double p = std::pow(a.lo(), b.lo()), q = std::pow(a.lo(), b.hi());
+    const double r = std::pow(a.hi(), b.lo()), s = std::pow(a.hi(), b.hi());
+    return Interval::trusted(std::max(0.0, rounding::down(std::min({p, q, r, s}), rounding::libm)),
+                             rounding::up(std::max({p, q, r, s}), rounding::libm));
 }
 
 inline Interval sqrt(const Interval& a) {
     if (!(a.lo() >= 0.0)) return Interval::undefined();
-    return detail::clamped(detail::widened(std::sqrt(a.lo()), std::sqrt(a.hi())), 0.0, entire.hi());
+    return Interval::trusted(rounding::sum_down(std::sqrt(a.lo())), rounding::sum_up(std::sqrt(a.hi())));
 }
+
+// --- Monotone functions: the values at the endpoints, widened
+
 inline Interval exp(const Interval& a) {
-    return detail::clamped(detail::widened(std::exp(a.lo()), std::exp(a.hi()), 2), 0.0, entire.hi());
+    if (!a.is_defined()) return a;
+    return Interval::trusted(std::max(0.0, rounding::down(std::exp(a.lo()), rounding::libm)),
+                             rounding::up(std::exp(a.hi()), rounding::libm));
 }
 inline Interval log(const Interval& a) {
     if (!(a.lo() > 0.0)) return Interval::undefined();
-    return detail::widened(std::log(a.lo()), std::log(a.hi()), 2);
-}
-inline Interval sinh(const Interval& a) { return detail::widened(std::sinh(a.lo()), std::sinh(a.hi()), 4); }
-inline Interval cosh(const Interval& a) {
-    return detail::clamped(detail::widened(std::cosh(a.mig()), std::cosh(a.mag()), 4), 1.0, entire.hi());
-}
-inline Interval tanh(const Interval& a) {
-    return detail::clamped(detail::widened(std::tanh(a.lo()), std::tanh(a.hi()), 4), -1.0, 1.0);
+    return Interval::trusted(rounding::down(std::log(a.lo()), rounding::libm),
+                             rounding::up(std::log(a.hi()), rounding::libm));
 }
 inline Interval asin(const Interval& a) {
     if (!(a.lo() >= -1.0 && a.hi() <= 1.0)) return Interval::undefined();
-    return detail::widened(std::asin(a.lo()), std::asin(a.hi()), 2);
+    return Interval::trusted(rounding::down(std::asin(a.lo()), rounding::libm),
+                             rounding::up(std::asin(a.hi()), rounding::libm));
 }
 inline Interval acos(const Interval& a) {
     if (!(a.lo() >= -1.0 && a.hi() <= 1.0)) return Interval::undefined();
-    return detail::clamped(detail::widened(std::acos(a.hi()), std::acos(a.lo()), 2), 0.0, Interval::pi().hi());
+    return Interval::trusted(std::max(0.0, rounding::down(std::acos(a.hi()), rounding::libm)),
+                             rounding::up(std::acos(a.lo()), rounding::libm));
 }
-inline Interval atan(const Interval& a) { return detail::widened(std::atan(a.lo()), std::atan(a.hi()), 2); }
+inline Interval atan(const Interval& a) {
+    return Interval::trusted(rounding::down(std::atan(a.lo()), rounding::libm),
+                             rounding::up(std::atan(a.hi()), rounding::libm));
+}
+inline Interval sinh(const Interval& a) {
+    return Interval::trusted(rounding::down(std::sinh(a.lo()), rounding::hyperbolic),
+                             rounding::up(std::sinh(a.hi()), rounding::hyperbolic));
+}
+inline Interval cosh(const Interval& a) {
+    if (!a.is_defined()) return a;
+    return Interval::trusted(std::max(1.0, rounding::down(std::cosh(mig(a)), rounding::hyperbolic)),
+                             rounding::up(std::cosh(mag(a)), rounding::hyperbolic));
+}
+inline Interval tanh(const Interval& a) {
+    if (!a.is_defined()) return a;
+    return Interval::trusted(std::max(-1.0, rounding::down(std::tanh(a.lo()), rounding::hyperbolic)),
+                             std::min(1.0, rounding::up(std::tanh(a.hi()), rounding::hyperbolic)));
+}
 
-namespace detail {
+// --- Periodic functions
 
-// The multiples m of pi/2 that may lie inside an interval: first <= m <= last. `known` is false where the argument is too
-// large, or too wide, to tell.
-struct Quarters {
-    bool known = false;
-    double first = 0.0, last = -1.0;
-    // Is there an m = residue modulo 4 among them?
-    bool meet(int residue) const {
-        const double m = first + std::fmod(std::fmod(residue - first, 4.0) + 4.0, 4.0);
-        return m <= last;
-    }
+namespace rounding {
+
+// Multiples (k + shift) pi that may lie in an interval: k = first .. last, none where first > last.
+struct Multiples {
+    double first, last;
+    bool none() const { return first > last; }
+    bool even() const { return last > first || (last == first && std::fmod(first, 2.0) == 0.0); }
+    bool odd() const { return last > first || (last == first && std::fmod(first, 2.0) != 0.0); }
 };
 
-inline Quarters quarters(const Interval& a) {
-    constexpr Interval half_pi{0x1.921fb54442d18p+0, 0x1.921fb54442d19p+0};
-    if (!(a.mag() < 0x1p40)) return {};
-    const double low = (Interval(a.lo()) / half_pi).lo(), high = (Interval(a.hi()) / half_pi).hi();
-    return {high - low < 1000.0, std::ceil(low), std::floor(high)};
+// Beyond this |x| multiples of pi are not told apart; far below 2^52, where doubles lose their last binary place.
+inline constexpr double largest_angle = 0x1p40;
+
+// Every multiple that is inside is found; one that is not may be found too, if it is within rounding of an endpoint.
+inline Multiples multiples_of_pi(const Interval& a, double shift) {
+    const Interval turns = a / Interval::pi() - shift;
+    return {std::ceil(turns.lo()), std::floor(turns.hi())};
 }
 
-// sin and cos: extremes at the quarters `top` and `bottom` modulo 4, monotone between.
-inline Interval wave(const Interval& a, double at_lo, double at_hi, int top, int bottom) {
+// The range of sin (shift 1/2) or cos (shift 0): maxima at even multiples, minima at odd ones.
+inline Interval wave(const Interval& a, double at_lo, double at_hi, double shift) {
+    const Multiples extrema = multiples_of_pi(a, shift);
+    const double low = extrema.odd() ? -1.0 : std::max(-1.0, down(std::min(at_lo, at_hi), libm));
+    const double high = extrema.even() ? 1.0 : std::min(1.0, up(std::max(at_lo, at_hi), libm));
+    return Interval::trusted(low, high);
+}
+
+}  // namespace rounding
+
+inline Interval sin(const Interval& a) {
     if (!a.is_defined()) return a;
-    const Quarters q = quarters(a);
-    if (!q.known) return {-1.0, 1.0};
-    const double low = q.meet(bottom) ? -1.0 : std::min(at_lo, at_hi), high = q.meet(top) ? 1.0 : std::max(at_lo, at_hi);
-    return clamped(widened(low, high, 2), -1.0, 1.0);
+    if (mag(a) > rounding::largest_angle) return Interval::trusted(-1.0, 1.0);
+    return rounding::wave(a, std::sin(a.lo()), std::sin(a.hi()), 0.5);
 }
-
-}  // namespace detail
-
-inline Interval sin(const Interval& a) { return detail::wave(a, std::sin(a.lo()), std::sin(a.hi()), 1, 3); }
-inline Interval cos(const Interval& a) { return detail::wave(a, std::cos(a.lo()), std::cos(a.hi()), 0, 2); }
+inline Interval cos(const Interval& a) {
+    if (!a.is_defined()) return a;
+    if (mag(a) > rounding::largest_angle) return Interval::trusted(-1.0, 1.0);
+    return rounding::wave(a, std::cos(a.lo()), std::cos(a.hi()), 0.0);
+}
 // Undefined where a pole may lie inside.
 inline Interval tan(const Interval& a) {
-    const detail::Quarters q = detail::quarters(a);
-    if (!q.known || q.meet(1) || q.meet(3)) return Interval::undefined();
-    return detail::widened(std::tan(a.lo()), std::tan(a.hi()), 2);
-}
-
-// a^b for a > 0 (a >= 0 where b > 0): monotone in each argument, so the corners are the extremes.
-inline Interval pow(const Interval& a, const Interval& b) {
-    if (!(a.lo() > 0.0 || (a.lo() == 0.0 && b.lo() > 0.0)) || !b.is_defined()) return Interval::undefined();
-    const double p = std::pow(a.lo(), b.lo()), q = std::pow(a.lo(), b.hi()), r = std::pow(a.hi(), b.lo()),
-                 s = std::pow(a.hi(), b.hi());
-    if (std::isnan(p + q + r + s)) return Interval::undefined();
-    return detail::clamped(detail::widened(std::min(std::min(p, q), std::min(r, s)),
-                                           std::max(std::max(p, q), std::max(r, s)), 2), 0.0, entire.hi());
+    if (!(mag(a) <= rounding::largest_angle) || !rounding::multiples_of_pi(a, 0.5).none()) return Interval::undefined();
+    return Interval::trusted(rounding::down(std::tan(a.lo()), rounding::libm),
+                             rounding::up(std::tan(a.hi()), rounding::libm));
 }
 
 }  // namespace achilles

@@ -57,12 +57,19 @@ Json certificate_of(const Certificate& c) {
                    {"decisive", c.decisive}};
     if (c.paper) {
         const Certificate::Paper& p = *c.paper;
-        result.update({{"e1", number(p.e1)}, {"e2", number(p.e2)}, {"beta", number(p.beta)}, {"eta", number(p.eta)},
-                       {"zeta", number(p.zeta)}, {"c1", number(p.c1)}, {"c2", number(p.c2)}, {"c3", number(p.c3)}});
+        result.update({{"e1", number(p.e1)},
+                       {"e2", number(p.e2)},
+                       {"beta", number(p.beta)},
+                       {"eta", number(p.eta)},
+                       {"zeta", number(p.zeta)},
+                       {"c1", number(p.c1)},
+                       {"c2", number(p.c2)},
+                       {"c3", number(p.c3)}});
     }
     Json inequalities = Json::array();
     for (const Inequality& inequality : c.inequalities)
-        inequalities.push_back({{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
+        inequalities.push_back(
+            {{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
     result["inequalities"] = inequalities;
     return result;
 }
@@ -94,21 +101,31 @@ std::string version() { return ACHILLES_VERSION; }
 std::string to_json(const Trajectory& trajectory) {
     Json phases = Json::array(), events = Json::array();
     for (const Phase& phase : trajectory.phases)
-        phases.push_back({{"kind", to_text(phase.kind)}, {"start", number(phase.start)}, {"end", number(phase.end)},
+        phases.push_back({{"kind", to_text(phase.kind)},
+                          {"start", number(phase.start)},
+                          {"end", number(phase.end)},
                           {"impacts", phase.impacts}});
     for (const Event& event : trajectory.events) events.push_back(event_of(event));
     const Statistics& s = trajectory.statistics;
-    const Json result = {{"achilles", version()},
-                         {"system", system_of(trajectory)},
-                         {"options", options_of(trajectory.run.options)},
-                         {"phases", phases},
-                         {"events", events},
-                         {"end", {{"t", number(trajectory.end_time)}, {"q", list(trajectory.end.q)},
-                                  {"v", list(trajectory.end.v)}, {"phase", to_text(trajectory.end_phase)}}},
-                         {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
-                         {"statistics", {{"steps", s.steps}, {"evaluations", s.evaluations}, {"impacts", s.impacts},
-                                         {"energy_drift", number(s.energy_drift)}, {"least_gap", number(s.least_gap)},
-                                         {"seconds", number(s.seconds)}}}};
+    const Json result = {
+        {"achilles", version()},
+        {"system", system_of(trajectory)},
+        {"options", options_of(trajectory.run.options)},
+        {"phases", phases},
+        {"events", events},
+        {"end",
+         {{"t", number(trajectory.end_time)},
+          {"q", list(trajectory.end.q)},
+          {"v", list(trajectory.end.v)},
+          {"phase", to_text(trajectory.end_phase)}}},
+        {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
+        {"statistics",
+         {{"steps", s.steps},
+          {"evaluations", s.evaluations},
+          {"impacts", s.impacts},
+          {"energy_drift", number(s.energy_drift)},
+          {"least_gap", number(s.least_gap)},
+          {"seconds", number(s.seconds)}}}};
     // Invalid UTF-8 in a title is replaced, never an exception.
     return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -1,4 +1,5 @@
-// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite: null, or empty.
+// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite:
+// null, or empty.
 #pragma once
 
 #include <string>

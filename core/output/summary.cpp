@@ -11,7 +11,8 @@ namespace {
 std::string named(const Model& model, const Vector& q) {
     std::string text;
     for (Eigen::Index i = 0; i < q.size(); ++i)
-        text += fmt::format("{}{} = {:.9g}", i == 0 ? "" : ", ", model.slot_names()[static_cast<std::size_t>(i)], q[i] + 0.0);
+        text += fmt::format("{}{} = {:.9g}", i == 0 ? "" : ", ", model.slot_names()[static_cast<std::size_t>(i)],
+                            q[i] + 0.0);
     return text;
 }
 
@@ -49,8 +50,8 @@ std::string event_line(const Model& model, const Event& event) {
 
 std::string sentence(const Certificate& c) {
     if (!c.certified) return "not certified";
-    std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}", interval(c.zeno_low, c.zeno_high),
-                                   c.position_bound, c.velocity_bound);
+    std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}",
+                                   interval(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g}", c.zeno_low);
     if (c.shadowing_position && *c.shadowing_position > 0.0)
         text += fmt::format("; at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
@@ -64,9 +65,10 @@ std::string summary(const Trajectory& trajectory) {
     const Model& model = *trajectory.model;
     const Options& o = trajectory.run.options;
     std::string text = fmt::format("{}\n", model.description().title);
-    text += fmt::format("  {}, tolerance {:g}, {} conditions, {} re-initialization, eps_q {:g}, eps_v {:g}, eps_t {:g}\n\n",
-                        to_text(o.method), o.tolerance, to_text(o.truncation.conditions),
-                        to_text(o.truncation.reinitialization), o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t);
+    text +=
+        fmt::format("  {}, tolerance {:g}, {} conditions, {} re-initialization, eps_q {:g}, eps_v {:g}, eps_t {:g}\n\n",
+                    to_text(o.method), o.tolerance, to_text(o.truncation.conditions),
+                    to_text(o.truncation.reinitialization), o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t);
     std::vector<const Event*> impacts;
     std::size_t next = 0;
     for (const Phase& phase : trajectory.phases) {
@@ -87,15 +89,17 @@ std::string summary(const Trajectory& trajectory) {
     const Statistics& s = trajectory.statistics;
     text += fmt::format("\nend at t = {:.10g}, {}: {}; rates", trajectory.end_time, to_text(trajectory.end_phase),
                         named(model, trajectory.end.q));
-    for (Eigen::Index i = 0; i < trajectory.end.v.size(); ++i) text += fmt::format(" {:.9g}", trajectory.end.v[i] + 0.0);
+    for (Eigen::Index i = 0; i < trajectory.end.v.size(); ++i)
+        text += fmt::format(" {:.9g}", trajectory.end.v[i] + 0.0);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
-    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift {:.2g}, least gap {:.2g}\n", s.impacts, s.steps,
-                        s.evaluations, s.energy_drift, s.least_gap);
+    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift {:.2g}, least gap {:.2g}\n", s.impacts,
+                        s.steps, s.evaluations, s.energy_drift, s.least_gap);
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(),
                                        [](const Event& event) { return event.kind == Event::Kind::zeno; });
     if (completed)
-        text += "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"
-                "errors of several truncations add up.\n";
+        text +=
+            "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"
+            "errors of several truncations add up.\n";
     return text;
 }
 

@@ -67,15 +67,16 @@ void Execution::fly_to_impact() {
     if (!at_impact_) {
         flow_.fly(t_, state_, takeoff_.gap, first_step_);
         record_.stretch(state_);
-        while (!outcome_ && !find_impact()) {}
+        while (!outcome_ && !find_impact()) {
+        }
     }
     at_impact_ = false;
     if (!outcome_) land();
 }
 
-// The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would leave
-// a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known better (the
-// difference is above its rounding), the polynomial is made to end there.
+// The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
+// leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
+// better (the difference is above its rounding), the polynomial is made to end there.
 Polynomial Execution::gap_along() {
     Polynomial h = flow_.watched();
     const int known = takeoff_.multiplicity;
@@ -106,8 +107,8 @@ bool Execution::find_impact() {
     return false;
 }
 
-// Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no impact
-// in the step after all (it was the dense output that dipped).
+// Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
+// impact in the step after all (it was the dense output that dipped).
 bool Execution::locate_impact(double theta) {
     double duration = theta * flow_.duration();
     for (int round = 0; round < 8; ++round) {
@@ -156,7 +157,8 @@ void Execution::land() {
             complete(collision, *widest);
         } else {
             stop(Outcome::Kind::undecided,
-                 "flights became shorter than floating point resolves, and no truncation is certified at " + where(t_, state_));
+                 "flights became shorter than floating point resolves, and no truncation is certified at " +
+                     where(t_, state_));
         }
     } else {
         bounce(contact, restitution_);
@@ -168,8 +170,8 @@ void Execution::bounce(const Contact& contact, double e) {
     if (record_.impacts() >= run_.options.max_impacts) {
         const bool elastic = e >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
-             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(), t_,
-                         elastic ? ": with restitution 1 the bouncing does not converge" : ""));
+             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
+                         t_, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
         return;
     }
     Event event;
@@ -224,8 +226,8 @@ void Execution::capture(const Collision& before) {
 
 // ---- completion ----
 
-// The bouncing is replaced by the constrained motion from the collision on; the phase changes at the best estimate of the
-// Zeno time, the middle of its interval.
+// The bouncing is replaced by the constrained motion from the collision on; the phase changes at the best estimate of
+// the Zeno time, the middle of its interval.
 void Execution::complete(const Collision& collision, Certificate certificate) {
     const double zeno_time = 0.5 * (certificate.zeno_low + certificate.zeno_high);
     state_ = {collision.before.q, collision.restart};
@@ -241,7 +243,8 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     event.t = t_ = zeno_time;
     event.q = state_.q;
     event.v_before = event.v_after = state_.v;
-    event.truncation = Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
+    event.truncation =
+        Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
     event.certificate = std::move(certificate);
     record_.event(std::move(event));
     record_.close(t_);
@@ -263,7 +266,8 @@ bool Execution::stay(double until) {
         if (!advance(until - t_)) return false;
         const auto projected = surface_.project(flow_.end(), false);
         if (!projected) {
-            stop(Outcome::Kind::left_the_domain, "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
+            stop(Outcome::Kind::left_the_domain,
+                 "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
             return false;
         }
         flow_.move_end(*projected);
@@ -310,7 +314,8 @@ bool Execution::locate_release(double theta) {
 // lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
 void Execution::release() {
     if (!certainly_positive(surface_.normal(state_).jerk)) {
-        stop(Outcome::Kind::undecided, "the contact force touches zero and h''' > 0 is not proved at " + where(t_, state_));
+        stop(Outcome::Kind::undecided,
+             "the contact force touches zero and h''' > 0 is not proved at " + where(t_, state_));
         return;
     }
     Event event;
@@ -350,8 +355,9 @@ void Execution::leave(Flow::Obstacle obstacle) {
     const std::string place = where(t_, state_);
     switch (obstacle) {
         case Flow::Obstacle::left_the_domain:
-            return stop(Outcome::Kind::left_the_domain,
-                        "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
+            return stop(
+                Outcome::Kind::left_the_domain,
+                "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
         case Flow::Obstacle::not_a_number:
             return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
         default:

@@ -62,9 +62,9 @@ class Execution {
     double t_ = 0.0;
     State state_;
     Takeoff takeoff_;
-    double first_step_ = 0.0;      // of the next flight: the predicted flight; 0: not known
+    double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
     bool constrained_ = false;
-    bool at_impact_ = false;       // the next flight has length zero: the run starts in a collision
+    bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
     std::optional<Outcome> outcome_;
 };
 

@@ -34,7 +34,8 @@ struct Flow::Stepper {
           flight(model.evaluator(model.flight(), run.parameters)),
           contact(model.evaluator(model.contact(), run.parameters)) {}
 
-    // y' = (v, f, hdot, hddot) or (v, f_c, h''', 0). Where M is not positive definite the derivative is NaN, and with it the step.
+    // y' = (v, f, hdot, hddot) or (v, f_c, h''', 0). Where M is not positive definite the derivative is NaN, and with
+    // it the step.
     void derivative(const Values& y, Values& dydt) {
         ++evaluations;
         Evaluator<double>& program = motion == Motion::flight ? flight : contact;
@@ -107,12 +108,12 @@ struct Flow::Stepper {
     Dense dense;
     Evaluator<double> flight, contact;
     Motion motion = Motion::flight;
-    double t = 0.0, span = 0.0;    // of the last step
-    double natural = 0.0;          // the step the error control would take next; 0: not known
-    double first = 0.0;            // bound on the next step; 0: none
-    State from, to;                // the last step's ends
-    Gap gap, next_gap;             // in flight: at `from`, and at `to` where the next step starts
-    bool continuing = false;       // the stepper itself stands at `to`, ready for the natural step
+    double t = 0.0, span = 0.0;  // of the last step
+    double natural = 0.0;        // the step the error control would take next; 0: not known
+    double first = 0.0;          // bound on the next step; 0: none
+    State from, to;              // the last step's ends
+    Gap gap, next_gap;           // in flight: at `from`, and at `to` where the next step starts
+    bool continuing = false;     // the stepper itself stands at `to`, ready for the natural step
     std::array<Values, 5> nodes;
     long evaluations = 0;
 };

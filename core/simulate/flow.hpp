@@ -1,9 +1,9 @@
 // One smooth stretch of motion, free or in contact, advanced by an adaptive stepper with dense output.
 //
 // The quantity whose zero ends the stretch is integrated along with the motion, under the same error control: in flight
-// the gap (h, hdot with (h, hdot)' = (hdot, hddot)), in contact hddot (with rate h'''). So a step is never longer than that
-// quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers (THEORY
-// section 9).
+// the gap (h, hdot with (h, hdot)' = (hdot, hddot)), in contact hddot (with rate h'''). So a step is never longer than
+// that quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers
+// (THEORY section 9).
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ class Flow {
     // Start a stretch at (t, state). The first step is at most `first_step` (s); 0 leaves it to the stepper.
     void fly(double t, const State& state, const Gap& gap, double first_step);
     void stay(double t, const State& state);
-    // Advances by one accepted step, not past t + `longest`. Where a function leaves its domain inside a step the step is
-    // shortened, until it is too short to be a step: that is the obstacle.
+    // Advances by one accepted step, not past t + `longest`. Where a function leaves its domain inside a step the step
+    // is shortened, until it is too short to be a step: that is the obstacle.
     Obstacle step(double longest);
     // Makes the last step again with this shorter duration, so that its end is integrated and not interpolated.
     Obstacle retake(double duration);

@@ -42,13 +42,13 @@ Contact Surface::at(const State& state) {
 double Surface::gap_error(const State& state) {
     for (std::size_t i = 0; i < n_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
     gap_.run();
-    return gap_.output(0).rad();
+    return rad(gap_.output(0));
 }
 
 double Surface::hdot_error(const State& state) {
     put(surface_enclosure_, state);
     surface_enclosure_.run();
-    return surface_enclosure_.output(1).rad();
+    return rad(surface_enclosure_.output(1));
 }
 
 std::optional<State> Surface::project(State state, bool keep_velocity) {

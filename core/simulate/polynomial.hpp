@@ -19,8 +19,8 @@ struct Polynomial {
 Polynomial interpolate(const std::array<double, 5>& values);
 
 // The first theta in (0, 1] at which the polynomial goes from positive to negative (or reaches 0 at 1), with a root of
-// multiplicity `known` at 0 divided out first. Roots are isolated by sign variations in the Bernstein basis, so two roots
-// inside one step are both seen; a touch without a change of sign is no root.
+// multiplicity `known` at 0 divided out first. Roots are isolated by sign variations in the Bernstein basis, so two
+// roots inside one step are both seen; a touch without a change of sign is no root.
 std::optional<double> first_descent(const Polynomial& polynomial, int known);
 
 }  // namespace achilles

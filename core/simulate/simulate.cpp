@@ -6,8 +6,8 @@
 
 namespace achilles {
 
-// Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a vanishing
-// contact force releases into the next hybrid execution.
+// Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a
+// vanishing contact force releases into the next hybrid execution.
 Trajectory simulate(std::shared_ptr<const Model> model, const Run& run) {
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();

@@ -1,6 +1,7 @@
 #include "figure/compose.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,7 +19,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 class Values {
  public:
     Values(const Program& program, const Trajectory& trajectory)
-        : evaluator_(trajectory.model->evaluator(program, trajectory.run.parameters)), layout_(trajectory.model->layout()) {}
+        : evaluator_(trajectory.model->evaluator(program, trajectory.run.parameters)),
+          layout_(trajectory.model->layout()) {}
     void set(const Sample& sample) {
         put(evaluator_, sample.state);
         evaluator_.input(layout_.t()) = sample.t;
@@ -82,7 +84,8 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     return Sampler(trajectory).all(between);
 }
 
-Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view, const Theme& theme) {
+Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+              const Theme& theme) {
     const auto& quantities = view.quantities_;
     const std::size_t curves = quantities.size() - 1;
     Panel panel;
@@ -134,8 +137,30 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     set_ticks(panel.y, y_range.low, y_range.high, 0.07);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
     if (curves == 1) panel.y.label = with_unit(quantities[1].label, quantities[1].unit);
-    panel.legend = curves > 1;
+    if (curves > 1) place_legend(panel);
     return panel;
+}
+
+void place_legend(Panel& panel) {
+    panel.legend = true;
+    constexpr double width = 0.3, height = 0.3;  // the part of a panel that a legend covers, at most
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (const std::array<double, 2> corner : {std::array{1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}, {0.0, 0.0}}) {
+        std::size_t covered = 0;
+        for (const Curve& curve : panel.curves) {
+            for (const Point& point : curve.points) {
+                const double x = (point.x - panel.x.low) / (panel.x.high - panel.x.low);
+                const double y = (point.y - panel.y.low) / (panel.y.high - panel.y.low);
+                if (std::abs(x - corner[0]) < width && std::abs(y - corner[1]) < height) ++covered;
+            }
+        }
+        if (covered >= least) continue;
+        least = covered;
+        panel.legend_at = corner;
+    }
+    if (least == 0) return;
+    panel.legend_at = {1.0, 1.0};
+    set_ticks(panel.y, panel.y.low, panel.y.high + height / (1.0 - height) * (panel.y.high - panel.y.low), 0.0);
 }
 
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns) {

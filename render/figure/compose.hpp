@@ -33,8 +33,14 @@ class PreparedView {
 // The samples a plot needs: dense enough to look smooth, bounded for any number of impacts. All panels share them.
 std::vector<Sample> plot_samples(const Trajectory& trajectory);
 
-// The panel of one view: hybrid phases dashed, constrained ones solid, squares at impacts, markers at Zeno points and releases.
-Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view, const Theme& theme);
+// The panel of one view: hybrid phases dashed, constrained ones solid, squares at impacts, markers at Zeno points and
+// releases.
+Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+              const Theme& theme);
+
+// Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
+// gets room at the top.
+void place_legend(Panel& panel);
 
 // A grid of panels.
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns);

@@ -10,7 +10,8 @@ namespace {
 std::string color_text(const Color& c) { return fmt::format("#{:02x}{:02x}{:02x}{:02x}", c.r, c.g, c.b, c.a); }
 
 std::string axis_text(const char* name, const Axis& axis) {
-    std::string text = fmt::format("  {} \"{}\" [{:.9g}, {:.9g}]{}:", name, axis.label, axis.low, axis.high, axis.logarithmic ? " log" : "");
+    std::string text = fmt::format("  {} \"{}\" [{:.9g}, {:.9g}]{}:", name, axis.label, axis.low, axis.high,
+                                   axis.logarithmic ? " log" : "");
     for (const Tick& tick : axis.ticks)
         if (!tick.label.empty()) text += fmt::format(" {}", tick.label);
     return text + "\n";
@@ -32,15 +33,18 @@ std::string points_text(const std::vector<Point>& points) {
 std::string to_text(const Figure& figure) {
     std::string text = fmt::format("figure columns {} background {}\n", figure.columns, color_text(figure.background));
     for (const Panel& panel : figure.panels) {
-        text += fmt::format("panel \"{}\"{}{}\n", panel.title, panel.equal_axes ? " equal" : "", panel.legend ? " legend" : "");
+        text += fmt::format("panel \"{}\"{}{}\n", panel.title, panel.equal_axes ? " equal" : "",
+                            panel.legend ? " legend" : "");
         text += axis_text("x", panel.x) + axis_text("y", panel.y);
         for (const Curve& curve : panel.curves)
-            text += fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label, color_text(curve.stroke.color),
-                                curve.stroke.width, curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(),
-                                points_text(curve.points));
+            text +=
+                fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label,
+                            color_text(curve.stroke.color), curve.stroke.width,
+                            curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(), points_text(curve.points));
         for (const Markers& markers : panel.markers)
-            text += fmt::format("  markers \"{}\" {} size {:.9g} points {}:{}\n", markers.label, color_text(markers.fill),
-                                markers.size, markers.points.size(), points_text(markers.points));
+            text +=
+                fmt::format("  markers \"{}\" {} size {:.9g} points {}:{}\n", markers.label, color_text(markers.fill),
+                            markers.size, markers.points.size(), points_text(markers.points));
     }
     return text;
 }

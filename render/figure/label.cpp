@@ -9,12 +9,12 @@ namespace achilles {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 34> letters{{
-    {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ε"}, {"zeta", "ζ"}, {"eta", "η"},
-    {"theta", "θ"}, {"iota", "ι"}, {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"}, {"xi", "ξ"}, {"rho", "ρ"},
-    {"sigma", "σ"}, {"tau", "τ"}, {"upsilon", "υ"}, {"phi", "φ"}, {"chi", "χ"}, {"psi", "ψ"}, {"omega", "ω"}, {"pi", "π"},
-    {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"}, {"Xi", "Ξ"}, {"Pi", "Π"}, {"Sigma", "Σ"},
-    {"Phi", "Φ"}, {"Psi", "Ψ"}, {"Omega", "Ω"}, {"gap", "h"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 34> letters{
+    {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},   {"eta", "η"},
+     {"theta", "θ"}, {"iota", "ι"},  {"kappa", "κ"}, {"lambda", "λ"},  {"mu", "μ"},      {"nu", "ν"},     {"xi", "ξ"},
+     {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},     {"chi", "χ"},    {"psi", "ψ"},
+     {"omega", "ω"}, {"pi", "π"},    {"Gamma", "Γ"}, {"Delta", "Δ"},   {"Theta", "Θ"},   {"Lambda", "Λ"}, {"Xi", "Ξ"},
+     {"Pi", "Π"},    {"Sigma", "Σ"}, {"Phi", "Φ"},   {"Psi", "Ψ"},     {"Omega", "Ω"},   {"gap", "h"}}};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
@@ -30,11 +30,13 @@ std::string typeset_name(std::string_view name) {
     const std::string_view digits = word.substr(digits_at);
     word = word.substr(0, digits_at);
     while (!digits.empty() && word.size() > 1 && word.back() == '_') word.remove_suffix(1);
-    const auto found = std::find_if(letters.begin(), letters.end(), [&](const auto& entry) { return entry.first == word; });
+    const auto found =
+        std::find_if(letters.begin(), letters.end(), [&](const auto& entry) { return entry.first == word; });
     std::string text(found == letters.end() ? word : found->second);
     if (primes == 1) text += "\u0307";
     if (primes == 2) text += "\u0308";
-    for (const char digit : digits) text += std::string("\u2080").replace(2, 1, 1, static_cast<char>(0x80 + (digit - '0')));
+    for (const char digit : digits)
+        text += std::string("\u2080").replace(2, 1, 1, static_cast<char>(0x80 + (digit - '0')));
     return text;
 }
 

@@ -14,7 +14,9 @@ constexpr int curve_points = 400;
 
 Color color_of(const std::string& text, const Color& otherwise) {
     if (text.empty()) return otherwise;
-    const auto part = [&](std::size_t at) { return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16)); };
+    const auto part = [&](std::size_t at) {
+        return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
+    };
     return {part(1), part(3), part(5), 255};
 }
 
@@ -41,7 +43,8 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
         std::vector<Text> texts;
         for (const auto& point : drawing.points) texts.insert(texts.end(), point.begin(), point.end());
         if (drawing.shape == Kind::disc) texts.push_back(drawing.radius);
-        if (drawing.shape == Kind::curve) texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
+        if (drawing.shape == Kind::curve)
+            texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
         if (!drawing.width.text.empty()) texts.push_back(drawing.width);
         item.program = model.compile_drawing(texts, drawing.over);
         item.moves = drawing.shape != Kind::curve && drawing.shape != Kind::text;
@@ -112,7 +115,8 @@ std::vector<Point> Mechanism::zero_line(std::span<const double> parameters, cons
     return line;
 }
 
-Drawing Mechanism::draw(const State& state, std::span<const double> parameters, const Drawing& limits, const Theme& theme) const {
+Drawing Mechanism::draw(const State& state, std::span<const double> parameters, const Drawing& limits,
+                        const Theme& theme) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
     const auto add = [&](Shape::Kind kind, const Color& color, double width) -> Shape& {

@@ -16,7 +16,8 @@ class Mechanism {
     explicit Mechanism(const Model& model);
 
     // The shapes at a state, within given limits (see limits()).
-    Drawing draw(const State& state, std::span<const double> parameters, const Drawing& limits, const Theme& theme) const;
+    Drawing draw(const State& state, std::span<const double> parameters, const Drawing& limits,
+                 const Theme& theme) const;
 
     // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;

@@ -62,8 +62,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     add_surface(panels.back(), theme);
     add(pendulum, of_pendulum, view("(e)", "t", "theta1"));
     add(pendulum, of_pendulum, view("(f)", "t", "theta2"));
-    panels[0].legend = true;
-    panels[0].legend_at = {1.0, 0.0};
+    place_legend(panels[0]);
 
     std::vector<NamedFigure> figures;
     Figure page;
@@ -73,7 +72,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     for (Panel panel : panels) {
         Figure single = page;
         single.panels.push_back(panel);
-        single.panels[0].legend = true;
+        place_legend(single.panels[0]);
         figures.push_back({"fig4" + panel.title.substr(1, 1), 900, 600, single});
     }
     page.columns = 2;
@@ -92,7 +91,8 @@ double rest_time_with_threshold(const Trajectory& ball, double speed) {
         const Event* cut = nullptr;
         for (const Event& event : motion.events) {
             if (event.kind != Event::Kind::impact || event.impact_speed >= speed) continue;
-            const State landed{event.q, reinitialize(surface.at({event.q, event.v_before}), event.v_before, Reinitialization::kinetic)};
+            const State landed{event.q, reinitialize(surface.at({event.q, event.v_before}), event.v_before,
+                                                     Reinitialization::kinetic)};
             if (surface.normal_acceleration(landed) >= 0.0) continue;
             run.q = landed.q;
             run.v = landed.v;
@@ -119,7 +119,9 @@ std::string paper_table(const Trajectory& ball, const Trajectory& pendulum) {
                     fmt::format("{:.4g} deg", lock->q[0] * 180.0 / std::numbers::pi), "read off the plot");
     const Event* release = nth(pendulum, Event::Kind::release, 0);
     text += row("pendulum, first release", "", time_of(release), "");
-    if (release != nullptr) text += row("pendulum, theta1 at release", "0", fmt::format("{:.1g}", release->q[0] + 0.0), "hddot = g sin(theta1)/L~");
+    if (release != nullptr)
+        text += row("pendulum, theta1 at release", "0", fmt::format("{:.1g}", release->q[0] + 0.0),
+                    "hddot = g sin(theta1)/L~");
     text += fmt::format(
         "\nThe second Zeno time of the ball is {}, not 11. A simulation that comes to rest at the first impact with\n"
         "hddot < 0 and a speed below 1 does so at {:.4g} in the second valley, which is what the plot shows.\n"

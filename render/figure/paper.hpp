@@ -7,7 +7,7 @@
 namespace achilles {
 
 struct NamedFigure {
-    std::string name;  // of the file, without ending
+    std::string name;           // of the file, without ending
     int width = 0, height = 0;  // pixels at scale 1
     Figure figure;
 };
@@ -16,8 +16,8 @@ struct NamedFigure {
 // pendulum; then one page with all six. Both runs are of the systems in assets with the paper's numbers.
 std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory& pendulum);
 
-// When the ball comes to rest in the second valley if every bouncing is cut at the first impact with hddot < 0 and a speed
-// below `speed` (m/s), as a simulator with a velocity threshold does. Not a number if it never happens.
+// When the ball comes to rest in the second valley if every bouncing is cut at the first impact with hddot < 0 and a
+// speed below `speed` (m/s), as a simulator with a velocity threshold does. Not a number if it never happens.
 double rest_time_with_threshold(const Trajectory& ball, double speed);
 
 // What the paper states, what we find, and why they differ: text for a terminal.

@@ -9,18 +9,21 @@ namespace achilles {
 
 namespace {
 
-// The least of 1, 2, 5 times a power of ten that is not below x, and how many parts it is cut into by minor ticks.
 struct Step {
     double size = 1.0;
-    int minor = 5;
+    int minor = 5;  // the parts it is cut into by minor ticks
 };
 
-Step nice_step(double x) {
-    const double power = std::pow(10.0, std::floor(std::log10(x)));
-    if (x <= 1.0001 * power) return {power, 5};
-    if (x <= 2.0001 * power) return {2.0 * power, 4};
-    if (x <= 5.0001 * power) return {5.0 * power, 5};
-    return {10.0 * power, 5};
+// The finest of 1, 2, 5 times a power of ten that puts at most `most` multiples between the limits.
+Step nice_step(double low, double high, int most) {
+    const double slack = 1e-9 * (high - low);
+    double power = std::pow(10.0, std::floor(std::log10((high - low) / most)));
+    for (;; power *= 10.0) {
+        for (const Step& step : {Step{power, 5}, Step{2.0 * power, 4}, Step{5.0 * power, 5}}) {
+            const double first = std::ceil((low - slack) / step.size), last = std::floor((high + slack) / step.size);
+            if (last - first + 1.0 <= most) return step;
+        }
+    }
 }
 
 // i * step without the error of the product: 3 * 0.1 is 0.3.
@@ -30,7 +33,8 @@ double multiple(double i, double step) {
 }
 
 std::string superscript(int exponent) {
-    const char* digits[] = {"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074", "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+    const char* digits[] = {"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
+                            "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
     std::string text = exponent < 0 ? "\u207B" : "";
     for (const char digit : std::to_string(std::abs(exponent))) text += digits[digit - '0'];
     return text;
@@ -48,7 +52,8 @@ int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(s
 
 std::string tick_label(double value, double step) {
     const double size = std::max(std::abs(value), step);
-    if (size < 1e5 && step >= 1e-4) return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
+    if (size < 1e5 && (step >= 1e-4 || size >= 1e-2))
+        return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
     if (value == 0.0) return "0";
     const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-12));
     const double mantissa = value / std::pow(10.0, exponent);
@@ -72,7 +77,7 @@ void set_ticks(Axis& axis, double low, double high, double margin, int most) {
     axis.low = low;
     axis.high = high;
     axis.ticks.clear();
-    const Step step = nice_step((high - low) / std::max(1, most - 1));
+    const Step step = nice_step(low, high, std::max(2, most));
     const double minor = step.size / step.minor, slack = 1e-9 * (high - low);
     for (double i = std::ceil((low - slack) / minor); i * minor <= high + slack; ++i) {
         const bool major = std::fmod(std::abs(i), step.minor) == 0.0;

@@ -13,7 +13,8 @@ namespace {
 class Expressions : public testing::Test {
  protected:
     Expressions() {
-        scope.allowed = {{"x", graph.symbol(0)}, {"y", graph.symbol(1)}, {"x'", graph.symbol(1)}, {"z", graph.symbol(2)}};
+        scope.allowed = {
+            {"x", graph.symbol(0)}, {"y", graph.symbol(1)}, {"x'", graph.symbol(1)}, {"z", graph.symbol(2)}};
         scope.forbidden = {{"w", "'w' may not stand here"}};
     }
     Expression read(std::string_view text) { return parse(text, scope, graph); }
@@ -27,7 +28,9 @@ class Expressions : public testing::Test {
         run.run();
         return run.output(0);
     }
-    double value(std::string_view text, double x = 0.0, double y = 0.0, double z = 0.0) { return value(read(text), x, y, z); }
+    double value(std::string_view text, double x = 0.0, double y = 0.0, double z = 0.0) {
+        return value(read(text), x, y, z);
+    }
     std::string error(std::string_view text) {
         try {
             read(text);
@@ -86,8 +89,8 @@ TEST_F(Expressions, EqualExpressionsAreOneNode) {
 }
 
 TEST_F(Expressions, PrintedTextReadsBackAsTheSameNode) {
-    for (const char* text : {"x - (y - z)", "-(x + y)^2", "x/(y*z)", "x/y*z", "2^x", "(x^2)^(1/3)", "x - -y", "-x*y", "x^-3",
-                             "sin(x)^2/3 - 4/(x + 1)", "(-2)*x", "3/7*x*(y - 5/2)", "pi*x", "1 - x"}) {
+    for (const char* text : {"x - (y - z)", "-(x + y)^2", "x/(y*z)", "x/y*z", "2^x", "(x^2)^(1/3)", "x - -y", "-x*y",
+                             "x^-3", "sin(x)^2/3 - 4/(x + 1)", "(-2)*x", "3/7*x*(y - 5/2)", "pi*x", "1 - x"}) {
         const Expression e = read(text);
         EXPECT_EQ(read(to_text(e, names)), e) << text << " printed as " << to_text(e, names);
     }
@@ -127,17 +130,20 @@ TEST_F(Expressions, LongSumsNeedNoDeepStack) {
 TEST_F(Expressions, DerivativesAgreeWithFiniteDifferences) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.2, 0.9);
-    for (const char* text :
-         {"x*y", "x/y", "x^5", "x^-2", "x^(1/3)", "2^x", "sqrt(x)", "sin(x*y)", "cos(x)/y", "tan(x)", "asin(x)", "acos(x)",
-          "atan(x/y)", "sinh(x)", "cosh(x)", "tanh(x)", "exp(x*y)", "log(x + y)", "sin(x)^2*cos(y)^3/(1 + x^2*y)"}) {
+    for (const char* text : {"x*y", "x/y", "x^5", "x^-2", "x^(1/3)", "2^x", "sqrt(x)", "sin(x*y)", "cos(x)/y", "tan(x)",
+                             "asin(x)", "acos(x)", "atan(x/y)", "sinh(x)", "cosh(x)", "tanh(x)", "exp(x*y)",
+                             "log(x + y)", "sin(x)^2*cos(y)^3/(1 + x^2*y)"}) {
         const Expression e = read(text);
         for (int trial = 0; trial < 20; ++trial) {
             const double x = uniform(random), y = uniform(random), d = 1e-5;
             const std::vector<std::uint32_t> slots{0, 1};
             const auto both = gradient(e, slots);
-            EXPECT_NEAR(value(both[0], x, y), (value(e, x + d, y) - value(e, x - d, y)) / (2 * d), 1e-8 * std::max(10.0, std::abs(value(both[0], x, y)))) << text;
+            EXPECT_NEAR(value(both[0], x, y), (value(e, x + d, y) - value(e, x - d, y)) / (2 * d),
+                        1e-8 * std::max(10.0, std::abs(value(both[0], x, y))))
+                << text;
             EXPECT_NEAR(value(both[1], x, y), (value(e, x, y + d) - value(e, x, y - d)) / (2 * d),
-                        1e-8 * std::max(10.0, std::abs(value(both[1], x, y)))) << text;
+                        1e-8 * std::max(10.0, std::abs(value(both[1], x, y))))
+                << text;
         }
     }
 }

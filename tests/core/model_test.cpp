@@ -14,7 +14,8 @@ namespace {
 
 // Evaluates any expression of a model at a state.
 double value(const Model& model, Expression e, const Run& run, const State& state) {
-    const Program program(std::span(&e, 1), {model.layout().count(), 2 * model.layout().n, 2 * model.layout().n + model.layout().p});
+    const Program program(std::span(&e, 1),
+                          {model.layout().count(), 2 * model.layout().n, 2 * model.layout().n + model.layout().p});
     auto evaluator = model.evaluator(program, run.parameters);
     put(evaluator, state);
     evaluator.run();
@@ -48,8 +49,8 @@ TEST(Model, TheBallHasItsClosedForm) {
     }
 }
 
-// THEORY section 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. For all ones the paper's
-// condition is g sin(theta1)/L~ < 0, whatever the rates.
+// THEORY section 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. For all ones the
+// paper's condition is g sin(theta1)/L~ < 0, whatever the rates.
 TEST(Model, ThePendulumLocksWhereSinTheta1IsNegative) {
     const auto model = test::load("double_pendulum");
     const auto run = model->default_run();
@@ -126,8 +127,8 @@ TEST(Model, EulerLagrangeHoldsOnEverySystem) {
     check_lagrange(*test::typed(odd_system), random);
 }
 
-// hddot is the second derivative of h along free motion, the jerk the rate of hddot along constrained motion; W, n, s, f_c
-// satisfy their definitions.
+// hddot is the second derivative of h along free motion, the jerk the rate of hddot along constrained motion; W, n, s,
+// f_c satisfy their definitions.
 TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
     std::mt19937 random(4);
     for (const auto& model : {test::load("ball_on_sine"), test::load("double_pendulum"), test::typed(odd_system)}) {
@@ -148,7 +149,9 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
                 return moved;
             };
             const auto rate = [&](Expression x, const std::vector<Expression>& acceleration) {
-                return (value(*model, x, run, along(acceleration, d)) - value(*model, x, run, along(acceleration, -d))) / (2 * d);
+                return (value(*model, x, run, along(acceleration, d)) -
+                        value(*model, x, run, along(acceleration, -d))) /
+                       (2 * d);
             };
             const double hddot = value(*model, e.hddot, run, s), W = value(*model, e.W, run, s);
             EXPECT_NEAR(value(*model, e.hdot, run, s), rate(e.gap, e.f), 1e-6);
@@ -203,7 +206,9 @@ TEST(Impacts, ReinitialisationsAgreeOnTheBall) {
     const State s = random_state(2, random);
     const Contact contact = surface.at(s);
     EXPECT_LE((reinitialize(contact, s.v, Reinitialization::kinetic) -
-               reinitialize(contact, s.v, Reinitialization::euclidean)).norm(), 1e-15);
+               reinitialize(contact, s.v, Reinitialization::euclidean))
+                  .norm(),
+              1e-15);
 }
 
 std::string error_of(std::string text, const std::string& from, const std::string& to) {
@@ -221,11 +226,13 @@ TEST(BadSystems, AreToldWhatIsWrong) {
     const std::string good = odd_system;
     EXPECT_EQ(error_of(good, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy is of degree 1 in the rates");
     EXPECT_EQ(error_of(good, "exp(b)*c'^2", "sin(c')"), "the kinetic energy is no polynomial in the rates: sin(c')");
-    EXPECT_EQ(error_of(good, "c^4/4", "c'^2"), "the rate c' may not stand in the potential: it depends on coordinates alone");
+    EXPECT_EQ(error_of(good, "c^4/4", "c'^2"),
+              "the rate c' may not stand in the potential: it depends on coordinates alone");
     EXPECT_EQ(error_of(good, "a^2*c/3", "a'"), "the rate a' may not stand in the gap: it depends on coordinates alone");
     EXPECT_EQ(error_of(good, "c^4/4", "gap"), "'gap' may stand in a [[view]] only");
     EXPECT_EQ(error_of(good, "c^4/4", "t"), "'t' may stand in a [[view]] only: a system does not depend on time");
-    EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"2*k\""), "the restitution must lie in [0, 1], but it is 1.4");
+    EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"2*k\""),
+              "the restitution must lie in [0, 1], but it is 1.4");
     EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"a\""),
               "the coordinate 'a' may not stand in the restitution: parameters alone");
     EXPECT_EQ(error_of(good, "(2 + sin(a))", "(sin(a) - 2)"),

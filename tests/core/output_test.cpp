@@ -50,8 +50,8 @@ TEST_F(Outputs, JsonHasTheKeysOfTheContract) {
             EXPECT_LT(c["zeno_time"][0].get<double>(), event["t"].get<double>());
             EXPECT_GT(c["zeno_time"][1].get<double>(), event["t"].get<double>());
             EXPECT_TRUE(c["shadowing_position"].is_null());
-            for (const char* key : {"position_bound", "velocity_bound", "a_min", "a_max", "decisive", "e1", "e2", "beta", "eta",
-                                    "zeta", "c1", "c2", "c3"})
+            for (const char* key : {"position_bound", "velocity_bound", "a_min", "a_max", "decisive", "e1", "e2",
+                                    "beta", "eta", "zeta", "c1", "c2", "c3"})
                 EXPECT_TRUE(c.contains(key)) << key;
         }
     }
