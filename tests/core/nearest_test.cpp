@@ -1,0 +1,34 @@
+// A misspelt name is recognised, a different one is not.
+#include "expression/nearest.hpp"
+
+#include <gtest/gtest.h>
+
+namespace achilles {
+namespace {
+
+const std::vector<std::string> names{"start", "rate", "range", "theta1", "theta2", "sin", "m", "e"};
+
+TEST(Nearest, recognises_misspellings) {
+    EXPECT_EQ(nearest("strat", names), "start");   // neighbours swapped
+    EXPECT_EQ(nearest("rates", names), "rate");    // one too many
+    EXPECT_EQ(nearest("theta", names), "theta1");  // the first of equals
+    EXPECT_EQ(nearest("si", names), "sin");
+    EXPECT_EQ(nearest("mm", names), "m");
+}
+
+TEST(Nearest, offers_nothing_far_away) {
+    EXPECT_EQ(nearest("q", names), "");  // as far from "m" as from anything
+    EXPECT_EQ(nearest("velocity", names), "");
+    EXPECT_EQ(nearest("cos", names), "");
+    EXPECT_EQ(nearest("", names), "");
+    EXPECT_EQ(nearest("x", {}), "");
+    EXPECT_EQ(nearest(std::string(1 << 20, 'a'), names), "");
+}
+
+TEST(Nearest, asks) {
+    EXPECT_EQ(did_you_mean("strat", names), "; did you mean 'start'?");
+    EXPECT_EQ(did_you_mean("velocity", names), "");
+}
+
+}  // namespace
+}  // namespace achilles
