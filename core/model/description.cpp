@@ -17,10 +17,16 @@ namespace achilles {
 
 namespace {
 
+std::string_view trimmed(std::string_view text) {
+    while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return text;
+}
+
 // The whole text as one finite or infinite number; nothing where it is anything else.
 std::optional<double> plain_number(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '+')) text.remove_prefix(1);
-    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    text = trimmed(text);
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
     double value = 0.0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
@@ -47,8 +53,7 @@ Text read_name(const SystemDescription& system, const Fields& fields) {
     const auto refuse_twice = [&](const auto& others) {
         for (const auto& other : others) {
             if (other.name != name.text) continue;
-            throw fields.error(name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
-                               fmt::format("it is first used in line {}", other.at.line));
+            throw fields.error(name.at, fmt::format("the name '{}' is used twice", shown(name.text)));
         }
     };
     refuse_twice(system.coordinates);
@@ -83,8 +88,8 @@ void read_parameters(SystemDescription& system, const TomlValue& root) {
         const Text name = read_name(system, fields);
         ParameterDescription parameter;
         parameter.name = name.text;
-        parameter.at = name.at;
         parameter.value = fields.number("value");
+        parameter.at = fields.need("value").at;
         parameter.unit = fields.string_or("unit", "");
         parameter.about = fields.string_or("about", "");
         const bool restitution = system.restitution.text == name.text;
@@ -215,30 +220,28 @@ SystemDescription parse_system(std::string text, std::string name) {
 
 void assign(SystemDescription& description, std::string_view name_value) {
     const auto refuse = [&](const std::string& why, const std::string& hint = {}) {
-        return InputError("", {}, fmt::format("cannot set '{}': {}", shown(name_value), why), hint);
+        return InputError("--set " + shown(name_value), {}, why, hint);
     };
     const std::size_t equals = name_value.find('=');
-    if (equals == name_value.npos) throw refuse("there is no '='", "write NAME=VALUE, such as g=9.81 or x'=1.5");
-    std::string name(name_value.substr(0, equals));
-    while (!name.empty() && name.back() == ' ') name.pop_back();
-    while (!name.empty() && name.front() == ' ') name.erase(0, 1);
-    const std::string value_text(name_value.substr(equals + 1));
-    const std::optional<double> value = plain_number(value_text);
-    if (!value) throw refuse(fmt::format("'{}' is not a number", shown(value_text)));
-    if (!std::isfinite(*value)) throw refuse("the value must be finite");
+    if (equals == name_value.npos) {
+        throw refuse("a value is missing", "write --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
+    }
+    const std::string name(trimmed(name_value.substr(0, equals))), written(name_value.substr(equals + 1));
+    const std::optional<double> value = plain_number(written);
+    if (!value || !std::isfinite(*value)) throw refuse(fmt::format("'{}' is not a finite number", shown(written)));
 
     std::vector<std::string> names;
-    for (ParameterDescription& parameter : description.parameters) {
-        if (parameter.name == name) return void(parameter.value = *value);
-        names.push_back(parameter.name);
-    }
     for (CoordinateDescription& coordinate : description.coordinates) {
         if (coordinate.name == name) return void(coordinate.start = *value);
         if (coordinate.name + "'" == name) return void(coordinate.rate = *value);
         names.insert(names.end(), {coordinate.name, coordinate.name + "'"});
     }
-    throw refuse(fmt::format("there is no '{}'{}", shown(name), did_you_mean(name, names)),
-                 fmt::format("can be set: {}", listed(names)));
+    for (ParameterDescription& parameter : description.parameters) {
+        if (parameter.name == name) return void(parameter.value = *value);
+        names.push_back(parameter.name);
+    }
+    throw refuse(fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
+                             did_you_mean(name, names)));
 }
 
 }  // namespace achilles

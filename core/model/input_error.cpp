@@ -60,7 +60,7 @@ std::string with_caret(std::string_view line, int column) {
     after.resize(std::min(after.size(), around));
     for (const std::string& character : before) shown_line += character;
     for (const std::string& character : after) shown_line += character;
-    return fmt::format("{}{}\n{}^", shown_line, cut ? "..." : "", std::string(indent + before.size(), ' '));
+    return fmt::format("    {}{}\n    {}^", shown_line, cut ? "..." : "", std::string(indent + before.size(), ' '));
 }
 
 std::string full_message(const std::string& file, Location at, const std::string& message, const std::string& hint,

@@ -86,6 +86,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
     DrawingDescription drawing;
     drawing.shape = shape.shape;
     drawing.at = fields.table().at;
+    drawing.fill = shape.shape == Shape::disc;
     drawing.color = read_color(of_shape);
     if (fields.find("width")) drawing.width = of_shape.expression("width");
     if (const TomlValue* fill = fields.find("fill")) {
@@ -108,15 +109,15 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
 ViewDescription read_view(const Fields& fields) {
     fields.allow({"name", "x", "y"});
     ViewDescription view;
-    view.name = fields.string("name").text;
     view.x = fields.expression("x");
     const TomlValue& y = fields.need("y");
     if (y.kind != TomlValue::Kind::array) {
         view.y = {fields.expression("y")};
-        return view;
+    } else {
+        if (y.items.empty()) throw fields.error(y.at, "'y' in [[view]] is empty", "one expression for each curve");
+        for (const TomlValue& item : y.items) view.y.push_back(fields.expression("y", item));
     }
-    if (y.items.empty()) throw fields.error(y.at, "'y' in [[view]] is empty", "one expression for each curve");
-    for (const TomlValue& item : y.items) view.y.push_back(fields.expression("y", item));
+    view.name = fields.string_or("name", view.y[0].text);
     return view;
 }
 

@@ -20,6 +20,7 @@ SystemDescription read_system(const std::filesystem::path& file) {
         void operator()(std::FILE* open) const { std::fclose(open); }
     };
     const std::unique_ptr<std::FILE, Close> open(std::fopen(name.c_str(), "rb"));
+    if (!open && errno == ENOENT) throw InputError(name, {}, "there is no such file");
     if (!open) throw refuse(reason());
     std::string text;
     char block[1 << 16];
