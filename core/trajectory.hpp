@@ -1,8 +1,8 @@
 // A completed execution (Defs. 4 and 5 of the paper), as data: phases, the events between them, and how it ended.
 // The central noun of Achilles; read this first.
 //
-// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0. A Zeno event ends a hybrid phase, a release
-// ends a constrained one, impacts happen inside hybrid phases.
+// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0. A Zeno event ends a hybrid phase, a
+// release ends a constrained one, impacts happen inside hybrid phases.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,22 @@ struct State {
     Vector q, v;
 };
 
+// Puts a state into the inputs of a program (slots 0 .. 2n - 1, see model/derive.hpp).
+template <class Evaluator>
+void put(Evaluator& evaluator, const State& state) {
+    const auto n = state.q.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        evaluator.input(static_cast<std::size_t>(i)) = state.q[i];
+        evaluator.input(static_cast<std::size_t>(n + i)) = state.v[i];
+    }
+}
+
 // Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
 struct Piece {
     double start = 0.0, end = 0.0;
-    std::size_t first = 0;      // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
+    std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    bool contact = false;       // on the surface: a sample is projected to h = 0, hdot = 0
+    bool contact = false;  // on the surface: a sample is projected to h = 0, hdot = 0
 };
 
 struct Phase {
@@ -41,7 +51,7 @@ struct Phase {
 
 // One inequality of a truncation condition: satisfied when left < right.
 struct Inequality {
-    std::string name;   // "c1: time", ...
+    std::string name;  // "c1: time", ...
     double left = 0.0, right = 0.0;
 };
 
@@ -51,35 +61,35 @@ struct Certificate {
     bool certified = false;
     Conditions conditions = Conditions::paper;
     Reinitialization reinitialization = Reinitialization::kinetic;
-    bool below_rounding = false;                // completed since no further flight can be resolved
-    double zeno_low = 0.0, zeno_high = 0.0;     // encloses tau_inf
-    double position_bound = 0.0;                // on |q_inf - q*|
-    double velocity_bound = 0.0;                // on |v_inf - v*|
+    bool below_rounding = false;                                   // completed since no further flight can be resolved
+    double zeno_low = 0.0, zeno_high = 0.0;                        // encloses tau_inf
+    double position_bound = 0.0;                                   // on |q_inf - q*|
+    double velocity_bound = 0.0;                                   // on |v_inf - v*|
     std::optional<double> shadowing_position, shadowing_velocity;  // THEORY section 5, at tau_inf
-    double a_min = 0.0, a_max = 0.0;            // of -hddot over the neighbourhood
-    std::string decisive;                       // the inequality with the least margin
+    double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
+    std::string decisive;                                          // the inequality with the least margin
     struct Paper {
-        double e1 = 0.0, e2 = 0.0;              // e' = e r, e'' = e sqrt(r)
+        double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
     };
     std::optional<Paper> paper;
-    std::vector<Inequality> inequalities;       // all of them, with both sides
+    std::vector<Inequality> inequalities;  // all of them, with both sides
 };
 
 struct Event {
     enum class Kind { impact, zeno, release };
     Kind kind = Kind::impact;
     double t = 0.0;
-    Vector q, v_before, v_after;                // equal velocities where nothing jumps (release, zeno)
-    double impact_speed = 0.0;                  // impact: |hdot| before
-    int impacts = 0;                            // zeno: impacts of the phase it ends
-    struct Truncation {                         // zeno: where the bouncing was cut and what restarted
+    Vector q, v_before, v_after;  // equal velocities where nothing jumps (release, zeno)
+    double impact_speed = 0.0;    // impact: |hdot| before
+    int impacts = 0;              // zeno: impacts of the phase it ends
+    struct Truncation {           // zeno: where the bouncing was cut and what restarted
         double t = 0.0;
-        Vector q, v_before, v;                  // v: after re-initialisation
+        Vector q, v_before, v;  // v: after re-initialisation
         double impact_speed = 0.0;
     };
     std::optional<Truncation> truncation;
-    std::optional<Certificate> certificate;     // zeno
+    std::optional<Certificate> certificate;  // zeno
 };
 
 struct Outcome {
@@ -99,8 +109,8 @@ struct Trajectory {
     std::shared_ptr<const Model> model;
     Run run;
     std::vector<Phase> phases;
-    std::vector<Event> events;           // in time
-    std::vector<Piece> pieces;           // in time
+    std::vector<Event> events;  // in time
+    std::vector<Piece> pieces;  // in time
     std::vector<double> coefficients;
     double end_time = 0.0;
     State end;
@@ -118,7 +128,7 @@ struct Sample {
     double t = 0.0;
     int j = 0;
     Phase::Kind phase = Phase::Kind::hybrid;
-    bool contact = false;       // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
+    bool contact = false;  // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
     State state;
 };
 
@@ -128,12 +138,13 @@ class Sampler {
     explicit Sampler(const Trajectory& trajectory);
     ~Sampler();
     Sample at(double t);
-    // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each step.
+    // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each
+    // step.
     std::vector<Sample> all(int between = 0);
 
  private:
     struct Projection;
-    Sample sample(const Piece& piece, double t) const;
+    State state(const Piece& piece, double t) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
 };

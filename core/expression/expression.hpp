@@ -1,8 +1,9 @@
 // An expression graph: immutable, shared nodes with exact rational constants.
 //
-// Nodes live in a Graph and are hash-consed: equal expressions are the same node, so equality is a comparison of ids and
-// every common subexpression is stored once. A node's operands always have smaller ids than the node, so every pass over
-// a graph (derivative, substitution, compilation) is a loop, never a recursion: nesting depth cannot overflow the stack.
+// Nodes live in a Graph and are hash-consed: equal expressions are the same node, so equality is a comparison of ids
+// and every common subexpression is stored once. A node's operands always have smaller ids than the node, so every pass
+// over a graph (derivative, substitution, compilation) is a loop, never a recursion: nesting depth cannot overflow the
+// stack.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +16,28 @@
 namespace achilles {
 
 enum class Operation : std::uint8_t {
-    number,    // exact rational constant
-    pi,        // the circle constant
-    symbol,    // an input, known by its slot
-    add, subtract, multiply, divide, negate,
-    power,     // integer exponent, |exponent| >= 2
+    number,  // exact rational constant
+    pi,      // the circle constant
+    symbol,  // an input, known by its slot
+    add,
+    subtract,
+    multiply,
+    divide,
+    negate,
+    power,       // integer exponent, |exponent| >= 2
     real_power,  // a^b for a > 0, both operands nodes
-    sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log
+    sqrt,
+    sin,
+    cos,
+    tan,
+    asin,
+    acos,
+    atan,
+    sinh,
+    cosh,
+    tanh,
+    exp,
+    log
 };
 
 class Graph;
@@ -51,20 +67,21 @@ Expression operator*(Expression a, Expression b);
 Expression operator/(Expression a, Expression b);  // throws std::domain_error for the constant divisor 0
 Expression operator-(Expression a);
 Expression power(Expression base, int exponent);
-Expression apply(Operation function, Expression argument);  // one of sqrt ... log
+Expression real_power(Expression base, Expression exponent);  // base > 0; integers and 1/2 become power and sqrt
+Expression apply(Operation function, Expression argument);    // one of sqrt ... log
 
 // A rational constant as every scalar type may want to read it.
 struct Constant {
-    double nearest;          // rounded to nearest
-    double low, high;        // low <= exact value <= high, equal where a double is exact
-    std::string numerator;   // exact, decimal digits
+    double nearest;         // rounded to nearest
+    double low, high;       // low <= exact value <= high, equal where a double is exact
+    std::string numerator;  // exact, decimal digits
     std::string denominator;
 };
 
 class Graph {
  public:
     Graph();
-    Graph(const Graph&);             // ids stay valid in the copy: see adopt()
+    Graph(const Graph&);  // ids stay valid in the copy: see adopt()
     Graph& operator=(const Graph&) = delete;
     ~Graph();
 
@@ -78,8 +95,8 @@ class Graph {
 
     struct Node {
         Operation operation;
-        std::uint32_t a = 0;   // first operand; the slot of a symbol; the table index of a number
-        std::uint32_t b = 0;   // second operand
+        std::uint32_t a = 0;  // first operand; the slot of a symbol; the table index of a number
+        std::uint32_t b = 0;  // second operand
         std::int32_t exponent = 0;
     };
     const Node& node(std::uint32_t id) const;
@@ -103,6 +120,9 @@ Expression substitute(Expression expression, std::span<const std::uint32_t> slot
 
 // True if the value depends on any of these symbols.
 bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
+
+// True if the value depends on no symbol at all.
+bool is_constant(Expression expression);
 
 // The expression as text that parse() reads back; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);

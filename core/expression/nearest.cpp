@@ -1,45 +1,39 @@
 #include "expression/nearest.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <vector>
 
 namespace achilles {
 
 namespace {
 
-// Edit distance with insertions, deletions, replacements and swaps of neighbours (optimal string alignment).
-std::size_t edits(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
+// Edits (insert, delete, replace, swap of neighbours) that turn a into b.
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
     for (std::size_t i = 1; i <= a.size(); ++i) {
-        row[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
-            row[j] = std::min({replaced, last[j] + 1, row[j - 1] + 1});
+            const std::size_t replace = d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replace});
             const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
-            if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+            if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
         }
-        std::swap(before, last);
-        std::swap(last, row);
     }
-    return last[b.size()];
+    return d[a.size()][b.size()];
 }
 
 }  // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    const std::size_t allowed = std::max<std::size_t>(1, word.size() / 3);
-    std::size_t least = allowed + 1;
+    if (word.size() > 100) return {};  // nobody's misspelling
+    std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
     std::string best;
     for (const std::string& candidate : candidates) {
-        // Lengths that differ by more are further apart than that: a megabyte word costs nothing.
-        const std::size_t shorter = std::min(word.size(), candidate.size());
-        if (std::max(word.size(), candidate.size()) - shorter >= least || shorter == 0) continue;
-        const std::size_t distance = edits(word, candidate);
-        // Replacing every letter is no misspelling: "q" is not near "m".
-        if (distance < least && distance < std::max(word.size(), candidate.size())) {
-            least = distance;
+        if (candidate.size() > 100) continue;
+        const std::size_t edits = distance(word, candidate);
+        if (edits < least && edits < std::max(word.size(), candidate.size())) {
+            least = edits;
             best = candidate;
         }
     }
@@ -47,8 +41,8 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
-    const std::string candidate = nearest(word, candidates);
-    return candidate.empty() ? std::string() : "; did you mean '" + candidate + "'?";
+    const std::string best = nearest(word, candidates);
+    return best.empty() ? "" : "; did you mean '" + best + "'?";
 }
 
 }  // namespace achilles

@@ -1,7 +1,7 @@
 // A flat program: a list of expressions, every common subexpression evaluated once, over any scalar type.
 //
-// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [fixed_begin, fixed_end) are parameters: what
-// depends on them alone is evaluated by fix(), once a run, and the rest by run(), with no allocation.
+// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [fixed_begin, fixed_end) are parameters:
+// what depends on them alone is evaluated by fix(), once a run, and the rest by run(), with no allocation.
 #pragma once
 
 #include <cstdint>
@@ -38,10 +38,10 @@ class Program {
     template <class Scalar>
     friend class Evaluator;
     Slots slots_;
-    std::vector<Constant> constants_;         // registers count .. count + constants - 1
-    std::vector<Instruction> instructions_;   // results follow in order, one register each
-    std::size_t fixed_ = 0;                   // instructions that depend on parameters alone come first
-    std::vector<std::uint32_t> outputs_;      // registers
+    std::vector<Constant> constants_;        // registers count .. count + constants - 1
+    std::vector<Instruction> instructions_;  // results follow in order, one register each
+    std::size_t fixed_ = 0;                  // instructions that depend on parameters alone come first
+    std::vector<std::uint32_t> outputs_;     // registers
 };
 
 // A program with its registers. One per thread; copying copies the registers.
@@ -80,28 +80,69 @@ void Evaluator<Scalar>::execute(std::size_t begin, std::size_t end) {
         const Instruction& in = program_->instructions_[i];
         const Scalar& a = r[in.a];
         switch (in.operation) {
-            case Operation::add: *result = a + r[in.b]; break;
-            case Operation::subtract: *result = a - r[in.b]; break;
-            case Operation::multiply: *result = a * r[in.b]; break;
-            case Operation::divide: *result = a / r[in.b]; break;
-            case Operation::negate: *result = -a; break;
-            case Operation::power: *result = integer_power(a, in.exponent); break;
-            case Operation::real_power: *result = pow(a, r[in.b]); break;
-            case Operation::sqrt: *result = sqrt(a); break;
-            case Operation::sin: *result = sin(a); break;
-            case Operation::cos: *result = cos(a); break;
-            case Operation::tan: *result = tan(a); break;
-            case Operation::asin: *result = asin(a); break;
-            case Operation::acos: *result = acos(a); break;
-            case Operation::atan: *result = atan(a); break;
-            case Operation::sinh: *result = sinh(a); break;
-            case Operation::cosh: *result = cosh(a); break;
-            case Operation::tanh: *result = tanh(a); break;
-            case Operation::exp: *result = exp(a); break;
-            case Operation::log: *result = log(a); break;
-            case Operation::pi: *result = scalar_pi<Scalar>(); break;
+            case Operation::add:
+                *result = a + r[in.b];
+                break;
+            case Operation::subtract:
+                *result = a - r[in.b];
+                break;
+            case Operation::multiply:
+                *result = a * r[in.b];
+                break;
+            case Operation::divide:
+                *result = a / r[in.b];
+                break;
+            case Operation::negate:
+                *result = -a;
+                break;
+            case Operation::power:
+                *result = integer_power(a, in.exponent);
+                break;
+            case Operation::real_power:
+                *result = pow(a, r[in.b]);
+                break;
+            case Operation::sqrt:
+                *result = sqrt(a);
+                break;
+            case Operation::sin:
+                *result = sin(a);
+                break;
+            case Operation::cos:
+                *result = cos(a);
+                break;
+            case Operation::tan:
+                *result = tan(a);
+                break;
+            case Operation::asin:
+                *result = asin(a);
+                break;
+            case Operation::acos:
+                *result = acos(a);
+                break;
+            case Operation::atan:
+                *result = atan(a);
+                break;
+            case Operation::sinh:
+                *result = sinh(a);
+                break;
+            case Operation::cosh:
+                *result = cosh(a);
+                break;
+            case Operation::tanh:
+                *result = tanh(a);
+                break;
+            case Operation::exp:
+                *result = exp(a);
+                break;
+            case Operation::log:
+                *result = log(a);
+                break;
+            case Operation::pi:
+                *result = scalar_pi<Scalar>();
+                break;
             case Operation::number:
-            case Operation::symbol: break;  // not instructions
+            case Operation::symbol:
+                break;  // not instructions
         }
     }
 }

@@ -15,9 +15,13 @@ Scalar scalar_from(const Constant& constant) {
     return Scalar(constant.numerator) / Scalar(constant.denominator);
 }
 template <>
-inline double scalar_from<double>(const Constant& constant) { return constant.nearest; }
+inline double scalar_from<double>(const Constant& constant) {
+    return constant.nearest;
+}
 template <>
-inline Interval scalar_from<Interval>(const Constant& constant) { return {constant.low, constant.high}; }
+inline Interval scalar_from<Interval>(const Constant& constant) {
+    return {constant.low, constant.high};
+}
 
 template <class Scalar>
 Scalar scalar_pi() {
@@ -25,9 +29,13 @@ Scalar scalar_pi() {
     return acos(Scalar(-1));
 }
 template <>
-inline double scalar_pi<double>() { return std::numbers::pi; }
+inline double scalar_pi<double>() {
+    return std::numbers::pi;
+}
 template <>
-inline Interval scalar_pi<Interval>() { return Interval::pi(); }
+inline Interval scalar_pi<Interval>() {
+    return Interval::pi();
+}
 
 // x^n by repeated squaring; Interval brings its own, tight for even n.
 template <class Scalar>

@@ -71,10 +71,11 @@ void read_coordinates(SystemDescription& system, const TomlValue& root) {
         CoordinateDescription coordinate;
         coordinate.name = name.text;
         coordinate.at = name.at;
-        coordinate.start = fields.number("start");
-        coordinate.start_at = fields.need("start").at;
-        coordinate.rate = fields.number("rate");
-        coordinate.rate_at = fields.need("rate").at;
+        const auto place = [&](const char* key) { return fields.find(key) ? fields.need(key).at : name.at; };
+        coordinate.start = fields.number_or("start", 0.0);
+        coordinate.start_at = place("start");
+        coordinate.rate = fields.number_or("rate", 0.0);
+        coordinate.rate_at = place("rate");
         coordinate.unit = fields.string_or("unit", "");
         coordinate.range = fields.range_or("range", range_around(coordinate.start));
         coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate));
@@ -198,8 +199,8 @@ SystemDescription parse_system(std::string text, std::string name) {
     const Fields fields(system, root, "a system file");
     fields.allow({"title", "source", "coordinate", "parameter", "lagrangian", "constraint", "run", "truncation",
                   "drawing", "view", "extra"});
-    system.title = fields.string_or("title", std::filesystem::path(system.file).stem().string());
     system.source = fields.string_or("source", "");
+    if (fields.find("title")) system.title = fields.string("title").text;
 
     read_coordinates(system, root);
     if (system.coordinates.empty()) throw missing(system, "[[coordinate]]: a system needs at least one");
@@ -215,6 +216,7 @@ SystemDescription parse_system(std::string text, std::string name) {
     read_parameters(system, root);  // after the constraint: the restitution's slider has a range of its own
     read_options(system, fields);
     read_pictures(system, root);
+    if (!fields.find("title")) throw missing(system, "title");
     return system;
 }
 

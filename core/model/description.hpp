@@ -1,4 +1,5 @@
-// What a person writes: a system file, read but not yet derived. Every error says file, line, column and what would be right.
+// What a person writes: a system file, read but not yet derived. Every error says file, line, column and what would be
+// right.
 #pragma once
 
 #include <array>
@@ -22,7 +23,7 @@ struct Location {
 
 // Bad input, told to a person: "FILE:LINE:COLUMN: message", the offending line with a caret where there is one, a hint.
 struct InputError : std::runtime_error {
-    InputError(std::string file, Location at, std::string message, std::string hint = {}, std::string line = {});
+    InputError(std::string file, Location at, std::string message, std::string hint = {}, const std::string& line = {});
     std::string file, message, hint;  // hint: what would be right; may be empty
     Location at;
 };
@@ -54,9 +55,9 @@ struct DrawingDescription {
     Text radius;                              // disc
     std::string over;                         // curve: its own parameter, and the limits
     std::array<Text, 2> over_limits;
-    std::string text;                         // text
-    std::string color;                        // "#rrggbb" or ""
-    Text width;                               // stroke width; empty: default
+    std::string text;   // text
+    std::string color;  // "#rrggbb" or ""
+    Text width;         // stroke width; empty: default
     bool fill = false;
     Location at;
 };
@@ -74,7 +75,7 @@ struct SystemDescription {
     std::vector<CoordinateDescription> coordinates;
     std::vector<ParameterDescription> parameters;
     Text kinetic, potential, gap, restitution;
-    Options options;          // defaults overridden by [run] and [truncation]
+    Options options;                           // defaults overridden by [run] and [truncation]
     std::vector<DrawingDescription> drawings;  // as written; none is a valid answer
     std::vector<ViewDescription> views;        // as written, or the defaults of INTERFACE section 5
 

@@ -91,6 +91,8 @@ std::string Fields::string_or(std::string_view key, std::string otherwise) const
     return find(key) ? string(key).text : otherwise;
 }
 
+double Fields::number_or(std::string_view key, double otherwise) const { return find(key) ? number(key) : otherwise; }
+
 std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 2> otherwise) const {
     const TomlValue* value = find(key);
     if (!value) return otherwise;

@@ -29,6 +29,7 @@ class Fields {
     std::array<Text, 2> point(std::string_view key) const;
     // The same with a value for absence.
     std::string string_or(std::string_view key, std::string otherwise) const;
+    double number_or(std::string_view key, double otherwise) const;
     std::array<double, 2> range_or(std::string_view key, std::array<double, 2> otherwise) const;
 
     // The same for a value that is an item of a key's array.

@@ -76,7 +76,8 @@ std::string full_message(const std::string& file, Location at, const std::string
 
 }  // namespace
 
-InputError::InputError(std::string file_, Location at_, std::string message_, std::string hint_, std::string line)
+InputError::InputError(std::string file_, Location at_, std::string message_, std::string hint_,
+                       const std::string& line)
     : std::runtime_error(full_message(file_, at_, message_, hint_, line)),
       file(std::move(file_)),
       message(std::move(message_)),

@@ -123,16 +123,19 @@ ViewDescription read_view(const Fields& fields) {
 
 std::vector<ViewDescription> default_views(const SystemDescription& system) {
     std::vector<ViewDescription> views;
-    const Text time{"t", {}};
+    const auto add = [&](const std::string& name, const std::string& x, const std::string& y) {
+        ViewDescription& view = views.emplace_back();
+        view.name = name;
+        view.x.text = x;
+        view.y.emplace_back().text = y;
+    };
     const auto& coordinates = system.coordinates;
-    for (const CoordinateDescription& coordinate : coordinates) {
-        views.push_back({coordinate.name, time, {{coordinate.name, {}}}});
-    }
-    views.push_back({"gap", time, {{"gap", {}}}});
+    for (const CoordinateDescription& coordinate : coordinates) add(coordinate.name, "t", coordinate.name);
+    add("gap", "t", "gap");
     if (coordinates.size() < 2) return views;
     const auto called_plane = [](const CoordinateDescription& c) { return c.name == "plane"; };
     const bool taken = std::any_of(coordinates.begin(), coordinates.end(), called_plane);
-    views.push_back({taken ? "the plane" : "plane", {coordinates[0].name, {}}, {{coordinates[1].name, {}}}});
+    add(taken ? "the plane" : "plane", coordinates[0].name, coordinates[1].name);
     return views;
 }
 

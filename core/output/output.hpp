@@ -1,4 +1,5 @@
-// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite: null, or empty.
+// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite:
+// null, or empty.
 #pragma once
 
 #include <string>
@@ -10,6 +11,8 @@ namespace achilles {
 std::string to_json(const Trajectory& trajectory);
 std::string to_csv(const Trajectory& trajectory);
 std::string summary(const Trajectory& trajectory);
+// What a certificate says, in one sentence.
+std::string sentence(const Certificate& certificate);
 std::string version();
 
 }  // namespace achilles

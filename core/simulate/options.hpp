@@ -11,8 +11,8 @@
 namespace achilles {
 
 enum class Method { dopri5, taylor };
-enum class Conditions { paper, sharp };               // THEORY sections 3 and 6
-enum class Reinitialization { euclidean, kinetic };   // R* of Def. 7, and the plastic impact (section 5)
+enum class Conditions { paper, sharp };              // THEORY sections 3 and 6
+enum class Reinitialization { euclidean, kinetic };  // R* of Def. 7, and the plastic impact (section 5)
 
 std::string_view to_text(Method);
 std::string_view to_text(Conditions);
@@ -31,10 +31,10 @@ struct Truncation {
 };
 
 struct Options {
-    double end_time = 10.0;      // s, the run stops here at the latest
-    double tolerance = 1e-10;    // local error per step, absolute and relative
+    double end_time = 10.0;    // s, the run stops here at the latest
+    double tolerance = 1e-10;  // local error per step, absolute and relative
     Method method = Method::dopri5;
-    int max_impacts = 200000;    // over the run; then Outcome "too many impacts"
+    int max_impacts = 200000;  // over the run; then Outcome "too many impacts"
     Truncation truncation;
 };
 

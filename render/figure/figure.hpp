@@ -26,9 +26,9 @@ struct Stroke {
 };
 
 struct Curve {
-    std::string label;         // "" : not in the legend
+    std::string label;  // "" : not in the legend
     Stroke stroke;
-    std::vector<Point> points; // data coordinates; a NaN point breaks the curve
+    std::vector<Point> points;  // data coordinates; a NaN point breaks the curve
 };
 
 struct Markers {
@@ -36,26 +36,26 @@ struct Markers {
     std::string label;
     Shape shape = Shape::square;
     Color fill, edge;
-    double size = 6.0;         // across
+    double size = 6.0;  // across
     std::vector<Point> points;
 };
 
 struct Tick {
     double value = 0.0;
-    std::string label;         // "" : minor
+    std::string label;  // "" : minor
 };
 
 struct Axis {
-    std::string label;         // UTF-8; combining dots U+0307, U+0308 stand after the letter they belong to
+    std::string label;  // UTF-8; combining dots U+0307, U+0308 stand after the letter they belong to
     double low = 0.0, high = 1.0;
     bool logarithmic = false;
     std::vector<Tick> ticks;
 };
 
 struct Panel {
-    std::string title;         // "(a)", or a view's name
+    std::string title;  // "(a)", or a view's name
     Axis x, y;
-    bool equal_axes = false;   // one unit is the same length on both axes
+    bool equal_axes = false;  // one unit is the same length on both axes
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     bool legend = false;
@@ -64,11 +64,11 @@ struct Panel {
 
 struct Figure {
     int columns = 1;
-    std::vector<Panel> panels; // row by row
+    std::vector<Panel> panels;  // row by row
     Color background{255, 255, 255, 255};
-    Color ink{30, 30, 30, 255};       // axes and text
+    Color ink{30, 30, 30, 255};  // axes and text
     Color grid{225, 225, 225, 255};
-    double text_size = 14.0;   // points
+    double text_size = 14.0;  // points
 };
 
 // The figure as text, 9 significant digits: what golden tests compare before pixels.

@@ -10,11 +10,20 @@ namespace achilles {
 
 class Offscreen {
  public:
-    // Loads libOSMesa at run time. Throws std::runtime_error naming the package if it is missing, or what is out of limits.
+    // Loads libOSMesa at run time. Throws std::runtime_error naming the package if it is missing, or what is out of
+    // limits.
     explicit Offscreen(const SurfaceOptions& options);
     ~Offscreen();
+    Offscreen(const Offscreen&) = delete;
+    Offscreen& operator=(const Offscreen&) = delete;
     // Draws `passes` frames (ImGui needs three before windows have settled) with a fixed time step and reads the last.
     Image frame(const FrameFunction& draw, int passes = 1);
+    // The same with a mouse and a keyboard.
+    Image frame(const FrameFunction& draw, int passes, const Input& input);
+    // One frame that nobody looks at: everything happens but the drawing of pixels.
+    void step(const FrameFunction& draw, const Input& input = {});
+    // From the next frame on.
+    void restyle(double scale, bool dark);
 
  private:
     struct Implementation;

@@ -12,12 +12,22 @@ namespace achilles {
 
 class Window {
  public:
-    // Throws std::runtime_error if there is no display or no OpenGL 3.3.
+    // Throws std::runtime_error if there is no display or no OpenGL 3.3. The window is no larger than the monitor.
     Window(const SurfaceOptions& options, const std::string& title);
     ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
     // Draws frames until the user closes the window or close() is called.
     void run(const FrameFunction& draw);
     void close();
+    // false: nothing moves by itself, so after a few frames the window sleeps until the user does something. true at
+    // first.
+    void keep_drawing(bool moving);
+    // Wakes a sleeping window; the only member that another thread may call.
+    static void wake();
+    // From the next frame on; `scale` comes on top of what the monitor asks for.
+    void restyle(double scale, bool dark);
+    void set_title(const std::string& title);
     // The last frame as it was drawn, before the window system touched it.
     Image picture();
     // Files dropped on the window since the last call.

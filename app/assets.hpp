@@ -1,0 +1,24 @@
+// Where the assets are, and which systems there are. A file in assets/systems is a system: the folder is the registry.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace achilles {
+
+// The folder that holds systems/, journals/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
+// "../share/achilles". Throws InputError if none is there.
+std::filesystem::path assets();
+
+// The system files in assets/systems, sorted by name.
+std::vector<std::filesystem::path> system_files();
+
+// The same as names: what SYSTEM may be besides a path.
+std::vector<std::string> system_names();
+
+// The file of SYSTEM, a path or a name. Throws InputError with the nearest name and the list of names.
+std::filesystem::path find_system(std::string_view system);
+
+}  // namespace achilles

@@ -1,0 +1,207 @@
+#include "command.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "expression/nearest.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::string_view spaces = " \t\r";
+
+struct Word {
+    std::string text;
+    int column = 1;
+};
+
+// The words of one line and where they stand, to complain about.
+class Line {
+ public:
+    Line(std::string_view text, const std::string& file, int number) : text_(text), file_(file), number_(number) {
+        for (std::size_t at = skip_space(0); at < text.size() && text[at] != '#'; at = skip_space(at)) {
+            const int column = static_cast<int>(at) + 1;
+            words_.push_back({text[at] == '"' ? quoted(at) : plain(at), column});
+        }
+    }
+
+    InputError error(int column, const std::string& message, const std::string& hint = {}) const {
+        return {file_, {number_, column}, message, hint, std::string(text_)};
+    }
+    const Word& word(std::size_t i) const { return words_[i]; }
+    std::size_t count() const { return words_.size(); }
+    void expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
+        if (count() < least + 1) throw error(end_column(), fmt::format("'{}' needs more", words_[0].text), usage);
+        if (count() > most + 1)
+            throw error(words_[most + 1].column, fmt::format("'{}' is too much", words_[most + 1].text), usage);
+    }
+    double number(std::size_t i) const {
+        const std::string& text = words_[i].text;
+        double value = 0.0;
+        const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (problem != std::errc() || rest != text.data() + text.size() || !std::isfinite(value))
+            throw error(words_[i].column, fmt::format("'{}' is not a finite number", text));
+        return value;
+    }
+    int whole_number(std::size_t i) const {
+        const double value = number(i);
+        if (value != std::floor(value) || std::abs(value) > 1e9)
+            throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
+        return static_cast<int>(value);
+    }
+
+ private:
+    std::size_t skip_space(std::size_t at) const { return std::min(text_.find_first_not_of(spaces, at), text_.size()); }
+    int end_column() const { return static_cast<int>(text_.find_last_not_of(spaces)) + 2; }
+    std::string plain(std::size_t& at) const {
+        const std::size_t begin = at;
+        at = std::min(text_.find_first_of(spaces, at), text_.size());
+        return std::string(text_.substr(begin, at - begin));
+    }
+    std::string quoted(std::size_t& at) const {
+        const int column = static_cast<int>(at) + 1;
+        std::string result;
+        for (++at; at < text_.size() && text_[at] != '"'; ++at) {
+            if (text_[at] == '\\' && at + 1 < text_.size()) ++at;
+            result += text_[at];
+        }
+        if (at == text_.size()) throw error(column, "the quotes are not closed");
+        ++at;
+        return result;
+    }
+
+    std::string_view text_;
+    const std::string& file_;
+    int number_;
+    std::vector<Word> words_;
+};
+
+std::string quoted_where_needed(const std::string& word) {
+    if (!word.empty() && word[0] != '#' && word.find_first_of(" \t\r\"\\") == std::string::npos) return word;
+    std::string text = "\"";
+    for (const char c : word) {
+        if (c == '"' || c == '\\') text += '\\';
+        text += c;
+    }
+    return text + '"';
+}
+
+Command read_eps(const Line& line) {
+    line.expect_arguments(1, 3, "write: eps 1e-6, or: eps POSITION VELOCITY TIME");
+    if (line.count() == 3) throw line.error(line.word(2).column, "eps takes one number or three", "write: eps 1e-6");
+    const double first = line.number(1);
+    if (line.count() == 2) return command::Eps{first, first, first};
+    return command::Eps{first, line.number(2), line.number(3)};
+}
+
+Command read_conditions(const Line& line) {
+    line.expect_arguments(1, 1, "write: conditions paper, or: conditions sharp");
+    if (const auto value = conditions_from(line.word(1).text)) return command::UseConditions{*value};
+    throw line.error(line.word(1).column, fmt::format("there are no conditions '{}'", line.word(1).text),
+                     "write: conditions paper, or: conditions sharp");
+}
+
+Command read_reinitialization(const Line& line) {
+    line.expect_arguments(1, 1, "write: reinitialization kinetic, or: reinitialization euclidean");
+    if (const auto value = reinitialization_from(line.word(1).text)) return command::UseReinitialization{*value};
+    throw line.error(line.word(1).column, fmt::format("there is no re-initialization '{}'", line.word(1).text),
+                     "write: reinitialization kinetic, or: reinitialization euclidean");
+}
+
+Command read_set(const Line& line) {
+    line.expect_arguments(2, 2, "write: set NAME VALUE");
+    return command::Set{line.word(1).text, line.number(2)};
+}
+
+// The first word of a line, and how the rest is read.
+struct Verb {
+    std::string_view name;
+    Command (*read)(const Line&);
+};
+
+template <class Kind>
+Command read_alone(const Line& line) {
+    line.expect_arguments(0, 0, "it stands alone");
+    return Kind{};
+}
+
+template <class Kind>
+Command read_number(const Line& line) {
+    line.expect_arguments(1, 1, fmt::format("write: {} NUMBER", line.word(0).text));
+    return Kind{line.number(1)};
+}
+
+Command read_open(const Line& line) {
+    line.expect_arguments(1, 1, "write: open SYSTEM; a path with spaces stands in double quotes");
+    return command::Open{line.word(1).text};
+}
+
+Command read_select(const Line& line) {
+    line.expect_arguments(1, 1, "write: select NUMBER, counting the events from 1");
+    return command::Select{line.whole_number(1)};
+}
+
+constexpr std::array<Verb, 11> verbs{{{"open", read_open},
+                                      {"set", read_set},
+                                      {"end", read_number<command::End>},
+                                      {"tolerance", read_number<command::Tolerance>},
+                                      {"eps", read_eps},
+                                      {"conditions", read_conditions},
+                                      {"reinitialization", read_reinitialization},
+                                      {"seek", read_number<command::Seek>},
+                                      {"play", read_alone<command::Play>},
+                                      {"pause", read_alone<command::Pause>},
+                                      {"select", read_select}}};
+
+struct Print {
+    std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
+    std::string operator()(const command::Set& c) const {
+        return fmt::format("set {} {}", quoted_where_needed(c.name), c.value);
+    }
+    std::string operator()(const command::End& c) const { return fmt::format("end {}", c.time); }
+    std::string operator()(const command::Tolerance& c) const { return fmt::format("tolerance {}", c.value); }
+    std::string operator()(const command::Eps& c) const {
+        return c.q == c.v && c.v == c.t ? fmt::format("eps {}", c.q) : fmt::format("eps {} {} {}", c.q, c.v, c.t);
+    }
+    std::string operator()(const command::UseConditions& c) const {
+        return fmt::format("conditions {}", to_text(c.conditions));
+    }
+    std::string operator()(const command::UseReinitialization& c) const {
+        return fmt::format("reinitialization {}", to_text(c.reinitialization));
+    }
+    std::string operator()(const command::Seek& c) const { return fmt::format("seek {}", c.time); }
+    std::string operator()(const command::Play&) const { return "play"; }
+    std::string operator()(const command::Pause&) const { return "pause"; }
+    std::string operator()(const command::Select& c) const { return fmt::format("select {}", c.event); }
+};
+
+}  // namespace
+
+std::string to_text(const Command& command) { return std::visit(Print{}, command); }
+
+bool is_blank(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(spaces);
+    return first == std::string_view::npos || line[first] == '#';
+}
+
+Command parse_command(std::string_view text, const std::string& file, int line_number) {
+    const Line line(text, file, line_number);
+    if (line.count() == 0) throw line.error(1, "there is no command here");
+    std::vector<std::string> names;
+    for (const Verb& verb : verbs) {
+        if (verb.name == line.word(0).text) return verb.read(line);
+        names.emplace_back(verb.name);
+    }
+    throw line.error(
+        line.word(0).column,
+        fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
+        "the commands are: open, set, end, tolerance, eps, conditions, reinitialization, seek, play, pause, "
+        "select");
+}
+
+}  // namespace achilles

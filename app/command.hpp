@@ -1,0 +1,80 @@
+// Everything a user can do, as a value with a text form: a journal is a list of these, a line each.
+//
+//     open ball_on_sine        set g 9.81         set x' 1.5         end 20        tolerance 1e-10
+//     eps 1e-6                 eps 1e-6 1e-6 1e-7 (position, velocity, time)
+//     conditions paper         reinitialization kinetic
+//     seek 3.2                 play               pause              select 25
+//
+// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes".
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "model/description.hpp"
+
+namespace achilles {
+
+namespace command {
+
+struct Open {
+    std::string system;  // a path, or the name of one of the assets
+    friend bool operator==(const Open&, const Open&) = default;
+};
+struct Set {
+    std::string name;  // a parameter, a coordinate x, or a rate x'
+    double value = 0.0;
+    friend bool operator==(const Set&, const Set&) = default;
+};
+struct End {
+    double time = 0.0;  // s
+    friend bool operator==(const End&, const End&) = default;
+};
+struct Tolerance {
+    double value = 0.0;
+    friend bool operator==(const Tolerance&, const Tolerance&) = default;
+};
+struct Eps {
+    double q = 0.0, v = 0.0, t = 0.0;
+    friend bool operator==(const Eps&, const Eps&) = default;
+};
+struct UseConditions {
+    Conditions conditions = Conditions::paper;
+    friend bool operator==(const UseConditions&, const UseConditions&) = default;
+};
+struct UseReinitialization {
+    Reinitialization reinitialization = Reinitialization::kinetic;
+    friend bool operator==(const UseReinitialization&, const UseReinitialization&) = default;
+};
+struct Seek {
+    double time = 0.0;  // s; beyond the run: its end
+    friend bool operator==(const Seek&, const Seek&) = default;
+};
+struct Play {
+    friend bool operator==(const Play&, const Play&) = default;
+};
+struct Pause {
+    friend bool operator==(const Pause&, const Pause&) = default;
+};
+struct Select {
+    int event = 0;  // its number in the list, from 1; the time moves to it. 0: none
+    friend bool operator==(const Select&, const Select&) = default;
+};
+
+}  // namespace command
+
+using Command =
+    std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
+                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select>;
+
+// One line, without its end; numbers in the shortest form that reads back the same.
+std::string to_text(const Command& command);
+
+// Reads one line. Throws InputError that names file, line and column. A line must hold a command: see parse_journal.
+Command parse_command(std::string_view text, const std::string& file = "<command>", int line = 1);
+
+// Whether a line holds nothing but space and a comment.
+bool is_blank(std::string_view line);
+
+}  // namespace achilles

@@ -1,0 +1,28 @@
+// Options that several commands share.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "overrides.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace achilles {
+
+// --set and everything that goes over a system's options.
+void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
+
+// --scale S.
+void add_scale_option(CLI::App& command, double& scale);
+
+// --size WxH and --scale S.
+void add_size_options(CLI::App& command, int& width, int& height, double& scale);
+
+// A decimal number, all of it; strtod and with it CLI11 would take more (hexadecimal, "nan"). Throws InputError.
+double number_from(const std::string& option, std::string_view text);
+
+}  // namespace achilles

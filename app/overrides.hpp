@@ -1,0 +1,34 @@
+// What the command line changes in a system: the top of "command line over file over default" (INTERFACE section 5).
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/description.hpp"
+
+namespace achilles {
+
+// Every option that was given; the others keep what the file or the default says.
+struct OptionOverrides {
+    std::optional<double> end_time, tolerance;
+    std::optional<Method> method;
+    std::optional<int> max_impacts;
+    std::optional<Conditions> conditions;
+    std::optional<Reinitialization> reinitialization;
+    std::optional<double> eps;  // all three; --eps-q and its kin go over it
+    std::optional<double> eps_q, eps_v, eps_t;
+};
+
+// Puts them over the options of a system just read. Throws InputError (without a location) for a value out of range.
+void apply(const OptionOverrides& overrides, Options& options);
+
+// Throws InputError where the options ask for what is not built yet; names the file if the file asked.
+void refuse_unavailable(const SystemDescription& description, const OptionOverrides& overrides);
+
+// A system file with --set and the options over it, ready for Model.
+SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                              const OptionOverrides& overrides);
+
+}  // namespace achilles

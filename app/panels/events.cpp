@@ -1,0 +1,169 @@
+// Below: what happened, event by event, and what is proved of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/label.hpp"
+#include "output/output.hpp"
+#include "paint/marker.hpp"
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Where the columns of the list begin, at scale 1, from its left edge.
+constexpr float sign_at = 14.0F, number_at = 34.0F, kind_at = 78.0F, time_at = 174.0F, speed_at = 300.0F,
+                state_at = 410.0F, list_padding = 4.0F;
+
+// A line of the list: an event, or one line of what its certificate says.
+struct Row {
+    std::size_t event;
+    std::string certificate;
+};
+
+// Text broken into lines of at most this width.
+std::vector<std::string> wrapped(const std::string& text, float width) {
+    std::vector<std::string> lines;
+    const char* at = text.c_str();
+    const char* const end = at + text.size();
+    while (at < end) {
+        const char* stop = ImGui::GetFont()->CalcWordWrapPositionA(1.0F, at, end, width);
+        if (stop == at) stop = end;
+        lines.emplace_back(at, stop);
+        for (at = stop; at < end && *at == ' ';) ++at;
+    }
+    return lines;
+}
+
+std::vector<Row> rows(const Session& session, bool impacts, float width) {
+    std::vector<Row> result;
+    const auto& events = session.trajectory().events;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (events[i].kind == Event::Kind::impact && !impacts) continue;
+        result.push_back({i, ""});
+        if (!events[i].certificate) continue;
+        for (std::string& line : wrapped(sentence(*events[i].certificate), width))
+            result.push_back({i, std::move(line)});
+    }
+    return result;
+}
+
+// The last event that the present has reached, or none.
+int reached(const Session& session) {
+    const auto& events = session.trajectory().events;
+    const auto later = std::upper_bound(events.begin(), events.end(), session.time(),
+                                        [](double t, const Event& event) { return t < event.t; });
+    return static_cast<int>(later - events.begin()) - 1;
+}
+
+std::string state_text(const Session& session, const Event& event) {
+    const auto& coordinates = session.description().coordinates;
+    std::string positions, rates;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const bool is_angle = coordinates[i].unit == "rad";
+        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const auto at = static_cast<Eigen::Index>(i);
+        positions += fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
+                                 number(event.q[at] * factor, "{:.5g}"), is_angle ? "\u00b0" : "");
+        rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
+                             number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
+    }
+    return positions + rates;
+}
+
+void show_header(PanelState& state) {
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    const float left = ImGui::GetCursorPosX() + units(list_padding);
+    const float right = ImGui::GetContentRegionMax().x;
+    ImGui::AlignTextToFramePadding();
+    for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
+                                   std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
+        if (at != number_at) ImGui::SameLine();
+        ImGui::SetCursorPosX(left + units(at));
+        ImGui::TextUnformatted(text);
+    }
+    ImGui::PopStyleColor();
+    const float width =
+        ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
+    ImGui::SameLine(right - width - units(4.0F));
+    ImGui::Checkbox("impacts", &state.show_impacts);
+    remember(state, "impacts");
+    tooltip("list the impacts, or only Zeno points and releases");
+}
+
+void paint_event(const Session& session, std::size_t index, ImVec2 at) {
+    const Event& event = session.trajectory().events[index];
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    Markers markers = event_markers(session.theme(), event.kind);
+    paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
+    const auto cell = [&](float x, const std::string& text, const Color& color) {
+        list->AddText({std::floor(at.x + units(x)), at.y}, packed(color), text.c_str());
+    };
+    cell(number_at, std::to_string(index + 1), faint_color());
+    cell(kind_at, markers.label, text_color());
+    cell(time_at, number(event.t, "{:.9f}"), text_color());
+    cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
+    paint_label(list, std::floor(at.x + units(state_at)), at.y, state_text(session, event), text_color(),
+                ImGui::GetFontSize());
+}
+
+void show_row(const Session& session, const Row& row, bool is_reached, PanelState& state, Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const int event_number = static_cast<int>(row.event) + 1;
+    const bool is_event = row.certificate.empty();
+    const bool is_selected = session.selected() == event_number || (session.selected() == 0 && is_reached);
+    ImGui::PushID(&row);
+    if (ImGui::Selectable("##row", is_selected)) commands.emplace_back(command::Select{event_number});
+    ImGui::PopID();
+    if (is_event) remember(state, "event " + std::to_string(event_number));
+    if (is_event)
+        paint_event(session, row.event, at);
+    else
+        ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(faint_color()),
+                                            row.certificate.c_str());
+}
+
+// Scrolls so that the row is seen, once whenever another row is the one to see.
+void follow(const std::vector<Row>& all, int event, PanelState& state) {
+    if (event == state.followed) return;
+    state.followed = event;
+    const auto row =
+        std::find_if(all.begin(), all.end(), [&](const Row& r) { return static_cast<int>(r.event) >= event; });
+    const float y = static_cast<float>(row - all.begin()) * ImGui::GetTextLineHeightWithSpacing();
+    const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
+    // By whole lines: none is cut at the top.
+    if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
+        ImGui::SetScrollY(std::max(0.0F, std::floor((y - 0.3F * height) / line) * line));
+}
+
+}  // namespace
+
+void show_events(const Session& session, PanelState& state, Commands& commands) {
+    show_header(state);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
+    // As high as whole lines are.
+    const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
+    const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
+                         units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
+    ImGui::BeginChild("list", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
+    const std::vector<Row> all = rows(session, state.show_impacts, width);
+    const int present = reached(session);
+    if (all.empty()) ImGui::TextDisabled("  nothing happens in this run");
+    follow(all, session.selected() > 0 ? session.selected() - 1 : std::max(present, 0), state);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const Row& row = all[static_cast<std::size_t>(i)];
+            show_row(session, row, static_cast<int>(row.event) == present, state, commands);
+        }
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+}  // namespace achilles

@@ -1,0 +1,81 @@
+// The last line: how the run went, and what the colours and signs mean.
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "paint/marker.hpp"
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A coloured sign and what it stands for, on the current line.
+void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({units(16.0F), ImGui::GetTextLineHeight()});
+    sign(ImGui::GetWindowDrawList(), {at.x + units(8.0F), at.y + 0.5F * ImGui::GetTextLineHeight()});
+    ImGui::SameLine(0.0F, units(2.0F));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+void show_legend(const Session& session) {
+    const Event::Kind events[] = {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
+    const Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
+    const float gap = units(12.0F);
+    float width = 0.0F;
+    for (const Phase::Kind kind : phases)
+        width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
+    for (const Event::Kind kind : events)
+        width += ImGui::CalcTextSize(event_markers(session.theme(), kind).label.c_str()).x + units(18.0F) + gap;
+    ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x < width) return ImGui::NewLine();
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - width + gap);
+    for (const Phase::Kind kind : phases) {
+        legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
+            list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
+                                packed(phase_color(session.theme(), kind), 0.85F));
+        });
+        ImGui::SameLine(0.0F, gap);
+    }
+    for (const Event::Kind kind : events) {
+        const Markers markers = event_markers(session.theme(), kind);
+        legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
+            paint_marker(list, markers, {c.x, c.y}, units(1.0F));
+        });
+        if (kind != Event::Kind::release) ImGui::SameLine(0.0F, gap);
+    }
+}
+
+}  // namespace
+
+void show_status(const Session& session, const PanelState& state) {
+    const Trajectory& trajectory = session.trajectory();
+    const Statistics& s = trajectory.statistics;
+    const ImVec2 corner = ImGui::GetWindowPos();
+    ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
+                                        ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::SetCursorPosY(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()));
+    if (trajectory.outcome.kind != Outcome::Kind::end_time) {
+        const std::string early =
+            fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));
+        ImGui::PushStyleColor(ImGuiCol_Text, packed(error_color()));
+        ImGui::TextUnformatted(early.c_str());
+        ImGui::PopStyleColor();
+        tooltip(trajectory.outcome.message);
+        ImGui::SameLine(0.0F, units(24.0F));
+    }
+    std::string text =
+        fmt::format("{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
+                    s.impacts, s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
+                    to_text(trajectory.run.options.method));
+    if (state.in_window) text += fmt::format("   \u00b7   {:.1f} ms", s.seconds * 1e3);
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    show_legend(session);
+}
+
+}  // namespace achilles

@@ -1,0 +1,80 @@
+#include "panels/widgets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace achilles {
+
+float units(float pixels) { return pixels * ImGui::GetFontSize() / 15.0F; }
+
+ImU32 packed(const Color& color, float alpha) {
+    return IM_COL32(color.r, color.g, color.b, static_cast<int>(static_cast<float>(color.a) * alpha + 0.5F));
+}
+
+namespace {
+
+Color style_color(int index) {
+    const ImVec4& c = ImGui::GetStyle().Colors[index];
+    const auto byte = [](float x) { return static_cast<std::uint8_t>(x * 255.0F + 0.5F); };
+    return {byte(c.x), byte(c.y), byte(c.z), byte(c.w)};
+}
+
+}  // namespace
+
+Color text_color() { return style_color(ImGuiCol_Text); }
+Color faint_color() { return style_color(ImGuiCol_TextDisabled); }
+Color error_color() { return {178, 34, 34, 255}; }
+
+void label(const std::string& text, float width) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({width, ImGui::GetFrameHeight()});
+    paint_label(ImGui::GetWindowDrawList(), at.x, at.y + ImGui::GetStyle().FramePadding.y, text, text_color(),
+                ImGui::GetFontSize());
+}
+
+void section(const char* title) {
+    ImGui::Dummy({0.0F, units(4.0F)});
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(title);
+    ImGui::PopStyleColor();
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float y = std::floor(0.5F * (low.y + high.y) + units(1.0F));
+    const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x;
+    ImGui::GetWindowDrawList()->AddLine({high.x + units(8.0F), y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Border));
+}
+
+void tooltip(const std::string& text) {
+    if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(units(360.0F));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+Rectangle remaining() {
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::GetContentRegionAvail();
+    return {at.x, at.y, size.x, size.y};
+}
+
+void remember(PanelState& state, const std::string& name) {
+    const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
+    state.places[name] = {low.x, low.y, size.x, size.y};
+}
+
+bool dragged_to(double low, double high, float left, float width, double& value) {
+    if (!ImGui::IsItemActive() || width <= 0.0F) return false;
+    const double share = std::clamp((double{ImGui::GetIO().MousePos.x} - left) / width, 0.0, 1.0);
+    value = low + share * (high - low);
+    return true;
+}
+
+std::string number(double value, const char* format) {
+    std::string text = fmt::format(fmt::runtime(format), value + 0.0);
+    for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
+        text.replace(at, 1, "\u2212");
+    return text;
+}
+
+}  // namespace achilles

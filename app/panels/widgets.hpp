@@ -1,0 +1,36 @@
+// Small pieces that several panels share. Lengths follow the text size, so a scaled interface is the same picture,
+// larger.
+#pragma once
+
+#include <imgui.h>
+
+#include <string>
+
+#include "figure/figure.hpp"
+#include "panels/panels.hpp"
+
+namespace achilles {
+
+// So many pixels at scale 1.
+float units(float pixels);
+ImU32 packed(const Color& color, float alpha = 1.0F);
+Color text_color();
+Color faint_color();
+Color error_color();
+
+// A label with dots over its letters, on the current line, `width` wide however long it is.
+void label(const std::string& text, float width);
+// A quiet heading over a group of widgets.
+void section(const char* title);
+// A tooltip for the last item, wrapped.
+void tooltip(const std::string& text);
+// What is left to draw on in the current window.
+Rectangle remaining();
+// Where the last item is, under this name.
+void remember(PanelState& state, const std::string& name);
+// The instant under the mouse, while the last item is dragged.
+bool dragged_to(double low, double high, float left, float width, double& value);
+// "12.3", with a true minus sign.
+std::string number(double value, const char* format = "{:.6g}");
+
+}  // namespace achilles

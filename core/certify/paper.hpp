@@ -1,0 +1,40 @@
+// The paper's reliable truncation (Def. 7, Thm. 3; THEORY section 3), proved by interval evaluation.
+//
+// Over a neighbourhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*), here the box around it
+// together with v-, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r), beta = |v*| +
+// eps_v', eta = max |n|, zeta = max |f|. With w = |hdot| at the collision,
+//
+//     c1 = a_min (1 - e')/(2 e) eps_t          c2 = a_min (1 - e')/(2 e beta) eps_q'
+//     c3 = eps_v' / ((1 + e) eta/(1 - e'') + 2 e zeta/(a_min (1 - e')) + 1/|g(q*)|)      Euclidean R*
+//     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic: the restart is s
+//     itself
+//
+// w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q, |v_inf - v*| < eps_v.
+#pragma once
+
+#include "certify/truncation.hpp"
+
+namespace achilles {
+
+class PaperConditions : public TruncationConditions {
+ public:
+    PaperConditions(const Model& model, const Run& run);
+
+    std::optional<Certificate> hold(const Collision& collision) override;
+    // The least neighbourhood, doubling from the run's tolerances, whose own conditions hold.
+    std::optional<Certificate> widest(const Collision& collision) override;
+
+ private:
+    struct Bounds;
+    bool hopeless(const Collision& collision);
+    std::optional<Certificate> prove(const Collision& collision, const Truncation& neighbourhood);
+    std::optional<Bounds> bounds_over(const Collision& collision, const Truncation& neighbourhood);
+
+    std::size_t n_;
+    Truncation truncation_;
+    Interval e_;
+    Evaluator<double> point_;
+    Evaluator<Interval> box_, surface_;
+};
+
+}  // namespace achilles

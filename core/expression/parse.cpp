@@ -1,0 +1,251 @@
+#include "expression/parse.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "expression/function_names.hpp"
+#include "expression/nearest.hpp"
+#include "expression/program.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Deeper than any formula a person writes, shallow enough for every stack.
+constexpr int deepest = 200;
+
+constexpr std::array<std::string_view, 9> not_smooth{"abs",   "min",  "max", "floor", "ceil",
+                                                     "round", "sign", "mod", "fmod"};
+constexpr std::array<std::string_view, 5> reserved{"t", "pi", "gap", "lambda", "energy"};
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+// One character as a person sees it: a whole UTF-8 sequence, or a code for what cannot be printed.
+std::string shown(std::string_view rest) {
+    const auto byte = static_cast<unsigned char>(rest.front());
+    if (byte < 0x20 || byte == 0x7f) return "a control character";
+    if (byte < 0x80) return quoted(rest.substr(0, 1));
+    std::size_t length = 1;
+    while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0) == 0x80 && length < 4) ++length;
+    return quoted(rest.substr(0, length));
+}
+
+class Parser {
+ public:
+    Parser(std::string_view text, const Scope& scope, Graph& graph) : text_(text), scope_(scope), graph_(graph) {}
+
+    Expression whole() {
+        skip_space();
+        if (at_end()) throw ParseError(0, "an expression is missing");
+        const Expression result = sum();
+        if (!at_end()) fail_at_leftover();
+        return result;
+    }
+
+ private:
+    // Counts nesting while a level of the grammar is open.
+    struct Level {
+        explicit Level(Parser& parser) : parser_(parser) {
+            if (++parser_.depth_ > deepest)
+                throw ParseError(parser_.at_, "nested more than " + std::to_string(deepest) + " levels deep");
+        }
+        ~Level() { --parser_.depth_; }
+        Level(const Level&) = delete;
+        Level& operator=(const Level&) = delete;
+        Parser& parser_;
+    };
+
+    bool at_end() const { return at_ >= text_.size(); }
+    char peek() const { return at_end() ? '\0' : text_[at_]; }
+    void skip_space() {
+        while (!at_end() && (peek() == ' ' || peek() == '\t' || peek() == '\n' || peek() == '\r')) ++at_;
+    }
+    bool take(char c) {
+        if (peek() != c) return false;
+        ++at_;
+        skip_space();
+        return true;
+    }
+
+    Expression sum() {
+        Expression left = product();
+        for (;;) {
+            if (take('+')) {
+                left = left + product();
+            } else if (take('-')) {
+                left = left - product();
+            } else {
+                return left;
+            }
+        }
+    }
+
+    Expression product() {
+        Expression left = signed_factor();
+        for (;;) {
+            const std::size_t where = at_;
+            if (take('*')) {
+                if (peek() == '*') throw ParseError(where, "unknown operator '**'; write '^' for a power");
+                left = left * signed_factor();
+            } else if (take('/')) {
+                const Expression divisor = signed_factor();
+                if (divisor.is_zero()) throw ParseError(where, "division by zero");
+                left = left / divisor;
+            } else {
+                return left;
+            }
+        }
+    }
+
+    // -x^2 is -(x^2): the sign binds less than the power.
+    Expression signed_factor() {
+        const Level level(*this);
+        if (take('-')) return -signed_factor();
+        if (take('+')) return signed_factor();
+        const Expression base = atom();
+        const std::size_t where = at_;
+        if (!take('^')) return base;
+        return raise(base, signed_factor(), where);  // 2^3^2 = 2^(3^2)
+    }
+
+    Expression raise(Expression base, Expression exponent, std::size_t where) {
+        if (!is_constant(exponent) && !(is_constant(base) && value_of(base) > 0.0))
+            throw ParseError(where, "the exponent of '^' must be a number, or its base a positive number");
+        try {
+            return real_power(base, exponent);
+        } catch (const std::domain_error&) {
+            throw ParseError(where, "division by zero: a negative power of 0");
+        }
+    }
+
+    static double value_of(Expression e) {
+        const Program program(std::span(&e, 1), Slots{});
+        Evaluator<double> evaluator(program);
+        evaluator.fix();
+        return evaluator.output(0);
+    }
+
+    Expression atom() {
+        if (at_end()) throw ParseError(at_, "the expression ends where a value is expected");
+        if (is_digit(peek()) || (peek() == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]))) return number();
+        if (is_letter(peek())) return name();
+        const std::size_t open = at_;
+        if (take('(')) {
+            const Expression inner = sum();
+            close(open);
+            return inner;
+        }
+        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + " where a value is expected");
+    }
+
+    void close(std::size_t open) {
+        if (take(')')) return;
+        if (at_end()) throw ParseError(open, "this '(' is never closed");
+        fail_at_leftover();
+    }
+
+    [[noreturn]] void fail_at_leftover() const {
+        if (peek() == ')') throw ParseError(at_, "this ')' closes nothing");
+        const bool value_follows = is_name_part(peek()) || peek() == '(' || peek() == '.';
+        if (value_follows) throw ParseError(at_, "an operator is missing here; write '*' for a product");
+        if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");
+        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)));
+    }
+
+    Expression number() {
+        const std::size_t begin = at_;
+        while (is_digit(peek())) ++at_;
+        if (peek() == '.') ++at_;
+        while (is_digit(peek())) ++at_;
+        if (peek() == 'e' || peek() == 'E') {
+            std::size_t digits = at_ + 1;
+            if (digits < text_.size() && (text_[digits] == '+' || text_[digits] == '-')) ++digits;
+            if (digits < text_.size() && is_digit(text_[digits])) {
+                at_ = digits;
+                while (is_digit(peek())) ++at_;
+            }
+        }
+        const std::string_view literal = text_.substr(begin, at_ - begin);
+        skip_space();
+        try {
+            return graph_.decimal(literal);
+        } catch (const std::out_of_range& problem) {
+            throw ParseError(begin, std::string("this number is out of range: it has ") + problem.what());
+        }
+    }
+
+    Expression name() {
+        const std::size_t begin = at_;
+        while (is_name_part(peek())) ++at_;
+        const std::string_view bare = text_.substr(begin, at_ - begin);
+        while (peek() == '\'') ++at_;
+        const std::string_view full = text_.substr(begin, at_ - begin);
+        skip_space();
+        for (const auto& [word, function] : functions)
+            if (word == full) return call(word, function, begin);
+        if (full == "pi") return graph_.pi();
+        const auto found = scope_.allowed.find(full);
+        if (found != scope_.allowed.end()) {
+            if (peek() == '(') throw ParseError(begin, quoted(full) + " is not a function; write '*' for a product");
+            return found->second;
+        }
+        const auto reason = scope_.forbidden.find(full);
+        if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second);
+        fail_at_unknown(begin, bare, full);
+    }
+
+    Expression call(std::string_view word, Operation function, std::size_t begin) {
+        const std::size_t open = at_;
+        if (!take('('))
+            throw ParseError(begin,
+                             "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)");
+        const Expression argument = sum();
+        if (peek() == ',') throw ParseError(at_, "the function " + quoted(word) + " takes one argument");
+        close(open);
+        return apply(function, argument);
+    }
+
+    [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
+        if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
+            throw ParseError(
+                begin,
+                quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives");
+        std::vector<std::string> known;
+        for (const auto& [word, function] : functions) known.emplace_back(word);
+        if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
+            const std::string hint = bare == "ln" ? "; did you mean 'log'?" : did_you_mean(bare, known);
+            throw ParseError(begin, "unknown function " + quoted(full) + hint);
+        }
+        for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
+        known.emplace_back("pi");
+        throw ParseError(begin, "unknown name " + quoted(full) + did_you_mean(full, known));
+    }
+
+    std::string_view text_;
+    const Scope& scope_;
+    Graph& graph_;
+    std::size_t at_ = 0;
+    int depth_ = 0;
+};
+
+}  // namespace
+
+Expression parse(std::string_view text, const Scope& scope, Graph& graph) { return Parser(text, scope, graph).whole(); }
+
+bool is_reserved(std::string_view name) {
+    const auto is_name_of = [&](const auto& entry) { return entry.first == name; };
+    return std::find(reserved.begin(), reserved.end(), name) != reserved.end() ||
+           std::find(not_smooth.begin(), not_smooth.end(), name) != not_smooth.end() ||
+           std::find_if(functions.begin(), functions.end(), is_name_of) != functions.end();
+}
+
+bool is_name(std::string_view text) {
+    return !text.empty() && is_letter(text.front()) && std::all_of(text.begin(), text.end(), is_name_part);
+}
+
+}  // namespace achilles

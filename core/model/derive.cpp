@@ -1,0 +1,103 @@
+#include "model/derive.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Row = std::vector<Expression>;
+
+// M = L D L' with unit lower triangular L. Square roots are not needed and zeros stay zeros.
+class Factorisation {
+ public:
+    Factorisation(const Row& M, std::size_t n, Graph& graph) : n_(n), lower_(n * n, graph.number(0)), pivots_(n) {
+        for (std::size_t j = 0; j < n; ++j) {
+            pivots_[j] = M[j * n + j];
+            for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - power(lower_[j * n + k], 2) * pivots_[k];
+            for (std::size_t i = j + 1; i < n; ++i) {
+                Expression entry = M[i * n + j];
+                for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
+                lower_[i * n + j] = entry / pivots_[j];
+            }
+        }
+    }
+
+    const Row& pivots() const { return pivots_; }
+
+    // M^-1 right
+    Row solve(Row x) const {
+        for (std::size_t i = 0; i < n_; ++i)
+            for (std::size_t k = 0; k < i; ++k) x[i] = x[i] - lower_[i * n_ + k] * x[k];
+        for (std::size_t i = 0; i < n_; ++i) x[i] = x[i] / pivots_[i];
+        for (std::size_t i = n_; i-- > 0;)
+            for (std::size_t k = i + 1; k < n_; ++k) x[i] = x[i] - lower_[k * n_ + i] * x[k];
+        return x;
+    }
+
+ private:
+    std::size_t n_;
+    Row lower_, pivots_;
+};
+
+Expression dot(const Row& a, const Row& b, Graph& graph) {
+    Expression sum = graph.number(0);
+    for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
+    return sum;
+}
+
+// b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i
+Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std::uint32_t>& q, Graph& graph) {
+    const std::size_t n = v.size();
+    std::vector<Row> dM;  // dM[i n + j][k] = dM_ij/dq_k
+    for (const Expression entry : M) dM.push_back(gradient(entry, q));
+    Row b = gradient(potential, q);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) {
+            Expression inner = graph.number(0);
+            for (std::size_t k = 0; k < n; ++k)
+                inner = inner + (dM[i * n + j][k] - graph.number(1, 2) * dM[j * n + k][i]) * v[k];
+            b[i] = b[i] + inner * v[j];
+        }
+    }
+    return b;
+}
+
+}  // namespace
+
+void derive(Equations& e, const Layout& layout, Graph& graph) {
+    const std::size_t n = layout.n;
+    std::vector<std::uint32_t> q_slots, v_slots;
+    Row v;
+    for (std::size_t i = 0; i < n; ++i) {
+        q_slots.push_back(layout.q(i));
+        v_slots.push_back(layout.v(i));
+        v.push_back(graph.symbol(layout.v(i)));
+    }
+    const Factorisation mass(e.M, n, graph);
+    e.pivots = mass.pivots();
+    e.bias = bias(e.M, e.potential, v, q_slots, graph);
+    e.f = mass.solve(e.bias);
+    for (Expression& f : e.f) f = -f;
+
+    e.g = gradient(e.gap, q_slots);
+    e.hdot = dot(e.g, v, graph);
+    Expression curvature = graph.number(0);  // v'Hv
+    for (std::size_t i = 0; i < n; ++i) {
+        const Row row = gradient(e.g[i], q_slots);
+        e.H.insert(e.H.end(), row.begin(), row.end());
+        curvature = curvature + v[i] * dot(row, v, graph);
+    }
+    const Row impulse = mass.solve(e.g);  // M^-1 g'
+    e.W = dot(e.g, impulse, graph);
+    for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : u / e.W);
+
+    e.hddot = curvature + dot(e.g, e.f, graph);
+    e.lambda = -(e.hddot / e.W);
+    for (std::size_t i = 0; i < n; ++i) {
+        e.f_c.push_back(e.f[i] - e.n[i] * e.hddot);
+        e.s.push_back(v[i] - e.n[i] * e.hdot);
+    }
+    e.energy = e.kinetic + e.potential;
+    e.jerk = dot(gradient(e.hddot, q_slots), v, graph) + dot(gradient(e.hddot, v_slots), e.f_c, graph);
+}
+
+}  // namespace achilles

@@ -1,0 +1,40 @@
+// The equations of motion from T, V, h and e, symbolically (THEORY section 1).
+#pragma once
+
+#include <vector>
+
+#include "expression/expression.hpp"
+
+namespace achilles {
+
+// Where each input of a program stands: q (n), v (n), the parameters (p), then t, contact, sigma and a drawn curve's
+// own.
+struct Layout {
+    std::uint32_t n = 0, p = 0;  // coordinates, parameters
+    std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
+    std::uint32_t v(std::size_t i) const { return n + static_cast<std::uint32_t>(i); }
+    std::uint32_t parameter(std::size_t i) const { return 2 * n + static_cast<std::uint32_t>(i); }
+    std::uint32_t t() const { return 2 * n + p; }
+    std::uint32_t contact() const { return 2 * n + p + 1; }  // 1 in contact, 0 in flight
+    std::uint32_t sigma() const { return 2 * n + p + 2; }    // stands for hdot where v = s + n sigma
+    std::uint32_t own() const { return 2 * n + p + 3; }      // a drawn curve's own parameter
+    std::uint32_t count() const { return 2 * n + p + 4; }
+};
+
+// The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.
+struct Equations {
+    std::vector<Expression> M, bias, f, g, H, n, s, f_c;
+    Expression kinetic, potential, gap, restitution;
+    Expression W, hdot, hddot, lambda, energy;
+    Expression jerk;                 // h''': the rate of hddot along the constrained motion
+    std::vector<Expression> pivots;  // D of M = L D L': all positive exactly where M is positive definite
+};
+
+// Completes equations whose M, kinetic, potential, gap and restitution are set.
+//     M(q) a + b(q,v) = 0,   b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i,   f = -M^-1 b
+//     g = dh,  W = g M^-1 g',  n = M^-1 g'/W,  hddot = v'Hv + g f,  lambda = -hddot/W,  f_c = f - n hddot,  s = v - n
+//     hdot
+// M^-1 is applied through an L D L' factorisation unrolled in the graph.
+void derive(Equations& equations, const Layout& layout, Graph& graph);
+
+}  // namespace achilles

@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/model.hpp"
+#include "output/output.hpp"
+
+namespace achilles {
+
+namespace {
+
+// The shortest form that reads back the same double; empty where it is not finite.
+void append(std::string& row, double x) {
+    row += ',';
+    if (std::isfinite(x)) fmt::format_to(std::back_inserter(row), "{}", x + 0.0);
+}
+
+}  // namespace
+
+std::string to_csv(const Trajectory& trajectory) {
+    const Model& model = *trajectory.model;
+    const auto n = static_cast<std::size_t>(model.n());
+    std::string text = "t,phase";
+    for (std::size_t i = 0; i < 2 * n; ++i) text += "," + model.slot_names()[i];
+    text += ",gap,gap rate,lambda,energy,j\n";
+
+    auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
+    auto force = model.evaluator(model.force(), trajectory.run.parameters);
+    auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
+    for (const Sample& sample : Sampler(trajectory).all()) {
+        for (auto* program : {&surface, &force, &energy}) {
+            put(*program, sample.state);
+            program->run();
+        }
+        fmt::format_to(std::back_inserter(text), "{},{}", sample.t + 0.0, to_text(sample.phase));
+        for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.q[i]);
+        for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.v[i]);
+        append(text, surface.output(0));
+        append(text, surface.output(1));
+        append(text, sample.contact ? force.output(0) : 0.0);
+        append(text, energy.output(0));
+        fmt::format_to(std::back_inserter(text), ",{}\n", sample.j);
+    }
+    return text;
+}
+
+}  // namespace achilles

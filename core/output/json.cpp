@@ -1,0 +1,133 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "model/model.hpp"
+#include "output/output.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers print in the shortest form that reads back the same double; what is not finite is null.
+Json number(double x) { return std::isfinite(x) ? Json(x + 0.0) : Json(nullptr); }
+Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+
+Json list(const Vector& x) {
+    Json result = Json::array();
+    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number(x[i]));
+    return result;
+}
+
+Json system_of(const Trajectory& trajectory) {
+    const SystemDescription& description = trajectory.model->description();
+    Json coordinates = Json::array(), parameters = Json::object();
+    for (const auto& coordinate : description.coordinates) coordinates.push_back(coordinate.name);
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        parameters[description.parameters[i].name] = number(trajectory.run.parameters[i]);
+    return {{"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}};
+}
+
+Json options_of(const Options& options) {
+    const Truncation& t = options.truncation;
+    return {{"method", to_text(options.method)},
+            {"tolerance", number(options.tolerance)},
+            {"end_time", number(options.end_time)},
+            {"max_impacts", options.max_impacts},
+            {"conditions", to_text(t.conditions)},
+            {"reinitialization", to_text(t.reinitialization)},
+            {"eps_q", number(t.eps_q)},
+            {"eps_v", number(t.eps_v)},
+            {"eps_t", number(t.eps_t)}};
+}
+
+Json certificate_of(const Certificate& c) {
+    Json result = {{"certified", c.certified},
+                   {"conditions", to_text(c.conditions)},
+                   {"reinitialization", to_text(c.reinitialization)},
+                   {"below_rounding", c.below_rounding},
+                   {"zeno_time", {number(c.zeno_low), number(c.zeno_high)}},
+                   {"position_bound", number(c.position_bound)},
+                   {"velocity_bound", number(c.velocity_bound)},
+                   {"shadowing_position", number(c.shadowing_position)},
+                   {"shadowing_velocity", number(c.shadowing_velocity)},
+                   {"a_min", number(c.a_min)},
+                   {"a_max", number(c.a_max)},
+                   {"decisive", c.decisive}};
+    if (c.paper) {
+        const Certificate::Paper& p = *c.paper;
+        result.update({{"e1", number(p.e1)},
+                       {"e2", number(p.e2)},
+                       {"beta", number(p.beta)},
+                       {"eta", number(p.eta)},
+                       {"zeta", number(p.zeta)},
+                       {"c1", number(p.c1)},
+                       {"c2", number(p.c2)},
+                       {"c3", number(p.c3)}});
+    }
+    Json inequalities = Json::array();
+    for (const Inequality& inequality : c.inequalities)
+        inequalities.push_back(
+            {{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
+    result["inequalities"] = inequalities;
+    return result;
+}
+
+Json event_of(const Event& event) {
+    Json result = {{"kind", to_text(event.kind)}, {"t", number(event.t)}, {"q", list(event.q)}};
+    if (event.kind == Event::Kind::impact) {
+        result["v_before"] = list(event.v_before);
+        result["v_after"] = list(event.v_after);
+        result["impact_speed"] = number(event.impact_speed);
+    } else {
+        result["v"] = list(event.v_after);
+    }
+    if (event.kind == Event::Kind::zeno) result["impacts"] = event.impacts;
+    if (event.truncation)
+        result["truncation"] = {{"t", number(event.truncation->t)},
+                                {"q", list(event.truncation->q)},
+                                {"v_before", list(event.truncation->v_before)},
+                                {"v", list(event.truncation->v)},
+                                {"impact_speed", number(event.truncation->impact_speed)}};
+    if (event.certificate) result["certificate"] = certificate_of(*event.certificate);
+    return result;
+}
+
+}  // namespace
+
+std::string version() { return ACHILLES_VERSION; }
+
+std::string to_json(const Trajectory& trajectory) {
+    Json phases = Json::array(), events = Json::array();
+    for (const Phase& phase : trajectory.phases)
+        phases.push_back({{"kind", to_text(phase.kind)},
+                          {"start", number(phase.start)},
+                          {"end", number(phase.end)},
+                          {"impacts", phase.impacts}});
+    for (const Event& event : trajectory.events) events.push_back(event_of(event));
+    const Statistics& s = trajectory.statistics;
+    const Json result = {
+        {"achilles", version()},
+        {"system", system_of(trajectory)},
+        {"options", options_of(trajectory.run.options)},
+        {"phases", phases},
+        {"events", events},
+        {"end",
+         {{"t", number(trajectory.end_time)},
+          {"q", list(trajectory.end.q)},
+          {"v", list(trajectory.end.v)},
+          {"phase", to_text(trajectory.end_phase)}}},
+        {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
+        {"statistics",
+         {{"steps", s.steps},
+          {"evaluations", s.evaluations},
+          {"impacts", s.impacts},
+          {"energy_drift", number(s.energy_drift)},
+          {"least_gap", number(s.least_gap)},
+          {"seconds", number(s.seconds)}}}};
+    // Invalid UTF-8 in a title is replaced, never an exception.
+    return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace achilles

@@ -1,0 +1,106 @@
+#include <fmt/format.h>
+
+#include "model/model.hpp"
+#include "output/output.hpp"
+
+namespace achilles {
+
+namespace {
+
+// "x = 1.5, y = 2" for a state's coordinates.
+std::string named(const Model& model, const Vector& q) {
+    std::string text;
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+        text += fmt::format("{}{} = {:.9g}", i == 0 ? "" : ", ", model.slot_names()[static_cast<std::size_t>(i)],
+                            q[i] + 0.0);
+    return text;
+}
+
+// As many digits as tell the ends of the interval apart, and two more.
+std::string interval(double low, double high) {
+    int digits = 8;
+    while (digits < 17 && fmt::format("{:.{}g}", low, digits - 2) == fmt::format("{:.{}g}", high, digits - 2)) ++digits;
+    return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
+}
+
+std::string impact_lines(const std::vector<const Event*>& impacts) {
+    constexpr std::size_t shown_first = 4, shown_last = 1;
+    std::string text;
+    for (std::size_t i = 0; i < impacts.size(); ++i) {
+        const std::size_t left = impacts.size() - i;
+        if (i == shown_first && left > shown_last + 1) {
+            text += fmt::format("  ...       {} more impacts\n", left - shown_last);
+            i = impacts.size() - shown_last;
+        }
+        text += fmt::format("  impact    t = {:<16.10g} speed {:.6g}\n", impacts[i]->t, impacts[i]->impact_speed);
+    }
+    return text;
+}
+
+std::string event_line(const Model& model, const Event& event) {
+    std::string text = fmt::format("  {:<9} t = {:<16.10g} {}\n", to_text(event.kind), event.t, named(model, event.q));
+    if (event.kind == Event::Kind::zeno)
+        text += fmt::format("            after {} impacts, cut short at t = {:.10g}, speed {:.3g}\n", event.impacts,
+                            event.truncation->t, event.truncation->impact_speed);
+    if (event.certificate) text += "            " + sentence(*event.certificate) + "\n";
+    return text;
+}
+
+}  // namespace
+
+std::string sentence(const Certificate& c) {
+    if (!c.certified) return "not certified";
+    std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}",
+                                   interval(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
+    if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g}", c.zeno_low);
+    if (c.shadowing_position && *c.shadowing_position > 0.0)
+        text += fmt::format("; at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
+                            *c.shadowing_position, *c.shadowing_velocity);
+    text += (c.position_bound == 0.0 ? "; " : "; decided by ") + c.decisive;
+    if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
+    return text;
+}
+
+std::string summary(const Trajectory& trajectory) {
+    const Model& model = *trajectory.model;
+    const Options& o = trajectory.run.options;
+    std::string text = fmt::format("{}\n", model.description().title);
+    text +=
+        fmt::format("  {}, tolerance {:g}, {} conditions, {} re-initialization, eps_q {:g}, eps_v {:g}, eps_t {:g}\n\n",
+                    to_text(o.method), o.tolerance, to_text(o.truncation.conditions),
+                    to_text(o.truncation.reinitialization), o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t);
+    std::vector<const Event*> impacts;
+    std::size_t next = 0;
+    for (const Phase& phase : trajectory.phases) {
+        text += fmt::format("{} phase, t = {:.10g} to {:.10g}\n", to_text(phase.kind), phase.start, phase.end);
+        // A phase's events end with the one that ends the phase.
+        for (bool open = true; open && next < trajectory.events.size(); ++next) {
+            const Event& event = trajectory.events[next];
+            open = event.kind == Event::Kind::impact;
+            if (open) {
+                impacts.push_back(&event);
+            } else {
+                text += impact_lines(impacts) + event_line(model, event);
+                impacts.clear();
+            }
+        }
+    }
+    text += impact_lines(impacts);
+    const Statistics& s = trajectory.statistics;
+    text += fmt::format("\nend at t = {:.10g}, {}: {}; rates", trajectory.end_time, to_text(trajectory.end_phase),
+                        named(model, trajectory.end.q));
+    for (Eigen::Index i = 0; i < trajectory.end.v.size(); ++i)
+        text += fmt::format(" {:.9g}", trajectory.end.v[i] + 0.0);
+    text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
+    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift {:.2g}, least gap {:.2g}\n", s.impacts,
+                        s.steps, s.evaluations, s.energy_drift, s.least_gap);
+    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(),
+                                       [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    if (completed)
+        text +=
+            "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"
+            "errors of several truncations add up.\n";
+    return text;
+}
+
+}  // namespace achilles

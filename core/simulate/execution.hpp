@@ -1,0 +1,71 @@
+// The parts of the completed execution that simulate() calls in turn: flight, impact, completion, contact, release.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "certify/truncation.hpp"
+#include "simulate/flow.hpp"
+#include "simulate/impact.hpp"
+#include "simulate/recorder.hpp"
+
+namespace achilles {
+
+class Execution {
+ public:
+    Execution(std::shared_ptr<const Model> model, const Run& run);
+
+    // Decides how the run starts: in flight, in contact, or at an impact.
+    void begin();
+    bool running() const { return !outcome_; }
+    bool constrained() const { return constrained_; }
+
+    // Free motion to the next impact (or the end time), and that impact: Newton's law, or completion.
+    void fly_to_impact();
+    // Motion on the surface until the contact force vanishes (or the end time), and the release.
+    void stay_until_release();
+
+    Trajectory finish();
+
+ private:
+    // How the gap leaves zero at the start of a flight: h, hdot, and how many of h, hdot, hddot are zero there.
+    struct Takeoff {
+        Flow::Gap gap;
+        int multiplicity = 0;
+    };
+
+    void start_in_contact(const Surface::Normal& normal);
+    Polynomial gap_along();
+    bool find_impact();
+    bool locate_impact(double theta);
+    void land();
+    void bounce(const Contact& contact, double e);
+    bool too_short_to_resolve(const Collision& collision, double e);
+    void complete(const Collision& collision, Certificate certificate);
+    void capture(const Collision& collision);
+    bool stay(double until);
+    bool locate_release(double theta);
+    void release();
+
+    bool advance(double longest);
+    void take(double gap);
+    void leave(Flow::Obstacle obstacle);
+    void stop(Outcome::Kind kind, std::string message);
+
+    std::shared_ptr<const Model> model_;
+    Run run_;
+    Flow flow_;
+    Surface surface_;
+    std::unique_ptr<TruncationConditions> conditions_;
+    Recorder record_;
+    double restitution_;
+    double t_ = 0.0;
+    State state_;
+    Takeoff takeoff_;
+    double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
+    bool constrained_ = false;
+    bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
+    std::optional<Outcome> outcome_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,90 @@
+#include "simulate/impact.hpp"
+
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+// A computed number stands for every number within this relative distance.
+Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
+
+}  // namespace
+
+Vector impact(const Contact& contact, const Vector& v_before, double e) {
+    return v_before - (1.0 + e) * contact.hdot * contact.n;
+}
+
+Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind) {
+    if (kind == Reinitialization::kinetic) return v_before - contact.hdot * contact.n;
+    return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
+}
+
+Surface::Surface(const Model& model, const Run& run)
+    : n_(static_cast<std::size_t>(model.n())),
+      surface_(model.evaluator(model.surface(), run.parameters)),
+      release_(model.evaluator(model.release(), run.parameters)),
+      gap_(model.evaluator<Interval>(model.gap(), run.parameters)),
+      surface_enclosure_(model.evaluator<Interval>(model.surface(), run.parameters)),
+      release_enclosure_(model.evaluator<Interval>(model.release(), run.parameters)) {}
+
+Contact Surface::at(const State& state) {
+    put(surface_, state);
+    surface_.run();
+    Contact contact{surface_.output(0), surface_.output(1), surface_.output(2 + 2 * n_), state.q, state.q};
+    for (std::size_t i = 0; i < n_; ++i) {
+        contact.n[static_cast<Eigen::Index>(i)] = surface_.output(2 + i);
+        contact.g[static_cast<Eigen::Index>(i)] = surface_.output(2 + n_ + i);
+    }
+    return contact;
+}
+
+double Surface::gap_error(const State& state) {
+    for (std::size_t i = 0; i < n_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
+    gap_.run();
+    return rad(gap_.output(0));
+}
+
+double Surface::hdot_error(const State& state) {
+    put(surface_enclosure_, state);
+    surface_enclosure_.run();
+    return rad(surface_enclosure_.output(1));
+}
+
+std::optional<State> Surface::project(State state, bool keep_velocity) {
+    constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
+    for (int round = 0; round <= rounds; ++round) {
+        const Contact contact = at(state);
+        if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
+        if (std::abs(contact.h) <= gap_error(state) * (round < rounds ? 1.0 : 4.0)) {
+            if (!keep_velocity) state.v -= contact.hdot * contact.n;
+            return state;
+        }
+        state.q -= contact.h * contact.n;
+    }
+    return std::nullopt;
+}
+
+Surface::Normal Surface::normal(const State& state) {
+    constexpr double few_ulps = 0x1p-50;
+    for (std::size_t i = 0; i < n_; ++i) {
+        release_enclosure_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
+        release_enclosure_.input(n_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
+    }
+    release_enclosure_.run();
+    return {release_enclosure_.output(0), release_enclosure_.output(1)};
+}
+
+double Surface::normal_acceleration(const State& state) {
+    put(release_, state);
+    release_.run();
+    return release_.output(0);
+}
+
+double Surface::jerk(const State& state) {
+    put(release_, state);
+    release_.run();
+    return release_.output(1);
+}
+
+}  // namespace achilles

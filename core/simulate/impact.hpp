@@ -1,0 +1,53 @@
+// The surface h(q) = 0 and what happens on it: Newton's law, the tangential velocity, projection, re-initialisation.
+#pragma once
+
+#include <optional>
+
+#include "model/model.hpp"
+#include "number/interval.hpp"
+#include "trajectory.hpp"
+
+namespace achilles {
+
+// The contact quantities at one state (THEORY section 1).
+struct Contact {
+    double h = 0.0, hdot = 0.0, W = 0.0;
+    Vector n;  // M^-1 g'/W, so that g n = 1: the direction of every impulse
+    Vector g;  // dh, as a column
+};
+
+// Newton's impact law: the normal velocity is reversed and scaled, the rest is kept.
+//     v+ = v- - (1 + e) hdot n     (paper (4)).    Law: kinetic energy never rises for 0 <= e <= 1.
+Vector impact(const Contact& contact, const Vector& v_before, double e);
+
+// Where the constrained execution restarts.  kinetic: s = v - n hdot;  euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
+Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);
+
+// Evaluates contact quantities for one run.
+class Surface {
+ public:
+    Surface(const Model& model, const Run& run);
+
+    Contact at(const State& state);
+    // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
+    double gap_error(const State& state);
+    // The same for hdot.
+    double hdot_error(const State& state);
+    // Moves q along n until |h| is at rounding level, then v to s (kept = false) or not at all (kept = true).
+    // Returns nothing where that fails: dh = 0, or h cannot be brought to zero.
+    std::optional<State> project(State state, bool keep_velocity);
+    // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
+    struct Normal {
+        Interval hddot, jerk;
+    };
+    Normal normal(const State& state);
+    double normal_acceleration(const State& state);
+    double jerk(const State& state);
+
+ private:
+    std::size_t n_;
+    Evaluator<double> surface_, release_;
+    Evaluator<Interval> gap_, surface_enclosure_, release_enclosure_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,66 @@
+#include "simulate/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run)
+    : energy_(model->evaluator(model->energy(), run.parameters)) {
+    trajectory_.model = std::move(model);
+    trajectory_.run = run;
+}
+
+void Recorder::open(Phase::Kind kind, double t) {
+    Phase phase;
+    phase.kind = kind;
+    phase.start = phase.end = t;
+    phase.first_piece = phase.last_piece = trajectory_.pieces.size();
+    trajectory_.phases.push_back(phase);
+}
+
+void Recorder::close(double t) {
+    trajectory_.phases.back().end = t;
+    trajectory_.phases.back().last_piece = trajectory_.pieces.size();
+}
+
+void Recorder::stretch(const State& state) {
+    put(energy_, state);
+    energy_.run();
+    reference_ = energy_.output(0);
+}
+
+void Recorder::step(const Flow& flow, double gap) {
+    trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
+    Statistics& statistics = trajectory_.statistics;
+    ++statistics.steps;
+    statistics.least_gap = any_gap_ ? std::min(statistics.least_gap, gap) : gap;
+    any_gap_ = true;
+    put(energy_, flow.end());
+    energy_.run();
+    // Relative to the parts, of which the sum may cancel to nothing.
+    const double scale = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
+    if (scale > 0.0)
+        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.output(0) - reference_) / scale);
+}
+
+void Recorder::event(Event event) {
+    if (event.kind == Event::Kind::impact) {
+        ++trajectory_.statistics.impacts;
+        ++trajectory_.phases.back().impacts;
+    }
+    if (event.kind == Event::Kind::zeno) event.impacts = trajectory_.phases.back().impacts;
+    trajectory_.events.push_back(std::move(event));
+}
+
+Trajectory Recorder::finish(double t, const State& state, Outcome outcome, long evaluations) {
+    close(t);
+    trajectory_.end_time = t;
+    trajectory_.end = state;
+    trajectory_.end_phase = phase();
+    trajectory_.outcome = std::move(outcome);
+    trajectory_.statistics.evaluations = evaluations;
+    return std::move(trajectory_);
+}
+
+}  // namespace achilles

@@ -1,0 +1,35 @@
+// Writes a trajectory while it happens: pieces, phases, events, statistics.
+#pragma once
+
+#include "model/model.hpp"
+#include "simulate/flow.hpp"
+#include "trajectory.hpp"
+
+namespace achilles {
+
+class Recorder {
+ public:
+    Recorder(std::shared_ptr<const Model> model, const Run& run);
+
+    void open(Phase::Kind kind, double t);
+    void close(double t);
+    Phase::Kind phase() const { return trajectory_.phases.back().kind; }
+
+    // A smooth stretch begins: the energy at its start is what later ends of steps are compared with.
+    void stretch(const State& state);
+    // The flow's last step, as it stands; `gap` is h at its end.
+    void step(const Flow& flow, double gap);
+    void event(Event event);
+    long impacts() const { return trajectory_.statistics.impacts; }
+
+    // Ends the run. The recorder is empty afterwards.
+    Trajectory finish(double t, const State& state, Outcome outcome, long evaluations);
+
+ private:
+    Trajectory trajectory_;
+    Evaluator<double> energy_;
+    double reference_ = 0.0;  // the energy at the start of the stretch
+    bool any_gap_ = false;
+};
+
+}  // namespace achilles

@@ -1,0 +1,28 @@
+// The mechanism at one instant, as data: shapes already evaluated, in world coordinates. No ImGui here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "figure/figure.hpp"
+
+namespace achilles {
+
+struct Shape {
+    enum class Kind { disc, polyline, text };
+    Kind kind = Kind::polyline;
+    std::vector<Point> points;  // world; disc and text: one point, the centre. A NaN point breaks a polyline
+    double radius = 0.0;        // disc, in world units
+    std::string text;           // UTF-8
+    Stroke stroke;              // outline, and the colour of a text; width 0: no outline
+    bool fill = false;          // disc, closed polyline
+    Color fill_color;
+    bool closed = false;  // polyline: the last point is joined to the first
+};
+
+struct Drawing {
+    std::vector<Shape> shapes;                                      // painted in this order
+    double x_low = -1.0, x_high = 1.0, y_low = -1.0, y_high = 1.0;  // the world that must be visible
+};
+
+}  // namespace achilles

@@ -1,0 +1,39 @@
+// The mechanism that a system file draws, evaluated at a state.
+#pragma once
+
+#include <span>
+
+#include "figure/drawing.hpp"
+#include "figure/palette.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+class Mechanism {
+ public:
+    // Compiles every [[drawing]]. Where the file has none: a disc and the zero line of the gap for coordinates x and y,
+    // else a note. Throws InputError for an expression that is none. Refers to the model.
+    explicit Mechanism(const Model& model);
+
+    // The shapes at a state, within given limits (see limits()).
+    Drawing draw(const State& state, std::span<const double> parameters, const Drawing& limits,
+                 const Theme& theme) const;
+
+    // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
+    Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
+
+ private:
+    struct Item {
+        DrawingDescription description;
+        Program program;  // its points' x and y, then radius or limits of the curve's parameter, then width
+        bool moves = false;
+    };
+    std::vector<Point> points(const Item& item, const State& state, std::span<const double> parameters) const;
+    std::vector<Point> zero_line(std::span<const double> parameters, const Drawing& limits) const;
+
+    const Model& model_;
+    std::vector<Item> items_;
+    bool plane_ = false;  // no drawing, but coordinates x and y
+};
+
+}  // namespace achilles

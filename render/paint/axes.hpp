@@ -1,0 +1,54 @@
+// The axes of one panel: how much room they need around the plot area, and the strokes.
+#pragma once
+
+#include "figure/figure.hpp"
+#include "paint/paint.hpp"
+
+namespace achilles {
+
+// The lengths a panel is built from, in pixels, all from the text size and the scale.
+struct Metrics {
+    Metrics(const Figure& style, double scale);
+    float text;  // height of a line
+    float tick;  // outside the box
+    float minor_tick;
+    float gap;   // between a tick and its label, a label and its neighbour
+    float line;  // thickness of box, ticks and grid: whole pixels
+    double scale;
+};
+
+// Room outside the plot area.
+struct Margins {
+    float left = 0, right = 0, top = 0, bottom = 0;
+};
+Margins margins(const Panel& panel, const Metrics& metrics);
+// Room for either.
+Margins both(const Margins& a, const Margins& b);
+
+// From data to pixels along one axis; not finite where the axis has no place for the value.
+class AxisMap {
+ public:
+    // `from` is the pixel of axis.low, `to` of axis.high.
+    AxisMap(const Axis& axis, double from, double to);
+    double operator()(double value) const;
+    // From pixels back to data, for the mouse.
+    double value(double pixel) const;
+
+ private:
+    bool logarithmic_;
+    double low_, factor_, from_;
+};
+
+struct PanelMap {
+    PanelMap(const Panel& panel, Rectangle plot);
+    AxisMap x, y;
+    Point operator()(const Point& data) const { return {x(data.x), y(data.y)}; }
+    Point data(const Point& pixel) const { return {x.value(pixel.x), y.value(pixel.y)}; }
+};
+
+void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& metrics);
+// Box, ticks, all labels and the title, in the room of the margins.
+void paint_axes(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& margins,
+                const Metrics& metrics);
+
+}  // namespace achilles

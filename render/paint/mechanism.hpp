@@ -1,0 +1,22 @@
+// The mechanism onto an ImGui draw list: strokes only, no memory.
+#pragma once
+
+#include "figure/drawing.hpp"
+#include "paint/paint.hpp"
+
+namespace achilles {
+
+// Where the world went: pixel = (x + unit * X, y - unit * Y).
+struct Placement {
+    double x = 0.0, y = 0.0, unit = 1.0;
+    Point pixel(const Point& world) const { return {x + unit * world.x, y - unit * world.y}; }
+    Point world(const Point& pixel) const { return {(pixel.x - x) / unit, (y - pixel.y) / unit}; }
+};
+
+// The largest placement with equal axes that shows the drawing's limits in the middle of the area.
+Placement place(const Drawing& drawing, Rectangle area);
+
+// Draws the shapes, clipped to the area; scale multiplies text sizes and stroke widths.
+Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale = 1.0);
+
+}  // namespace achilles

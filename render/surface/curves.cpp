@@ -1,0 +1,205 @@
+#include "surface/curves.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "surface/polyline.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Beyond what 8-bit coverage can show along a straight edge (0.05 px is 13 of 255 at the rim of a stroke).
+constexpr double thinning_tolerance = 0.05;
+
+// Before its points a curve keeps two vertices of its own in the list: the bounding box and colour, then the width and
+// the number of points.
+constexpr std::size_t header_vertices = 2;
+
+// A vertex's uv.x: whether the edge to the next vertex is drawn.
+constexpr float pen_down = 1.0F, pen_up = 0.0F;
+
+// Marks a command as a curve. Another renderer would call it, and draw no curve.
+void curve_mark(const ImDrawList*, const ImDrawCmd*) {}
+
+const char* edge_vertex = R"(#version 330 core
+layout(location = 0) in vec2 from;
+layout(location = 1) in vec2 to;
+layout(location = 2) in float pen;
+uniform vec4 region;   // origin in pixels, size in mask pixels
+uniform vec2 stroke;   // half width in mask pixels, mask pixels per pixel
+flat out vec2 a, b;
+void main() {
+    a = (from - region.xy) * stroke.y;
+    b = (to - region.xy) * stroke.y;
+    vec2 d = b - a;
+    float l = length(d);
+    d = l > 1e-6 ? d / l : vec2(1.0, 0.0);
+    float reach = stroke.x + 1.0;
+    vec2 p = (gl_VertexID & 1) == 0 ? a - reach * d : b + reach * d;
+    p += ((gl_VertexID & 2) == 0 ? reach : -reach) * vec2(-d.y, d.x);
+    gl_Position = pen > 0.5 ? vec4(2.0 * p / region.zw - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+})";
+
+// Coverage of a pixel by a stroke with round ends: the overlap of the stroke's width with the pixel's, both along the
+// line from the nearest point of the edge. Right for strokes thinner than a pixel too.
+const char* edge_fragment = R"(#version 330 core
+flat in vec2 a, b;
+uniform vec2 stroke;
+layout(location = 0) out vec4 coverage;
+void main() {
+    vec2 p = gl_FragCoord.xy - a, d = b - a;
+    float t = clamp(dot(p, d) / max(dot(d, d), 1e-12), 0.0, 1.0);
+    float r = length(p - t * d);
+    coverage = vec4(clamp(min(r + 0.5, stroke.x) - max(r - 0.5, -stroke.x), 0.0, 1.0), 0.0, 0.0, 1.0);
+})";
+
+const char* overlay_vertex = R"(#version 330 core
+void main() {
+    gl_Position = vec4((gl_VertexID & 1) == 0 ? -1.0 : 1.0, (gl_VertexID & 2) == 0 ? -1.0 : 1.0, 0.0, 1.0);
+})";
+
+const char* overlay_fragment = R"(#version 330 core
+uniform sampler2D mask;
+uniform vec2 origin;
+uniform int fineness;
+uniform vec4 ink;
+layout(location = 0) out vec4 color;
+void main() {
+    ivec2 first = (ivec2(gl_FragCoord.xy) - ivec2(origin)) * fineness;
+    float sum = 0.0;
+    for (int j = 0; j < fineness; ++j)
+        for (int i = 0; i < fineness; ++i) sum += texelFetch(mask, first + ivec2(i, j), 0).r;
+    color = vec4(ink.rgb, ink.a * sum / float(fineness * fineness));
+})";
+
+ImVec2 vec(const Point& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
+
+}  // namespace
+
+void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenStroke& stroke) {
+    if (!(stroke.width > 0.0) || stroke.color.a == 0) return;
+    const double margin = stroke.width / 2.0 + 1.0;
+    const ImVec2 clip_low = list->GetClipRectMin(), clip_high = list->GetClipRectMax();
+    const Box box{clip_low.x - margin, clip_low.y - margin, clip_high.x + margin, clip_high.y + margin};
+    const std::vector<Point> points = cut(thinned(pixels, thinning_tolerance), box, stroke.dash, stroke.width / 2.0);
+
+    Box bounds{1e9, 1e9, -1e9, -1e9};
+    for (const Point& p : points) {
+        if (!is_finite(p)) continue;
+        bounds = {std::min(bounds.x_low, p.x), std::min(bounds.y_low, p.y), std::max(bounds.x_high, p.x),
+                  std::max(bounds.y_high, p.y)};
+    }
+    if (bounds.x_low > bounds.x_high) return;
+
+    const auto first = static_cast<std::intptr_t>(list->VtxBuffer.Size);
+    list->AddCallback(curve_mark, reinterpret_cast<void*>(first));
+    list->PrimReserve(0, static_cast<int>(points.size() + header_vertices));
+    const Color& c = stroke.color;
+    list->PrimWriteVtx(vec({bounds.x_low - margin, bounds.y_low - margin}),
+                       vec({bounds.x_high + margin, bounds.y_high + margin}), IM_COL32(c.r, c.g, c.b, c.a));
+    list->PrimWriteVtx(vec({stroke.width, 0.0}), {0.0F, 0.0F}, static_cast<ImU32>(points.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const bool here = is_finite(points[i]), next = i + 1 < points.size() && is_finite(points[i + 1]);
+        list->PrimWriteVtx(here ? vec(points[i]) : ImVec2(0.0F, 0.0F), {here && next ? pen_down : pen_up, 0.0F}, 0);
+    }
+    // No index points at these vertices: what follows counts from behind them, or a long curve would use up 16 bits.
+    list->_CmdHeader.VtxOffset = static_cast<unsigned>(list->VtxBuffer.Size);
+    list->_OnChangedVtxOffset();
+}
+
+bool is_curve(const ImDrawCmd& command) { return command.UserCallback == curve_mark; }
+
+CurvePainter::CurvePainter(const Gl& gl, int fineness) : gl_(gl), fineness_(fineness) {
+    edges_ = gl.program(edge_vertex, edge_fragment);
+    overlay_ = gl.program(overlay_vertex, overlay_fragment);
+    gl.GenVertexArrays(1, &vertices_);
+}
+
+CurvePainter::~CurvePainter() {
+    gl_.DeleteFramebuffers(1, &mask_framebuffer_);
+    gl_.DeleteTextures(1, &mask_);
+    gl_.DeleteVertexArrays(1, &vertices_);
+    gl_.DeleteProgram(overlay_);
+    gl_.DeleteProgram(edges_);
+}
+
+void CurvePainter::draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target) {
+    const auto first = static_cast<int>(reinterpret_cast<std::intptr_t>(command.UserCallbackData));
+    const ImDrawVert& bounds = list.VtxBuffer[first];
+    const ImDrawVert& size = list.VtxBuffer[first + 1];
+    const auto low = [](float a, float b) { return static_cast<int>(std::floor(std::max({a, b, 0.0F}))); };
+    const auto high = [](float a, float b, int c) { return std::min(static_cast<int>(std::ceil(std::min(a, b))), c); };
+    Region region{low(bounds.pos.x, command.ClipRect.x), low(bounds.pos.y, command.ClipRect.y), 0, 0};
+    region.width = high(bounds.uv.x, command.ClipRect.z, target.width) - region.x;
+    region.height = high(bounds.uv.y, command.ClipRect.w, target.height) - region.y;
+    if (region.width <= 0 || region.height <= 0) return;
+
+    const int fineness = std::max(region.width, region.height) * fineness_ <= largest_texture ? fineness_ : 1;
+    reserve_mask(region.width * fineness, region.height * fineness);
+    draw_mask(region, fineness, size.pos.x, static_cast<std::size_t>(first) + header_vertices, size.col, vertex_buffer);
+    composite(region, fineness, bounds.col, target);
+}
+
+void CurvePainter::reserve_mask(int width, int height) {
+    if (width <= mask_width_ && height <= mask_height_) return;
+    mask_width_ = std::max(width, mask_width_);
+    mask_height_ = std::max(height, mask_height_);
+    gl_.DeleteFramebuffers(1, &mask_framebuffer_);
+    gl_.DeleteTextures(1, &mask_);
+    mask_ = gl_.texture(GL_R8, mask_width_, mask_height_, GL_RED, nullptr);
+    mask_framebuffer_ = gl_.framebuffer(mask_);
+}
+
+void CurvePainter::draw_mask(const Region& region, int fineness, double width, std::size_t first, std::size_t points,
+                             GLuint vertex_buffer) {
+    const int mask_width = region.width * fineness, mask_height = region.height * fineness;
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, mask_framebuffer_);
+    gl_.Viewport(0, 0, mask_width, mask_height);
+    gl_.Scissor(0, 0, mask_width, mask_height);
+    gl_.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+    gl_.Clear(GL_COLOR_BUFFER_BIT);
+    gl_.BlendEquation(GL_MAX);
+
+    gl_.UseProgram(edges_);
+    gl_.Uniform4f(gl_.GetUniformLocation(edges_, "region"), static_cast<float>(region.x), static_cast<float>(region.y),
+                  static_cast<float>(mask_width), static_cast<float>(mask_height));
+    gl_.Uniform2f(gl_.GetUniformLocation(edges_, "stroke"), static_cast<float>(width * fineness / 2.0),
+                  static_cast<float>(fineness));
+
+    // One instance per edge: the same vertices, read once from this one and once from the next.
+    gl_.BindVertexArray(vertices_);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer);
+    const auto attribute = [&](GLuint location, GLint components, std::size_t offset) {
+        gl_.EnableVertexAttribArray(location);
+        gl_.VertexAttribPointer(location, components, GL_FLOAT, GL_FALSE, sizeof(ImDrawVert),
+                                reinterpret_cast<const void*>(first * sizeof(ImDrawVert) + offset));
+        gl_.VertexAttribDivisor(location, 1);
+    };
+    attribute(0, 2, offsetof(ImDrawVert, pos));
+    attribute(1, 2, sizeof(ImDrawVert) + offsetof(ImDrawVert, pos));
+    attribute(2, 1, offsetof(ImDrawVert, uv));
+    gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points) - 1);
+    gl_.BlendEquation(GL_FUNC_ADD);
+}
+
+void CurvePainter::composite(const Region& region, int fineness, unsigned color, const Target& target) {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
+    gl_.Viewport(0, 0, target.width, target.height);
+    gl_.Scissor(region.x, region.y, region.width, region.height);
+    gl_.UseProgram(overlay_);
+    gl_.BindTexture(GL_TEXTURE_2D, mask_);
+    gl_.Uniform1i(gl_.GetUniformLocation(overlay_, "mask"), 0);
+    gl_.Uniform1i(gl_.GetUniformLocation(overlay_, "fineness"), fineness);
+    gl_.Uniform2f(gl_.GetUniformLocation(overlay_, "origin"), static_cast<float>(region.x),
+                  static_cast<float>(region.y));
+    const ImVec4 ink = ImGui::ColorConvertU32ToFloat4(color);
+    gl_.Uniform4f(gl_.GetUniformLocation(overlay_, "ink"), ink.x, ink.y, ink.z, ink.w);
+    gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+}  // namespace achilles

@@ -1,0 +1,67 @@
+// Anti-aliased curves inside an ImGui draw list. ImGui's own polylines lose ink and grow spikes at sharp corners, which
+// impacts are; here every edge covers its pixels exactly, overlaps keep the larger coverage, and the whole curve is
+// laid over the picture once.
+//
+// A curve travels in the draw list's vertex buffer behind a callback, so it lives exactly as long as the list does, and
+// a frame needs no memory of its own.
+#pragma once
+
+#include <vector>
+
+#include "figure/figure.hpp"
+#include "surface/gl.hpp"
+
+struct ImDrawCmd;
+struct ImDrawList;
+
+namespace achilles {
+
+// How a curve is stroked, in pixels. The dashes count from the first point along the whole curve.
+struct ScreenStroke {
+    Color color;
+    double width = 1.5;
+    std::vector<double> dash;
+};
+
+// Draws a polyline given in pixels, breaking at points that are not finite, inside the list's current clip rectangle.
+void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenStroke& stroke);
+
+// Whether the command was made by add_curve.
+bool is_curve(const ImDrawCmd& command);
+
+// Where a frame goes.
+struct Target {
+    GLuint framebuffer = 0;
+    int width = 0, height = 0;
+};
+
+// The graphics side: the mask and its two programs.
+class CurvePainter {
+ public:
+    // `fineness` 2: the mask has twice the resolution and is averaged down.
+    CurvePainter(const Gl& gl, int fineness);
+    ~CurvePainter();
+    CurvePainter(const CurvePainter&) = delete;
+    CurvePainter& operator=(const CurvePainter&) = delete;
+
+    // Draws the curve of one command; the list's vertices are in `vertex_buffer`. Leaves the target bound, everything
+    // else about the state changed.
+    void draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target);
+
+ private:
+    struct Region {
+        int x, y, width, height;  // pixels, from the top left
+    };
+    void reserve_mask(int width, int height);
+    void draw_mask(const Region& region, int fineness, double width, std::size_t first, std::size_t points,
+                   GLuint vertex_buffer);
+    void composite(const Region& region, int fineness, unsigned color, const Target& target);
+
+    const Gl& gl_;
+    int fineness_;
+    GLuint edges_ = 0, overlay_ = 0, vertices_ = 0;
+    GLuint mask_ = 0, mask_framebuffer_ = 0;
+    int mask_width_ = 0, mask_height_ = 0;
+};
+
+}  // namespace achilles

@@ -1,0 +1,164 @@
+#include "surface/draw_data.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace achilles {
+
+namespace {
+
+// The top row of a frame is row 0 of its texture: nothing has to be flipped but the copy to a window.
+const char* triangle_vertex = R"(#version 330 core
+layout(location = 0) in vec2 position;
+layout(location = 1) in vec2 texture_at;
+layout(location = 2) in vec4 tint;
+uniform vec2 size;
+out vec2 at;
+out vec4 color;
+void main() {
+    at = texture_at;
+    color = tint;
+    gl_Position = vec4(2.0 * position / size - 1.0, 0.0, 1.0);
+})";
+
+const char* triangle_fragment = R"(#version 330 core
+in vec2 at;
+in vec4 color;
+uniform sampler2D picture;
+layout(location = 0) out vec4 result;
+void main() { result = color * texture(picture, at); })";
+
+const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+}  // namespace
+
+Canvas::Canvas(const AddressFunction& address_of, int curve_fineness) : gl_(address_of), curves_(gl_, curve_fineness) {
+    program_ = gl_.program(triangle_vertex, triangle_fragment);
+    gl_.GenBuffers(1, &vertex_buffer_);
+    gl_.GenBuffers(1, &index_buffer_);
+    gl_.GenVertexArrays(1, &vertices_);
+    gl_.BindVertexArray(vertices_);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
+    gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
+    constexpr GLsizei stride = sizeof(ImDrawVert);
+    gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, offset(offsetof(ImDrawVert, pos)));
+    gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, offset(offsetof(ImDrawVert, uv)));
+    gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, offset(offsetof(ImDrawVert, col)));
+    for (const GLuint location : {0U, 1U, 2U}) gl_.EnableVertexAttribArray(location);
+}
+
+Canvas::~Canvas() {
+    gl_.DeleteFramebuffers(1, &target_.framebuffer);
+    gl_.DeleteTextures(1, &picture_);
+    gl_.DeleteTextures(1, &fonts_);
+    gl_.DeleteVertexArrays(1, &vertices_);
+    gl_.DeleteBuffers(1, &index_buffer_);
+    gl_.DeleteBuffers(1, &vertex_buffer_);
+    gl_.DeleteProgram(program_);
+}
+
+void Canvas::load_fonts() {
+    ImGuiIO& io = ImGui::GetIO();
+    unsigned char* pixels = nullptr;
+    int width = 0, height = 0;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    if (std::max(width, height) > largest_texture) throw std::runtime_error("the text is too large for OpenGL");
+    gl_.DeleteTextures(1, &fonts_);
+    fonts_ = gl_.texture(GL_RGBA8, width, height, GL_RGBA, pixels);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    io.Fonts->SetTexID(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(fonts_)));
+}
+
+void Canvas::resize(int width, int height) {
+    if (width == target_.width && height == target_.height) return;
+    GLint limit = 0;
+    gl_.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    limit = std::min(limit, largest_texture);
+    if (width < 1 || height < 1 || std::max(width, height) > limit)
+        throw std::runtime_error("cannot draw " + std::to_string(width) + " x " + std::to_string(height) +
+                                 " pixels; each side must be 1 to " + std::to_string(limit));
+    gl_.DeleteFramebuffers(1, &target_.framebuffer);
+    gl_.DeleteTextures(1, &picture_);
+    picture_ = gl_.texture(GL_RGBA8, width, height, GL_RGBA, nullptr);
+    target_ = {gl_.framebuffer(picture_), width, height};
+}
+
+void Canvas::draw(const ImDrawData& data, const float (&clear)[3]) {
+    resize(static_cast<int>(data.DisplaySize.x), static_cast<int>(data.DisplaySize.y));
+    set_state();
+    gl_.Scissor(0, 0, target_.width, target_.height);
+    gl_.ClearColor(clear[0], clear[1], clear[2], 1.0F);
+    gl_.Clear(GL_COLOR_BUFFER_BIT);
+    for (int i = 0; i < data.CmdListsCount; ++i) draw_list(*data.CmdLists[i]);
+}
+
+void Canvas::set_state() {
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, target_.framebuffer);
+    gl_.Viewport(0, 0, target_.width, target_.height);
+    gl_.Enable(GL_SCISSOR_TEST);
+    gl_.Enable(GL_BLEND);
+    gl_.BlendEquation(GL_FUNC_ADD);
+    gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    gl_.ActiveTexture(GL_TEXTURE0);
+    gl_.UseProgram(program_);
+    gl_.Uniform1i(gl_.GetUniformLocation(program_, "picture"), 0);
+    gl_.Uniform2f(gl_.GetUniformLocation(program_, "size"), static_cast<float>(target_.width),
+                  static_cast<float>(target_.height));
+    gl_.BindVertexArray(vertices_);
+    gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
+}
+
+void Canvas::draw_list(const ImDrawList& list) {
+    gl_.BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
+    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data, GL_STREAM_DRAW);
+    for (const ImDrawCmd& command : list.CmdBuffer) {
+        if (is_curve(command)) {
+            curves_.draw(list, command, vertex_buffer_, target_);
+            set_state();
+        } else if (command.UserCallback == ImDrawCallback_ResetRenderState) {
+            set_state();
+        } else if (command.UserCallback != nullptr) {
+            command.UserCallback(&list, &command);
+        } else {
+            draw_triangles(command);
+        }
+    }
+}
+
+void Canvas::draw_triangles(const ImDrawCmd& command) {
+    const int x = std::max(static_cast<int>(command.ClipRect.x), 0);
+    const int y = std::max(static_cast<int>(command.ClipRect.y), 0);
+    const int width = std::min(static_cast<int>(command.ClipRect.z), target_.width) - x;
+    const int height = std::min(static_cast<int>(command.ClipRect.w), target_.height) - y;
+    if (width <= 0 || height <= 0 || command.ElemCount == 0) return;
+    gl_.Scissor(x, y, width, height);
+    gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(reinterpret_cast<std::uintptr_t>(command.GetTexID())));
+    gl_.DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
+                               offset(command.IdxOffset * sizeof(ImDrawIdx)), static_cast<GLint>(command.VtxOffset));
+}
+
+Image Canvas::read() const {
+    Image image{target_.width, target_.height, {}};
+    image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    if (image.rgb.empty()) return image;  // nothing was drawn yet
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl_.ReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+    return image;
+}
+
+void Canvas::show() const {
+    gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer);
+    gl_.BindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    gl_.Disable(GL_SCISSOR_TEST);
+    gl_.BlitFramebuffer(0, 0, target_.width, target_.height, 0, target_.height, target_.width, 0, GL_COLOR_BUFFER_BIT,
+                        GL_NEAREST);
+}
+
+}  // namespace achilles

@@ -1,0 +1,45 @@
+// Draws what ImGui has to say into a framebuffer of its own, so that a window, an image and a test get the same bytes.
+#pragma once
+
+#include "image/image.hpp"
+#include "surface/curves.hpp"
+#include "surface/gl.hpp"
+
+struct ImDrawCmd;
+struct ImDrawData;
+struct ImDrawList;
+
+namespace achilles {
+
+// One per OpenGL context; that context must be current whenever a member is called, the destructor included.
+class Canvas {
+ public:
+    // `curve_fineness`: see CurvePainter.
+    Canvas(const AddressFunction& address_of, int curve_fineness);
+    ~Canvas();
+    Canvas(const Canvas&) = delete;
+    Canvas& operator=(const Canvas&) = delete;
+
+    // Uploads the font atlas of the current ImGui context; again after it was rebuilt.
+    void load_fonts();
+    // Draws the frame over the opaque colour. Throws std::runtime_error if the frame is too large.
+    void draw(const ImDrawData& data, const float (&clear)[3]);
+    // The last frame.
+    Image read() const;
+    // Copies the last frame to the context's own framebuffer, where a window shows it.
+    void show() const;
+
+ private:
+    void resize(int width, int height);
+    void draw_list(const ImDrawList& list);
+    void draw_triangles(const ImDrawCmd& command);
+    void set_state();
+
+    Gl gl_;
+    CurvePainter curves_;
+    GLuint program_ = 0, vertices_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
+    GLuint fonts_ = 0, picture_ = 0;
+    Target target_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,194 @@
+#include "surface/interface.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
+namespace achilles {
+
+namespace {
+
+// What labels may contain: Latin, combining dots, Greek, punctuation, super- and subscripts, arrows, mathematics, the
+// shapes of play and pause. ImGui reads this while it builds, so it must not be a local.
+constexpr ImWchar glyphs[] = {0x0020, 0x017F, 0x02D9, 0x02D9, 0x0300, 0x0308, 0x0370, 0x03FF, 0x2010,
+                              0x206F, 0x2070, 0x209C, 0x2102, 0x2135, 0x2190, 0x21FF, 0x2200, 0x22FF,
+                              0x25A0, 0x25FF, 0x2758, 0x275E, 0x27E8, 0x27E9, 0xFFFD, 0xFFFD, 0};
+
+ImVec4 gray(float level, float alpha = 1.0F) { return {level, level, level, alpha}; }
+
+// One accent on greys. `accent` is what the hand can move, `text` what it reads.
+void colors(ImGuiStyle& style, bool dark) {
+    if (dark)
+        ImGui::StyleColorsDark(&style);
+    else
+        ImGui::StyleColorsLight(&style);
+    const auto accent = [dark](float alpha) {
+        return dark ? ImVec4(0.36F, 0.61F, 0.92F, alpha) : ImVec4(0.13F, 0.40F, 0.72F, alpha);
+    };
+    ImVec4* c = style.Colors;
+    c[ImGuiCol_Text] = gray(dark ? 0.90F : 0.12F);
+    c[ImGuiCol_TextDisabled] = gray(dark ? 0.58F : 0.45F);
+    c[ImGuiCol_WindowBg] = gray(dark ? 0.11F : 0.965F);
+    c[ImGuiCol_PopupBg] = gray(dark ? 0.14F : 1.0F);
+    c[ImGuiCol_Border] = gray(dark ? 0.27F : 0.80F);
+    c[ImGuiCol_FrameBg] = gray(dark ? 0.18F : 0.895F);
+    c[ImGuiCol_FrameBgHovered] = accent(dark ? 0.30F : 0.16F);
+    c[ImGuiCol_FrameBgActive] = accent(dark ? 0.42F : 0.26F);
+    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = gray(dark ? 0.14F : 0.90F);
+    c[ImGuiCol_TitleBgActive] = gray(dark ? 0.17F : 0.86F);
+    c[ImGuiCol_MenuBarBg] = gray(dark ? 0.14F : 0.92F);
+    c[ImGuiCol_CheckMark] = c[ImGuiCol_SliderGrab] = accent(1.0F);
+    c[ImGuiCol_SliderGrabActive] = accent(0.80F);
+    c[ImGuiCol_Button] = accent(dark ? 0.26F : 0.14F);
+    c[ImGuiCol_ButtonHovered] = accent(dark ? 0.46F : 0.30F);
+    c[ImGuiCol_ButtonActive] = accent(dark ? 0.66F : 0.48F);
+    c[ImGuiCol_Header] = accent(dark ? 0.24F : 0.14F);
+    c[ImGuiCol_HeaderHovered] = accent(dark ? 0.36F : 0.24F);
+    c[ImGuiCol_HeaderActive] = accent(dark ? 0.48F : 0.36F);
+    c[ImGuiCol_Tab] = c[ImGuiCol_TabUnfocused] = gray(dark ? 0.16F : 0.90F);
+    c[ImGuiCol_TabActive] = c[ImGuiCol_TabUnfocusedActive] = accent(dark ? 0.46F : 0.30F);
+    c[ImGuiCol_TabHovered] = accent(dark ? 0.56F : 0.40F);
+    c[ImGuiCol_TextSelectedBg] = accent(0.32F);
+}
+
+void shape(ImGuiStyle& style) {
+    style.WindowRounding = style.ChildRounding = 0.0F;  // panels tile the window
+    style.FrameRounding = style.GrabRounding = style.PopupRounding = style.TabRounding = 4.0F;
+    style.ScrollbarRounding = 6.0F;
+    style.WindowBorderSize = 1.0F;
+    style.FramePadding = {8.0F, 4.0F};
+    style.ItemSpacing = {8.0F, 6.0F};
+    style.WindowPadding = {10.0F, 10.0F};
+}
+
+void map_keys(ImGuiIO& io) {
+    constexpr std::pair<ImGuiKey_, int> keys[] = {{ImGuiKey_Tab, key::tab},
+                                                  {ImGuiKey_LeftArrow, key::left},
+                                                  {ImGuiKey_RightArrow, key::right},
+                                                  {ImGuiKey_UpArrow, key::up},
+                                                  {ImGuiKey_DownArrow, key::down},
+                                                  {ImGuiKey_PageUp, key::page_up},
+                                                  {ImGuiKey_PageDown, key::page_down},
+                                                  {ImGuiKey_Home, key::home},
+                                                  {ImGuiKey_End, key::end},
+                                                  {ImGuiKey_Insert, key::insert},
+                                                  {ImGuiKey_Delete, key::remove},
+                                                  {ImGuiKey_Backspace, key::backspace},
+                                                  {ImGuiKey_Space, ' '},
+                                                  {ImGuiKey_Enter, key::enter},
+                                                  {ImGuiKey_Escape, key::escape},
+                                                  {ImGuiKey_KeyPadEnter, key::keypad_enter},
+                                                  {ImGuiKey_A, 'A'},
+                                                  {ImGuiKey_C, 'C'},
+                                                  {ImGuiKey_V, 'V'},
+                                                  {ImGuiKey_X, 'X'},
+                                                  {ImGuiKey_Y, 'Y'},
+                                                  {ImGuiKey_Z, 'Z'}};
+    for (const auto& [name, number] : keys) io.KeyMap[name] = number;
+}
+
+}  // namespace
+
+Interface::Interface(const SurfaceOptions& options) : options_(options) {
+    // ImGui itself aborts on a missing font.
+    const auto file = options.fonts / "DejaVuSans.ttf";
+    if (!std::filesystem::is_regular_file(file))
+        throw std::runtime_error(file.string() + ": the font is missing; the package fonts-dejavu-core has it");
+    if (!(options.scale >= 0.1 && options.scale <= 20.0)) throw std::runtime_error("the scale must be 0.1 to 20");
+    IMGUI_CHECKVERSION();
+    ImGuiContext* before = ImGui::GetCurrentContext();
+    context_ = ImGui::CreateContext();
+    ImGui::SetCurrentContext(before);
+    const Active active(*this);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;  // nothing is remembered between runs
+    io.LogFilename = nullptr;
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    map_keys(io);
+    restyle(options.scale, options.dark);
+}
+
+Interface::~Interface() { ImGui::DestroyContext(context_); }
+
+Interface::Active::Active(const Interface& interface) : before_(ImGui::GetCurrentContext()) {
+    ImGui::SetCurrentContext(interface.context_);
+}
+
+Interface::Active::~Active() { ImGui::SetCurrentContext(before_); }
+
+void Interface::restyle(double scale, bool dark) {
+    const Active active(*this);
+    build_fonts(scale);
+    ImGuiStyle style;  // from the defaults: scaling twice would round twice
+    colors(style, dark);
+    shape(style);
+    style.ScaleAllSizes(static_cast<float>(scale));
+    ImGui::GetStyle() = style;
+    const ImVec4& color = style.Colors[ImGuiCol_WindowBg];
+    std::copy_n(&color.x, 3, background_);
+}
+
+void Interface::build_fonts(double scale) {
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    atlas.Clear();
+    const std::string file = (options_.fonts / "DejaVuSans.ttf").string();
+    // The first is the interface's own.
+    std::vector<double> sizes;
+    for (const double size : {options_.text_size, options_.figure_text_size}) {
+        const double pixels = std::max(std::round(size * scale), 4.0);
+        if (std::find(sizes.begin(), sizes.end(), pixels) == sizes.end()) sizes.push_back(pixels);
+    }
+    for (const double pixels : sizes) {
+        ImFontConfig config;
+        config.OversampleH = config.OversampleV = 1;  // letters stand on whole pixels
+        config.PixelSnapH = true;
+        atlas.AddFontFromFileTTF(file.c_str(), static_cast<float>(pixels), &config, glyphs);
+    }
+    atlas.Build();
+}
+
+const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int height, double seconds) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+    io.DeltaTime = static_cast<float>(seconds);
+    ImGui::NewFrame();
+    draw();
+    ImGui::Render();
+    return *ImGui::GetDrawData();
+}
+
+void apply(const Input& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    const bool away = input.mouse_x <= -1e5 || input.mouse_y <= -1e5;
+    io.MousePos = away ? ImVec2(-FLT_MAX, -FLT_MAX)
+                       : ImVec2(static_cast<float>(input.mouse_x), static_cast<float>(input.mouse_y));
+    io.MouseDown[ImGuiMouseButton_Left] = input.left;
+    io.MouseDown[ImGuiMouseButton_Right] = input.right;
+    io.MouseDown[ImGuiMouseButton_Middle] = input.middle;
+    io.MouseWheel = static_cast<float>(input.wheel);
+    io.MouseWheelH = static_cast<float>(input.wheel_sideways);
+    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+    for (const int code : input.keys)
+        if (code >= 0 && code < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[code] = true;
+    io.KeyCtrl = io.KeysDown[key::left_control] || io.KeysDown[key::right_control];
+    io.KeyShift = io.KeysDown[key::left_shift] || io.KeysDown[key::right_shift];
+    io.KeyAlt = io.KeysDown[key::left_alt] || io.KeysDown[key::right_alt];
+    io.KeySuper = io.KeysDown[key::left_super] || io.KeysDown[key::right_super];
+    if (!input.text.empty()) io.AddInputCharactersUTF8(input.text.c_str());
+}
+
+ImFont* font_for(double pixels) {
+    ImFont* best = ImGui::GetFont();
+    const auto distance = [pixels](const ImFont* font) { return std::abs(double{font->FontSize} - pixels); };
+    for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
+        if (best == nullptr || distance(font) < distance(best)) best = font;
+    return best;
+}
+
+}  // namespace achilles

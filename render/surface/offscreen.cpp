@@ -1,0 +1,145 @@
+#include "surface/offscreen.hpp"
+
+// OSMesa's header includes the old <GL/gl.h>, which would hide half of the new one if it came first.
+#include "surface/gl.hpp"
+
+#include <GL/osmesa.h>
+#include <dlfcn.h>
+
+#include <array>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "surface/draw_data.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand, and
+// a machine without it gets a sentence.
+struct OsMesa {
+    decltype(&OSMesaCreateContextAttribs) create;
+    decltype(&OSMesaDestroyContext) destroy;
+    decltype(&OSMesaMakeCurrent) make_current;
+    decltype(&OSMesaGetProcAddress) address;
+};
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+    function = reinterpret_cast<Function>(dlsym(library, name));
+    if (function == nullptr) throw std::runtime_error(std::string("libOSMesa.so.8 lacks ") + name);
+}
+
+const OsMesa& os_mesa() {
+    static const OsMesa loaded = [] {
+        // Never closed: its compiler keeps threads and exit handlers.
+        void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
+        if (library == nullptr)
+            throw std::runtime_error("drawing without a window needs libOSMesa.so.8; the package libosmesa6 has it");
+        OsMesa mesa{};
+        find(library, "OSMesaCreateContextAttribs", mesa.create);
+        find(library, "OSMesaDestroyContext", mesa.destroy);
+        find(library, "OSMesaMakeCurrent", mesa.make_current);
+        find(library, "OSMesaGetProcAddress", mesa.address);
+        return mesa;
+    }();
+    return loaded;
+}
+
+// Letters in the middle of a frame would depend on a clock; every frame takes this long.
+constexpr double frame_seconds = 1.0 / 60.0;
+
+void check_size(int width, int height) {
+    if (width < 1 || height < 1 || width > largest_texture || height > largest_texture)
+        throw std::runtime_error("cannot draw " + std::to_string(width) + " x " + std::to_string(height) +
+                                 " pixels; each side must be 1 to " + std::to_string(largest_texture));
+}
+
+}  // namespace
+
+struct Offscreen::Implementation {
+    explicit Implementation(const SurfaceOptions& surface) : options(surface), interface(surface) {
+        check_size(surface.width, surface.height);
+        constexpr std::array attributes{OSMESA_FORMAT,
+                                        static_cast<int>(OSMESA_RGBA),
+                                        OSMESA_PROFILE,
+                                        OSMESA_CORE_PROFILE,
+                                        OSMESA_CONTEXT_MAJOR_VERSION,
+                                        3,
+                                        OSMESA_CONTEXT_MINOR_VERSION,
+                                        3,
+                                        0};
+        context.reset(os_mesa().create(attributes.data(), nullptr));
+        if (context == nullptr) throw std::runtime_error("libOSMesa.so.8 cannot make an OpenGL 3.3 context");
+        const Interface::Active active(interface);
+        const Current current(*this);
+        canvas.emplace([](const char* name) { return reinterpret_cast<void*>(os_mesa().address(name)); },
+                       surface.curve_fineness);
+        canvas->load_fonts();
+    }
+    ~Implementation() {
+        const Current current(*this);
+        canvas.reset();
+    }
+
+    // OSMesa and a window's driver share one notion of a current context, so ours is current only while we use it.
+    struct Current {
+        explicit Current(Implementation& owner) {
+            os_mesa().make_current(owner.context.get(), owner.buffer.data(), GL_UNSIGNED_BYTE, 1, 1);
+        }
+        ~Current() { os_mesa().make_current(nullptr, nullptr, 0, 0, 0); }
+        Current(const Current&) = delete;
+        Current& operator=(const Current&) = delete;
+    };
+
+    const ImDrawData& advance(const FrameFunction& draw, const Input& input) {
+        apply(input);
+        return interface.frame(draw, options.width, options.height, frame_seconds);
+    }
+
+    SurfaceOptions options;
+    Interface interface;
+    struct Destroy {
+        void operator()(OSMesaContext made) const { os_mesa().destroy(made); }
+    };
+    std::unique_ptr<std::remove_pointer_t<OSMesaContext>, Destroy> context;
+    std::array<unsigned char, 4> buffer{};  // OSMesa wants one; we draw into a texture
+    std::optional<Canvas> canvas;
+};
+
+Offscreen::Offscreen(const SurfaceOptions& options) : implementation_(std::make_unique<Implementation>(options)) {}
+Offscreen::~Offscreen() = default;
+
+Image Offscreen::frame(const FrameFunction& draw, int passes) { return frame(draw, passes, Input{}); }
+
+Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input) {
+    Input held = input;
+    for (int pass = 1; pass < passes; ++pass) {
+        step(draw, held);
+        held.wheel = held.wheel_sideways = 0.0;  // what happened once must not happen again
+        held.text.clear();
+    }
+    const Interface::Active active(implementation_->interface);
+    const ImDrawData& data = implementation_->advance(draw, held);
+    const Implementation::Current current(*implementation_);
+    implementation_->canvas->draw(data, implementation_->interface.background());
+    return implementation_->canvas->read();
+}
+
+void Offscreen::step(const FrameFunction& draw, const Input& input) {
+    const Interface::Active active(implementation_->interface);
+    implementation_->advance(draw, input);
+}
+
+void Offscreen::restyle(double scale, bool dark) {
+    const Interface::Active active(implementation_->interface);
+    implementation_->interface.restyle(scale, dark);
+    const Implementation::Current current(*implementation_);
+    implementation_->canvas->load_fonts();
+}
+
+}  // namespace achilles

@@ -1,0 +1,304 @@
+#include "surface/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "surface/draw_data.hpp"
+#include "surface/events.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+static_assert(key::escape == GLFW_KEY_ESCAPE && key::remove == GLFW_KEY_DELETE && key::end == GLFW_KEY_END &&
+              key::right == GLFW_KEY_RIGHT && key::f1 == GLFW_KEY_F1 && key::f11 == GLFW_KEY_F11 &&
+              key::keypad_enter == GLFW_KEY_KP_ENTER && key::left_shift == GLFW_KEY_LEFT_SHIFT &&
+              key::right_super == GLFW_KEY_RIGHT_SUPER && ' ' == GLFW_KEY_SPACE && 'A' == GLFW_KEY_A);
+
+// A sleeping window looks up this often by itself (for a blinking text cursor, more often).
+constexpr double sleep_seconds = 0.5, blink_seconds = 0.1;
+// ImGui needs a few frames after an event before everything has settled.
+constexpr int settling_frames = 4;
+
+std::string& last_glfw_error() {
+    static std::string text;
+    return text;
+}
+
+bool display_is_named() {
+    const char* display = std::getenv("DISPLAY");
+    return display != nullptr && *display != '\0';
+}
+
+// Starts GLFW, once. It is never stopped: that would unload the graphics driver, which not every driver survives, and
+// the process's end does the same.
+bool glfw_works() {
+    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
+    return display_is_named() && glfwInit() == GLFW_TRUE;
+}
+
+// The size asked for, or what the monitor has room for. GLFW multiplies it by the monitor's scale.
+std::pair<int, int> fitting_size(const SurfaceOptions& surface) {
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    if (monitor == nullptr) return {surface.width, surface.height};
+    int x = 0, y = 0, width = 0, height = 0;
+    float across = 1.0F, down = 1.0F;
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+    glfwGetMonitorContentScale(monitor, &across, &down);
+    const auto fit = [](int wanted, int room, float scale) {
+        return std::max(room > 0 ? std::min(wanted, static_cast<int>(static_cast<float>(room) / scale)) : wanted, 1);
+    };
+    return {fit(surface.width, width, across), fit(surface.height, height, down)};
+}
+
+// A letter key by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard.
+int code_of(int code, int scancode) {
+    if (code < GLFW_KEY_A || code > GLFW_KEY_Z) return code;
+    const char* name = glfwGetKeyName(code, scancode);
+    const bool one_letter = name != nullptr && name[0] != '\0' && name[1] == '\0';
+    const auto letter = one_letter ? static_cast<unsigned char>(name[0]) : 0;
+    return letter < 128 && std::isalpha(letter) != 0 ? std::toupper(letter) : code;
+}
+
+}  // namespace
+
+struct Window::Implementation {
+    Implementation(const SurfaceOptions& surface, const std::string& title)
+        : owned(open(surface, title), glfwDestroyWindow), window(owned.get()), interface(with_scale(surface, window)) {
+        float across = 1.0F, down = 1.0F;
+        glfwGetWindowContentScale(window, &across, &down);
+        monitor_scale = across;
+        scale = surface.scale;
+        dark = surface.dark;
+        const Interface::Active active(interface);
+        const Current current(window);
+        glfwSwapInterval(1);
+        canvas.emplace([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); },
+                       surface.curve_fineness);
+        canvas->load_fonts();
+        set_clipboard();
+        make_cursors();
+        listen();
+    }
+    ~Implementation() {
+        {
+            const Current current(window);
+            canvas.reset();
+        }
+        for (GLFWcursor* cursor : cursors)
+            if (cursor != nullptr) glfwDestroyCursor(cursor);
+    }
+
+    // OSMesa and the window's driver share one notion of a current context, so ours is current only while we use it.
+    struct Current {
+        explicit Current(GLFWwindow* window) { glfwMakeContextCurrent(window); }
+        ~Current() { glfwMakeContextCurrent(nullptr); }
+        Current(const Current&) = delete;
+        Current& operator=(const Current&) = delete;
+    };
+
+    static GLFWwindow* open(const SurfaceOptions& surface, const std::string& title);
+    static SurfaceOptions with_scale(SurfaceOptions surface, GLFWwindow* window);
+    static Implementation& of(GLFWwindow* window) {
+        return *static_cast<Implementation*>(glfwGetWindowUserPointer(window));
+    }
+    void listen();
+    void listen_to_keyboard();
+    void set_clipboard();
+    void make_cursors();
+    void show_cursor();
+    void wait();
+    void restyle();
+    void frame(const FrameFunction& draw);
+
+    std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)> owned;
+    GLFWwindow* window;
+    Interface interface;
+    std::optional<Canvas> canvas;
+    Events events;
+    std::vector<std::string> files;
+    std::array<GLFWcursor*, ImGuiMouseCursor_COUNT> cursors{};
+    double monitor_scale = 1.0, scale = 1.0;
+    bool dark = false, stale = false, moving = true;
+    int unsettled = settling_frames;
+    double last_frame = -1.0;
+};
+
+GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const std::string& title) {
+    if (!glfw_works())
+        throw std::runtime_error("no window can be opened: " +
+                                 (display_is_named() ? last_glfw_error() : "the variable DISPLAY names no display"));
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHintString(GLFW_X11_CLASS_NAME, "achilles");
+    glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "achilles");
+    const auto [width, height] = fitting_size(surface);
+    GLFWwindow* made = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (made == nullptr) throw std::runtime_error("no OpenGL 3.3 window can be opened: " + last_glfw_error());
+    return made;
+}
+
+SurfaceOptions Window::Implementation::with_scale(SurfaceOptions surface, GLFWwindow* window) {
+    float across = 1.0F, down = 1.0F;
+    glfwGetWindowContentScale(window, &across, &down);
+    surface.scale *= double{across};
+    return surface;
+}
+
+void Window::Implementation::listen() {
+    glfwSetWindowUserPointer(window, this);
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+        // Where the window system counts in units larger than pixels, we do not.
+        int width = 1, height = 1, pixels_across = 1, pixels_down = 1;
+        glfwGetWindowSize(w, &width, &height);
+        glfwGetFramebufferSize(w, &pixels_across, &pixels_down);
+        of(w).events.mouse_at(x * pixels_across / std::max(width, 1), y * pixels_down / std::max(height, 1));
+    });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
+        if (entered == GLFW_FALSE) of(w).events.mouse_left();
+    });
+    glfwSetMouseButtonCallback(
+        window, [](GLFWwindow* w, int button, int action, int) { of(w).events.button(button, action == GLFW_PRESS); });
+    glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) { of(w).events.wheel(x, y); });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
+        if (focused == GLFW_FALSE) of(w).events.release_all();
+        of(w).unsettled = settling_frames;
+    });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).unsettled = settling_frames; });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).unsettled = settling_frames; });
+    glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float across, float) {
+        of(w).monitor_scale = double{across};
+        of(w).stale = true;
+    });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+        of(w).files.insert(of(w).files.end(), paths, paths + count);
+        of(w).unsettled = settling_frames;
+    });
+    listen_to_keyboard();
+}
+
+void Window::Implementation::listen_to_keyboard() {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int scancode, int action, int modifiers) {
+        if (action == GLFW_REPEAT || code == GLFW_KEY_UNKNOWN) return;  // ImGui repeats by itself
+        const int letter = code_of(code, scancode);
+        if (action == GLFW_PRESS && letter == 'Q' && (modifiers & GLFW_MOD_CONTROL) != 0)
+            glfwSetWindowShouldClose(w, GLFW_TRUE);
+        of(w).events.key(letter, action == GLFW_PRESS);
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code_point) { of(w).events.character(code_point); });
+}
+
+void Window::Implementation::set_clipboard() {
+    ImGuiIO& io = ImGui::GetIO();
+    io.ClipboardUserData = window;
+    io.GetClipboardTextFn = [](void* w) { return glfwGetClipboardString(static_cast<GLFWwindow*>(w)); };
+    io.SetClipboardTextFn = [](void* w, const char* text) {
+        glfwSetClipboardString(static_cast<GLFWwindow*>(w), text);
+    };
+}
+
+void Window::Implementation::make_cursors() {
+    for (const auto& [ours, theirs] : {std::pair{ImGuiMouseCursor_Arrow, GLFW_ARROW_CURSOR},
+                                       std::pair{ImGuiMouseCursor_TextInput, GLFW_IBEAM_CURSOR},
+                                       std::pair{ImGuiMouseCursor_ResizeNS, GLFW_VRESIZE_CURSOR},
+                                       std::pair{ImGuiMouseCursor_ResizeEW, GLFW_HRESIZE_CURSOR},
+                                       std::pair{ImGuiMouseCursor_Hand, GLFW_HAND_CURSOR}})
+        cursors[static_cast<std::size_t>(ours)] = glfwCreateStandardCursor(theirs);
+    ImGui::GetIO().BackendFlags |= ImGuiBackendFlags_HasMouseCursors;
+}
+
+void Window::Implementation::show_cursor() {
+    const ImGuiMouseCursor wanted = ImGui::GetMouseCursor();
+    if (wanted < 0) return;
+    glfwSetCursor(window, cursors[static_cast<std::size_t>(wanted)]);  // null: the arrow
+}
+
+void Window::Implementation::wait() {
+    if (moving || unsettled > 0 || !events.empty()) {
+        glfwPollEvents();
+    } else {
+        const Interface::Active active(interface);
+        glfwWaitEventsTimeout(ImGui::GetIO().WantTextInput ? blink_seconds : sleep_seconds);
+        unsettled = std::max(unsettled, 1);
+    }
+    if (!events.empty()) unsettled = settling_frames;
+}
+
+void Window::Implementation::restyle() {
+    interface.restyle(scale * monitor_scale, dark);
+    const Current current(window);
+    canvas->load_fonts();
+    stale = false;
+}
+
+void Window::Implementation::frame(const FrameFunction& draw) {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window, &width, &height);
+    if (width < 1 || height < 1) return glfwWaitEventsTimeout(sleep_seconds);  // minimised
+    const double now = glfwGetTime();
+    // ImGui refuses a step of zero; after a sleep nothing must jump.
+    const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, 1e-4, 0.1);
+    last_frame = now;
+    unsettled = std::max(unsettled - 1, 0);
+    const Interface::Active active(interface);
+    if (stale) restyle();
+    apply(events.next());
+    const ImDrawData& data = interface.frame(draw, width, height, step);
+    show_cursor();
+    const Current current(window);
+    canvas->draw(data, interface.background());
+    canvas->show();
+    glfwSwapBuffers(window);
+}
+
+Window::Window(const SurfaceOptions& options, const std::string& title)
+    : implementation_(std::make_unique<Implementation>(options, title)) {}
+Window::~Window() = default;
+
+void Window::run(const FrameFunction& draw) {
+    Implementation& self = *implementation_;
+    glfwSetWindowShouldClose(self.window, GLFW_FALSE);
+    while (glfwWindowShouldClose(self.window) == GLFW_FALSE) {
+        self.wait();
+        if (glfwWindowShouldClose(self.window) == GLFW_FALSE) self.frame(draw);
+    }
+}
+
+void Window::close() { glfwSetWindowShouldClose(implementation_->window, GLFW_TRUE); }
+
+void Window::keep_drawing(bool moving) { implementation_->moving = moving; }
+
+void Window::wake() { glfwPostEmptyEvent(); }
+
+void Window::restyle(double scale, bool dark) {
+    implementation_->scale = scale;
+    implementation_->dark = dark;
+    implementation_->stale = true;
+    implementation_->unsettled = settling_frames;
+}
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(implementation_->window, title.c_str()); }
+
+Image Window::picture() {
+    const Implementation::Current current(implementation_->window);
+    return implementation_->canvas->read();
+}
+
+std::vector<std::string> Window::dropped() { return std::exchange(implementation_->files, {}); }
+
+bool Window::display_available() { return glfw_works(); }
+
+}  // namespace achilles

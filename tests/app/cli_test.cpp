@@ -1,0 +1,219 @@
+// What a user sees on the command line: statuses, messages, files (INTERFACE sections 2, 5, 6).
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "app/program.hpp"
+
+namespace achilles::test {
+namespace {
+
+using nlohmann::json;
+
+// Bad input: status 2, this message, nothing on standard output, no file.
+struct Refusal {
+    std::string name, arguments, message;
+};
+
+void PrintTo(const Refusal& refusal, std::ostream* out) { *out << refusal.arguments; }
+
+class Refused : public testing::TestWithParam<Refusal> {};
+
+TEST_P(Refused, WithOneMessageAndNothingWritten) {
+    const Folder folder;
+    const Answer answer = folder.run(GetParam().arguments);
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err, GetParam().message);
+    EXPECT_EQ(answer.out, "");
+    EXPECT_TRUE(folder.files().empty());
+}
+
+const std::string more = "\n'achilles simulate --help' tells more\n";
+
+const Refusal refusals[] = {
+    {"unknown_system", "simulate ball_on_sin --json a.json",
+     "achilles: there is no system 'ball_on_sin'; did you mean 'ball_on_sine'?\n"
+     "a system is a path to a .toml file or one of: ball_on_sine, double_pendulum\n"},
+    {"missing_file", "simulate ./no.toml", "./no.toml: there is no such file\n"},
+    {"unknown_setting", "simulate ball_on_sine --set gg=3 --json a.json",
+     "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
+    {"setting_without_value", "simulate ball_on_sine --set g",
+     "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
+    {"sharp_conditions", "simulate ball_on_sine --conditions sharp --json a.json",
+     "achilles: the sharp conditions are not available yet; use --conditions paper\n"},
+    {"unknown_conditions", "simulate ball_on_sine --conditions shap",
+     "--conditions shap: there is no 'shap' to choose; did you mean 'sharp'?\nthe choice is paper or sharp\n"},
+    {"taylor_method", "simulate ball_on_sine --method taylor",
+     "achilles: the Taylor method is not available yet; use --method dopri5\n"},
+    {"end_not_positive", "simulate ball_on_sine --end -1",
+     "--end: the value must be positive and finite, but it is -1\n"},
+    {"not_a_number", "simulate ball_on_sine --eps nan", "--eps nan: this is not a finite number\n"},
+    {"number_with_a_tail", "simulate ball_on_sine --tolerance 1e-8x",
+     "--tolerance 1e-8x: this is not a finite number\n"},
+    {"no_impacts", "simulate ball_on_sine --max-impacts 0", "--max-impacts: at least one impact must be allowed\n"},
+    {"unwritable_output", "simulate ball_on_sine --csv a.csv --json none/a.json",
+     "none/a.json: the file cannot be written: No such file or directory\n"},
+    {"output_is_a_folder", "simulate ball_on_sine --json /tmp", "/tmp: the file cannot be written: Is a directory\n"},
+    {"full_device", "simulate ball_on_sine --json /dev/full",
+     "/dev/full: the file cannot be written: No space left on device\n"},
+    {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
+    {"unknown_command", "simulat ball_on_sine",
+     "achilles: there is no command or system 'simulat'; did you mean 'simulate'?\n"
+     "the commands are: explore, simulate, paper, screenshot, list\n"},
+    {"unknown_option", "simulate ball_on_sine --tolerence 1",
+     "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
+    {"no_system", "simulate", "achilles: SYSTEM is required" + more},
+    {"bad_size", "screenshot --out a.png --size 1600",
+     "--size 1600: this is no size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Cli, Refused, testing::ValuesIn(refusals),
+                         [](const auto& refusal) { return refusal.param.name; });
+
+const std::string drop = R"(title = "A ball dropped on the floor"
+[[coordinate]]
+name = "y"
+start = 1.0
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)";
+
+TEST(Cli, BadTomlIsShownWithItsPlace) {
+    const Folder folder;
+    folder.put("bad.toml", "title = \"x\"\n[[coordinate]\n");
+    const Answer answer = folder.run("simulate bad.toml --json a.json");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err.rfind("bad.toml:2:", 0), 0u) << answer.err;
+    EXPECT_NE(answer.err.find("\n    [[coordinate]\n"), std::string::npos) << answer.err;
+    EXPECT_NE(answer.err.find('^'), std::string::npos) << answer.err;
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.toml"});
+}
+
+TEST(Cli, SharpConditionsOfAFileAreRefusedUnlessTheCommandLineSaysPaper) {
+    const Folder folder;
+    folder.put("drop.toml", drop + "[truncation]\nconditions = \"sharp\"\n");
+    const Answer refused = folder.run("simulate drop.toml");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "drop.toml: the sharp conditions are not available yet; use --conditions paper\n");
+    EXPECT_EQ(folder.run("simulate drop.toml --conditions paper").status, 0);
+}
+
+TEST(Cli, ListShowsNamesAndTitles) {
+    const Answer answer = Folder().run("list");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_NE(answer.out.find("ball_on_sine     Ball bouncing on a sinusoidal surface\n"), std::string::npos)
+        << answer.out;
+    EXPECT_NE(answer.out.find("double_pendulum  Double pendulum with a mechanical stop\n"), std::string::npos);
+}
+
+TEST(Cli, AssetsCanBeElsewhere) {
+    const Folder folder;
+    std::filesystem::create_directory(folder.path() / "systems");
+    folder.put("systems/drop.toml", drop);
+    folder.put("systems/notes.txt", "no system");
+    EXPECT_EQ(folder.run("list", "ACHILLES_ASSETS=.").out, "drop  A ball dropped on the floor\n");
+    EXPECT_EQ(folder.run("list", "ACHILLES_ASSETS=./none").status, 2);
+}
+
+TEST(Cli, HelpAndVersion) {
+    const Folder folder;
+    EXPECT_EQ(folder.run("--version").out, "achilles 0.1.0\n");
+    for (const char* arguments :
+         {"--help", "simulate --help", "paper --help", "list --help", "explore --help", "screenshot --help"}) {
+        const Answer answer = folder.run(arguments);
+        EXPECT_EQ(answer.status, 0) << arguments;
+        EXPECT_NE(answer.out.find("Usage: achilles"), std::string::npos) << arguments;
+    }
+}
+
+TEST(Cli, JsonHasTheContractsKeys) {
+    const Answer answer = Folder().run("simulate ball_on_sine --json -");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.err, "");
+    const json root = json::parse(answer.out);
+    for (const char* key : {"achilles", "system", "options", "phases", "events", "end", "outcome", "statistics"})
+        EXPECT_TRUE(root.contains(key)) << key;
+    EXPECT_EQ(root["outcome"]["kind"], "end time");
+    for (const json& event : root["events"]) {
+        if (event["kind"] != "zeno") continue;
+        EXPECT_NEAR(event["t"].get<double>(), 2.725142, 1e-6);
+        for (const char* key : {"q", "v", "impacts", "truncation", "certificate"})
+            EXPECT_TRUE(event.contains(key)) << key;
+        return;
+    }
+    FAIL() << "no Zeno event";
+}
+
+TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
+    const Folder folder;
+    folder.put("drop.toml", drop + "[run]\nend_time = 3.0\n[truncation]\neps_q = 1e-5\neps_v = 1e-5\n");
+    const Answer answer = folder.run(
+        "simulate drop.toml --set y=2 --set \"y'=-1e0\" --eps 1e-4 --eps-v 1e-3 --tolerance 1e-9 "
+        "--reinitialization euclidean --json - --csv run.csv");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    const json root = json::parse(answer.out);
+    EXPECT_EQ(root["end"]["t"], 3.0);
+    EXPECT_EQ(root["options"]["tolerance"], 1e-9);
+    EXPECT_EQ(root["options"]["eps_q"], 1e-4);
+    EXPECT_EQ(root["options"]["eps_v"], 1e-3);
+    EXPECT_EQ(root["options"]["eps_t"], 1e-4);
+    EXPECT_EQ(root["options"]["conditions"], "paper");
+    EXPECT_EQ(root["options"]["reinitialization"], "euclidean");
+    EXPECT_EQ(content(folder.path() / "run.csv").rfind("t,phase,y,y',gap,", 0), 0u);
+    EXPECT_NE(content(folder.path() / "run.csv").find("\n0,hybrid,2,-1,"), std::string::npos);
+    EXPECT_EQ(folder.files().size(), 2u);
+}
+
+TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
+    const Folder folder;
+    const Answer answer = folder.run("simulate ball_on_sine --max-impacts 3 --json a.json");
+    EXPECT_EQ(answer.status, 3);
+    EXPECT_NE(answer.err.find("achilles: the run stopped early: "), std::string::npos) << answer.err;
+    EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
+}
+
+TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {
+    const Folder folder;
+    folder.put("run.csv", "old");
+    EXPECT_EQ(folder.run("simulate ball_on_sine --csv run.csv --json /dev/full").status, 2);
+    EXPECT_EQ(content(folder.path() / "run.csv"), "old");
+    EXPECT_EQ(folder.files().size(), 1u);
+}
+
+TEST(Cli, OutputReplacesAFileThroughALink) {
+    const Folder folder;
+    folder.put("old.json", "old");
+    std::filesystem::create_symlink("old.json", folder.path() / "link.json");
+    EXPECT_EQ(folder.run("simulate ball_on_sine --json link.json").status, 0);
+    EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link.json"));
+    EXPECT_TRUE(json::accept(content(folder.path() / "old.json")));
+}
+
+TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
+    const Answer answer = Folder().run("simulate ball_on_sine");
+    EXPECT_EQ(answer.status, 0);
+    for (const char* part : {"hybrid phase", "constrained phase", "zeno      t = 2.725142", "release"})
+        EXPECT_NE(answer.out.find(part), std::string::npos) << part;
+}
+
+TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {
+    const Folder folder;
+    const Answer answer = folder.run("paper");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4"}) {
+        const auto file = folder.path() / "achilles-paper" / (std::string(name) + ".png");
+        EXPECT_EQ(content(file).substr(1, 3), "PNG") << name;
+        EXPECT_NE(answer.out.find("/achilles-paper/" + std::string(name) + ".png\n"), std::string::npos) << answer.out;
+    }
+    EXPECT_NE(answer.out.find("2.72514217"), std::string::npos);
+    EXPECT_EQ(answer.out.rfind(content(folder.path() / "achilles-paper/table.txt"), 0), 0u);
+    EXPECT_EQ(folder.run("paper --out /dev/null/x").status, 2);
+}
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,65 @@
+// Runs the program as a user does: a shell, a folder of its own, and what comes back.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace achilles::test {
+
+struct Answer {
+    int status = -1;
+    std::string out, err;
+};
+
+inline std::string content(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// An empty folder that lives as long as this; programs run in it.
+class Folder {
+ public:
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "achilles_XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr) std::abort();
+        path_ = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(path_)) names.push_back(entry.path().filename());
+        return names;
+    }
+
+    void put(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
+
+    // `arguments` as a shell reads them; `before`: variables to set.
+    Answer run(const std::string& arguments, const std::string& before = {}) const {
+        const Folder answers;
+        const std::string command =
+            "cd '" + path_.string() + "' && " + before + " timeout 60 '" ACHILLES_BINARY_DIR "/achilles' " + arguments +
+            " >'" + (answers.path() / "out").string() + "' 2>'" + (answers.path() / "err").string() + "' </dev/null";
+        const int status = std::system(command.c_str());
+        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(answers.path() / "out"),
+                content(answers.path() / "err")};
+    }
+
+ private:
+    std::filesystem::path path_;
+};
+
+}  // namespace achilles::test

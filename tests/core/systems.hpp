@@ -1,0 +1,47 @@
+// Systems and reference results for the tests.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "model/model.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+
+inline std::filesystem::path source_file(const std::string& relative) {
+    return std::filesystem::path(ACHILLES_SOURCE_DIR) / relative;
+}
+
+inline std::shared_ptr<const Model> load(const std::string& name) {
+    return std::make_shared<const Model>(read_system(source_file("assets/systems/" + name + ".toml")));
+}
+
+inline std::shared_ptr<const Model> typed(const std::string& text) {
+    return std::make_shared<const Model>(parse_system(text, "typed.toml"));
+}
+
+inline nlohmann::json reference(const std::string& name) {
+    std::ifstream file(source_file("tests/reference/" + name + ".json"));
+    return nlohmann::json::parse(file);
+}
+
+inline double number(const nlohmann::json& text) { return std::stod(text.get<std::string>()); }
+
+// The paper's two problems.
+struct Problem {
+    std::string asset, key;
+};
+inline const Problem problems[] = {{"ball_on_sine", "ball"}, {"double_pendulum", "double_pendulum"}};
+
+inline std::vector<Event> events_of(const Trajectory& trajectory, Event::Kind kind) {
+    std::vector<Event> result;
+    for (const Event& event : trajectory.events)
+        if (event.kind == kind) result.push_back(event);
+    return result;
+}
+
+}  // namespace achilles::test

@@ -1,0 +1,191 @@
+// What a figure says, in numbers: limits, ticks, labels, phases, markers.
+#include "figure/compose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/systems.hpp"
+#include "figure/label.hpp"
+#include "figure/mechanism.hpp"
+#include "figure/paper.hpp"
+#include "figure/ticks.hpp"
+
+namespace achilles {
+namespace {
+
+TEST(Labels, NamesBecomeSymbols) {
+    EXPECT_EQ(typeset_name("theta1"), "θ₁");
+    EXPECT_EQ(typeset_name("theta1'"), "θ\u0307₁");
+    EXPECT_EQ(typeset_name("x'"), "x\u0307");
+    EXPECT_EQ(typeset_name("gap''"), "h\u0308");
+    EXPECT_EQ(typeset_name("lambda"), "λ");
+    EXPECT_EQ(typeset_name("L12"), "L₁₂");
+    EXPECT_EQ(typeset_name("phi_2"), "φ₂");
+    EXPECT_EQ(typeset_name("energy"), "energy");
+    EXPECT_EQ(typeset("m*g*y - theta1'^2"), "m·g·y − θ\u0307₁^2");
+    EXPECT_EQ(typeset("2.5*x1"), "2.5·x₁");
+    EXPECT_EQ(with_unit("h", ""), "h");
+    EXPECT_EQ(with_unit("h", "m"), "h [m]");
+}
+
+std::string labels(double low, double high, double margin = 0.0, int most = 6) {
+    Axis axis;
+    set_ticks(axis, low, high, margin, most);
+    std::string text;
+    for (const Tick& tick : axis.ticks)
+        if (!tick.label.empty()) text += (text.empty() ? "" : " ") + tick.label;
+    return text;
+}
+
+TEST(Ticks, AreRoundAndHaveTheFewestDigits) {
+    EXPECT_EQ(labels(0, 20), "0 5 10 15 20");
+    EXPECT_EQ(labels(-1, 1), "−1.0 −0.5 0.0 0.5 1.0");
+    EXPECT_EQ(labels(0, 0.3), "0.0 0.1 0.2 0.3");
+    EXPECT_EQ(labels(-0.02, 0.02), "−0.02 −0.01 0.00 0.01 0.02");
+    EXPECT_EQ(labels(2.7251, 2.7252), "2.72510 2.72512 2.72514 2.72516 2.72518 2.72520");
+    EXPECT_EQ(labels(0, 4e-7), "0 1×10⁻⁷ 2×10⁻⁷ 3×10⁻⁷ 4×10⁻⁷");
+    EXPECT_EQ(labels(0, 300000), "0 1×10⁵ 2×10⁵ 3×10⁵");
+    EXPECT_EQ(labels(3, 3), "2.8 3.0 3.2");
+    EXPECT_EQ(labels(0, 0), "−1.0 −0.5 0.0 0.5 1.0");
+    EXPECT_EQ(labels(std::nan(""), 1), "0.0 0.2 0.4 0.6 0.8 1.0");
+}
+
+TEST(Ticks, AreExactMultiplesWithinTheLimitsAndNotTooMany) {
+    for (double high = 1e-6; high < 1e6; high *= 1.37) {
+        Axis axis;
+        set_ticks(axis, -0.3 * high, high, 0.05);
+        int count = 0;
+        for (const Tick& tick : axis.ticks) {
+            EXPECT_GE(tick.value, axis.low - 1e-9 * high);
+            EXPECT_LE(tick.value, axis.high + 1e-9 * high);
+            if (!tick.label.empty()) ++count;
+        }
+        EXPECT_GE(count, 2) << high;
+        EXPECT_LE(count, 8) << high;
+    }
+    Axis axis;
+    set_ticks(axis, 0.0, 1.0, 0.0, 11);
+    std::vector<double> values;
+    for (const Tick& tick : axis.ticks)
+        if (!tick.label.empty()) values.push_back(tick.value);
+    EXPECT_EQ(values, (std::vector<double>{0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}));
+}
+
+class Composed : public testing::TestWithParam<std::string> {
+ protected:
+    Composed() : model(test::load(GetParam())), trajectory(simulate(model, model->default_run())) {}
+    std::shared_ptr<const Model> model;
+    Trajectory trajectory;
+};
+
+TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
+    const Figure figure = compose(trajectory, model->description().views, light_theme(), 2);
+    ASSERT_EQ(figure.panels.size(), model->description().views.size());
+    for (const Panel& panel : figure.panels) {
+        SCOPED_TRACE(panel.title);
+        ASSERT_EQ(panel.curves.size(), 2u);
+        EXPECT_FALSE(panel.curves[0].stroke.dash.empty());  // hybrid
+        EXPECT_TRUE(panel.curves[1].stroke.dash.empty());   // constrained
+        EXPECT_NE(panel.curves[0].stroke.color, panel.curves[1].stroke.color);
+        EXPECT_GT(panel.curves[0].points.size(), 100u);
+        EXPECT_GT(panel.curves[1].points.size(), 20u);
+        ASSERT_EQ(panel.markers.size(), 3u);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Event::Kind kinds[] = {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
+            EXPECT_EQ(panel.markers[k].points.size(), test::events_of(trajectory, kinds[k]).size());
+        }
+        for (const Curve& curve : panel.curves) {
+            for (const Point& point : curve.points) {
+                if (std::isnan(point.x)) continue;
+                EXPECT_GE(point.x, panel.x.low);
+                EXPECT_LE(point.x, panel.x.high);
+                EXPECT_GE(point.y, panel.y.low);
+                EXPECT_LE(point.y, panel.y.high);
+            }
+        }
+    }
+    EXPECT_EQ(figure.panels[0].x.low, 0.0);
+    EXPECT_EQ(figure.panels[0].x.high, 20.0);
+    EXPECT_EQ(figure.panels[0].x.label, "t [s]");
+    EXPECT_EQ(to_text(figure), to_text(compose(trajectory, model->description().views, light_theme(), 2)));
+}
+
+TEST_P(Composed, TheMechanismStaysInsideItsLimits) {
+    const Mechanism mechanism(*model);
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    const Drawing limits = mechanism.limits(trajectory, samples);
+    EXPECT_LT(limits.x_low, limits.x_high);
+    for (const Sample& sample : samples) {
+        const Drawing drawing = mechanism.draw(sample.state, trajectory.run.parameters, limits, light_theme());
+        EXPECT_EQ(drawing.shapes.size(), model->description().drawings.size());
+        for (const Shape& shape : drawing.shapes) {
+            if (shape.points.size() > 100) continue;  // the surface goes on beyond the picture
+            for (const Point& p : shape.points) {
+                EXPECT_TRUE(p.x >= limits.x_low && p.x <= limits.x_high && p.y >= limits.y_low && p.y <= limits.y_high);
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Systems, Composed, testing::Values("ball_on_sine", "double_pendulum"),
+                         [](const auto& test) { return test.param; });
+
+TEST(Composing, AnglesAreShownInDegrees) {
+    const auto model = test::load("double_pendulum");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    const Panel panel =
+        compose(trajectory, samples, PreparedView(*model, model->description().views[0]), light_theme());
+    EXPECT_EQ(panel.y.label, "θ₁ [deg]");
+    EXPECT_NEAR(panel.curves[0].points[0].y, 30.0, 1e-12);
+    const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
+    EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);
+}
+
+TEST(Composing, ALegendHidesNoCurve) {
+    const auto model = test::load("double_pendulum");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    for (const ViewDescription& view : model->description().views) {
+        Panel panel = compose(trajectory, plot_samples(trajectory), PreparedView(*model, view), light_theme());
+        place_legend(panel);
+        for (const Curve& curve : panel.curves) {
+            for (const Point& p : curve.points) {
+                const double x = (p.x - panel.x.low) / (panel.x.high - panel.x.low);
+                const double y = (p.y - panel.y.low) / (panel.y.high - panel.y.low);
+                EXPECT_FALSE(std::abs(x - panel.legend_at[0]) < 0.29 && std::abs(y - panel.legend_at[1]) < 0.29);
+            }
+        }
+    }
+}
+
+TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
+    const auto model = test::load("ball_on_sine");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const Panel panel = compose(trajectory, plot_samples(trajectory),
+                                PreparedView(*model, model->description().views[5]), light_theme());
+    for (const Point& p : panel.curves[1].points) EXPECT_TRUE(std::isnan(p.x) || p.y >= -1e-9) << p.y;
+    double most = 0.0;
+    for (const Point& p : panel.curves[1].points)
+        if (!std::isnan(p.y)) most = std::max(most, p.y);
+    EXPECT_GT(most, 1.0);
+}
+
+TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
+    const auto ball = test::load("ball_on_sine"), pendulum = test::load("double_pendulum");
+    const Trajectory a = simulate(ball, ball->default_run()), b = simulate(pendulum, pendulum->default_run());
+    EXPECT_NEAR(rest_time_with_threshold(a, 1.0), 10.93, 0.005);  // THEORY section 8
+    EXPECT_NEAR(rest_time_with_threshold(a, 1e-5), 12.4658, 1e-4);
+    const std::string table = paper_table(a, b);
+    for (const char* piece : {"2.72514217", "3.73182155", "12.465775", "10.93", "-36.69 deg", "about -40 deg"})
+        EXPECT_NE(table.find(piece), std::string::npos) << piece << "\n" << table;
+    const auto figures = paper_figures(a, b);
+    ASSERT_EQ(figures.size(), 7u);
+    EXPECT_EQ(figures[0].name, "fig4a");
+    EXPECT_EQ(figures[6].name, "fig4");
+    EXPECT_EQ(figures[6].figure.panels.size(), 6u);
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "paint/mechanism.hpp"
+#include "render/samples.hpp"
+#include "render/support.hpp"
+#include "surface/curves.hpp"
+#include "surface/events.hpp"
+#include "surface/window.hpp"
+
+namespace achilles {
+namespace {
+
+// A bit of everything: a figure, a mechanism, widgets.
+void everything() {
+    paint(samples::figure(2), ImGui::GetBackgroundDrawList(), {0, 0, 600, 250});
+    paint(samples::mechanism(), ImGui::GetBackgroundDrawList(), {300, 250, 300, 150});
+    ImGui::SetNextWindowPos({10, 260});
+    ImGui::SetNextWindowSize({250, 120});
+    ImGui::Begin("panel");
+    static float value = 0.5F;
+    ImGui::SliderFloat("\u03b8\u2081", &value, 0.0F, 1.0F);
+    ImGui::Button("press");
+    ImGui::End();
+}
+
+template <class Action>
+std::string complaint(const Action& action) {
+    try {
+        action();
+    } catch (const std::runtime_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Offscreen, draws_the_same_bytes_every_time) {
+    Offscreen a(support::options());
+    const Image first = a.frame(everything, 3);
+    EXPECT_EQ(a.frame(everything), first);
+    Offscreen b(support::options());
+    EXPECT_EQ(b.frame(everything, 3), first);
+}
+
+TEST(Offscreen, draws_the_same_bytes_with_any_number_of_threads) {
+    const char* before = std::getenv("LP_NUM_THREADS");
+    const std::string kept = before != nullptr ? before : "";
+    std::vector<Image> images;
+    for (const char* threads : {"0", "1", "2"}) {
+        setenv("LP_NUM_THREADS", threads, 1);
+        Offscreen surface(support::options());
+        images.push_back(surface.frame(everything, 3));
+    }
+    before != nullptr ? setenv("LP_NUM_THREADS", kept.c_str(), 1) : unsetenv("LP_NUM_THREADS");
+    EXPECT_EQ(images[0], images[1]);
+    EXPECT_EQ(images[0], images[2]);
+}
+
+TEST(Offscreen, says_what_it_cannot_do) {
+    SurfaceOptions options = support::options();
+    options.fonts = "/nowhere";
+    EXPECT_NE(complaint([&] { Offscreen surface(options); }).find("fonts-dejavu-core"), std::string::npos);
+    for (const int width : {0, -5, 20000})
+        EXPECT_NE(complaint([&] { Offscreen surface(support::options(width, 100)); }).find("16384"), std::string::npos);
+    EXPECT_NE(complaint([&] { Offscreen surface(support::options(100, 100, 0.0)); }).find("scale"), std::string::npos);
+}
+
+TEST(Offscreen, draws_pictures_as_large_as_the_limit) {
+    Offscreen surface(support::options(16384, 40));
+    const Image image = support::picture(surface, [](ImDrawList* list) {
+        add_curve(list, {{0, 20}, {16384, 20}}, {{0, 0, 0, 255}, 4.0, {}});
+    });
+    EXPECT_EQ(support::darkness(image, 16380, 20), 255);
+}
+
+TEST(Offscreen, takes_a_mouse_and_a_keyboard) {
+    Offscreen surface(support::options());
+    float value = 0.0F;
+    std::string typed(20, '\0');
+    bool space = false;
+    const auto draw = [&] {
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize({400, 200});
+        ImGui::Begin("panel");
+        ImGui::SetNextItemWidth(300.0F);
+        ImGui::SliderFloat("s", &value, 0.0F, 1.0F);
+        ImGui::InputText("name", typed.data(), typed.size());
+        space = space || ImGui::IsKeyPressed(' ');
+        ImGui::End();
+    };
+    Input hand;
+    hand.mouse_x = 20.0;
+    hand.mouse_y = 45.0;
+    surface.step(draw, hand);
+    surface.step(draw, hand);
+    hand.left = true;
+    surface.step(draw, hand);
+    hand.mouse_x = 160.0;
+    surface.step(draw, hand);
+    EXPECT_NEAR(value, 0.5F, 0.05F);
+    hand.left = false;
+    surface.step(draw, hand);
+    hand.mouse_y = 75.0;
+    surface.step(draw, hand);
+    hand.left = true;
+    surface.step(draw, hand);
+    hand.left = false;
+    surface.step(draw, hand);
+    hand.text = "x\u03b8";
+    surface.step(draw, hand);
+    EXPECT_STREQ(typed.c_str(), "x\u03b8");
+    hand.text.clear();
+    hand.keys = {' '};
+    surface.step(draw, hand);
+    EXPECT_TRUE(space);
+}
+
+TEST(Offscreen, restyles_between_frames) {
+    Offscreen surface(support::options());
+    const Image light = surface.frame(everything, 3);
+    surface.restyle(1.0, true);
+    EXPECT_GT(worst_tile(surface.frame(everything, 3), light), 0.3);
+    surface.restyle(1.0, false);
+    EXPECT_EQ(surface.frame(everything, 3), light);
+}
+
+TEST(Events, a_click_within_a_frame_is_seen) {
+    Events events;
+    events.mouse_at(3, 4);
+    events.button(0, true);
+    events.button(0, false);
+    events.key('A', true);
+    events.key('A', false);
+    events.character(0x3b8);
+    const Input first = events.next();
+    EXPECT_TRUE(first.left);
+    EXPECT_EQ(first.mouse_x, 3.0);
+    EXPECT_FALSE(events.empty());
+    const Input second = events.next();
+    EXPECT_FALSE(second.left);
+    EXPECT_EQ(second.keys, std::vector<int>{'A'});
+    const Input third = events.next();
+    EXPECT_TRUE(third.keys.empty());
+    EXPECT_EQ(third.text, "\u03b8");
+    EXPECT_TRUE(events.empty());
+}
+
+class OnDisplay : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "no DISPLAY";
+    }
+};
+
+TEST_F(OnDisplay, a_window_draws_the_bytes_of_offscreen) {
+    Offscreen surface(support::options());
+    const Image expected = surface.frame(everything, 3);
+    Window window(support::options(), "achilles");
+    int frames = 0;
+    window.run([&] {
+        everything();
+        if (++frames == 3) window.close();
+    });
+    const Image shown = window.picture();
+    EXPECT_EQ(shown.width, expected.width);
+    EXPECT_EQ(worst_tile(shown, expected), 0.0);
+    EXPECT_EQ(shown, expected);
+    // One thread, two kinds of context, in turn.
+    EXPECT_EQ(surface.frame(everything, 3), expected);
+    EXPECT_EQ(window.picture(), expected);
+}
+
+TEST_F(OnDisplay, a_frame_may_draw_a_picture_offscreen) {
+    Offscreen surface(support::options());
+    const Image expected = surface.frame(everything, 3);
+    Window window(support::options(), "achilles");
+    int frames = 0;
+    Image inner;
+    window.run([&] {
+        ImGui::Begin("outer");
+        if (++frames == 2) inner = surface.frame(everything, 3);
+        ImGui::End();
+        if (frames == 3) window.close();
+    });
+    EXPECT_EQ(inner, expected);
+    EXPECT_EQ(window.picture().width, 600);
+}
+
+TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
+    Window window(support::options(200, 100), "achilles");
+    window.keep_drawing(false);
+    int frames = 0;
+    window.run([&] {
+        Window::wake();
+        if (++frames == 10) window.close();
+    });
+    EXPECT_EQ(frames, 10);
+    EXPECT_TRUE(window.dropped().empty());
+}
+
+TEST(Window, without_a_display_there_is_a_message) {
+    const char* before = std::getenv("DISPLAY");
+    const std::string kept = before != nullptr ? before : "";
+    unsetenv("DISPLAY");
+    EXPECT_FALSE(Window::display_available());
+    EXPECT_NE(complaint([] { Window window(support::options(), "achilles"); }).find("window"), std::string::npos);
+    if (before != nullptr) setenv("DISPLAY", kept.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace achilles
