@@ -117,7 +117,7 @@ int screenshot(const ScreenshotOptions& options) {
     files.add(options.out);
     Offscreen surface(surface_options(options));
     const Image image = surface.frame([&] { explorer(session, state); }, 3);
-    files.write(options.out, png_bytes(image));
+    files.put(options.out, png_bytes(image));
     files.commit();
     return 0;
 }
