@@ -37,6 +37,17 @@ std::vector<std::string> wrapped(const std::string& text, float width) {
     return lines;
 }
 
+// A certificate in its symbols; the sentence itself is plain text, for terminals.
+std::string typeset_sentence(const Certificate& certificate) {
+    std::string text = sentence(certificate);
+    for (const auto& [plain, symbol] :
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
+          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, std::string_view(plain).size(), symbol);
+    return text;
+}
+
 std::vector<Row> rows(const Session& session, bool impacts, float width) {
     std::vector<Row> result;
     const auto& events = session.trajectory().events;
@@ -44,7 +55,7 @@ std::vector<Row> rows(const Session& session, bool impacts, float width) {
         if (events[i].kind == Event::Kind::impact && !impacts) continue;
         result.push_back({i, ""});
         if (!events[i].certificate) continue;
-        for (std::string& line : wrapped(sentence(*events[i].certificate), width))
+        for (std::string& line : wrapped(typeset_sentence(*events[i].certificate), width))
             result.push_back({i, std::move(line)});
     }
     return result;
