@@ -7,12 +7,6 @@ namespace achilles {
 
 namespace {
 
-Interval norm(const std::vector<Interval>& x) {
-    Interval sum(0.0);
-    for (const Interval& entry : x) sum = sum + square(entry);
-    return sqrt(sum);
-}
-
 double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) sum += evaluator.output(first + i) * evaluator.output(first + i);

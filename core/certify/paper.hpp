@@ -12,23 +12,17 @@
 // w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q, |v_inf - v*| < eps_v.
 #pragma once
 
-#include <optional>
-
-#include "certify/collision.hpp"
-#include "model/model.hpp"
-#include "number/interval.hpp"
+#include "certify/truncation.hpp"
 
 namespace achilles {
 
-class PaperConditions {
+class PaperConditions : public TruncationConditions {
  public:
     PaperConditions(const Model& model, const Run& run);
 
-    // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
-    std::optional<Certificate> hold(const Collision& collision);
-    // What can be proved here whatever the tolerances: the least neighbourhood, doubling from theirs, whose own
-    // conditions hold. For a collision after which no further flight can be resolved.
-    std::optional<Certificate> widest(const Collision& collision);
+    std::optional<Certificate> hold(const Collision& collision) override;
+    // The least neighbourhood, doubling from the run's tolerances, whose own conditions hold.
+    std::optional<Certificate> widest(const Collision& collision) override;
 
  private:
     struct Bounds;

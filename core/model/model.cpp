@@ -154,6 +154,12 @@ void Model::compile() {
     restitution_ = program({{e.restitution}});
 }
 
+const Bouncing& Model::bouncing() const {
+    std::call_once(bouncing_once_,
+                   [&] { bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_)); });
+    return *bouncing_;
+}
+
 Run Model::default_run() const {
     Run run;
     run.options = description_.options;

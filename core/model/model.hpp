@@ -9,12 +9,14 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "expression/parse.hpp"
 #include "expression/program.hpp"
+#include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/description.hpp"
 #include "trajectory.hpp"
@@ -42,6 +44,9 @@ class Model {
     const Program& energy() const { return energy_; }    // T + V, T, V
     const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
+
+    // The programs of the sharp conditions, derived when they are first asked for.
+    const Bouncing& bouncing() const;
 
     // An evaluator of one of the programs above with the parameters' values in place.
     template <class Scalar = double>
@@ -74,6 +79,8 @@ class Model {
     std::unique_ptr<Graph> graph_;
     Equations equations_;
     std::vector<std::string> slot_names_;
+    mutable std::once_flag bouncing_once_;
+    mutable std::unique_ptr<const Bouncing> bouncing_;
     Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, force_, restitution_;
 };
 

@@ -56,7 +56,8 @@ std::string sentence(const Certificate& c) {
     if (c.shadowing_position && *c.shadowing_position > 0.0)
         text += fmt::format("; at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
                             *c.shadowing_position, *c.shadowing_velocity);
-    text += (c.position_bound == 0.0 ? "; " : "; decided by ") + c.decisive;
+    const char* link = c.position_bound == 0.0 ? "; " : c.paper ? "; decided by the condition " : "; decided by the ";
+    text += link + c.decisive;
     if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
     return text;
 }

@@ -26,7 +26,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run)
       run_(run),
       flow_(*model_, run_),
       surface_(*model_, run_),
-      paper_(*model_, run_),
+      conditions_(truncation_conditions(*model_, run_)),
       record_(model_, run_),
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
       state_{run.q, run.v} {}
@@ -146,14 +146,14 @@ void Execution::land() {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
     }
-    Collision collision{t_, state_, -contact.hdot,
+    Collision collision{t_, state_, -contact.hdot, reinitialize(contact, state_.v, Reinitialization::kinetic),
                         reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
     if (restitution_ == 0.0) {
         capture(collision);
-    } else if (auto certificate = paper_.hold(collision)) {
+    } else if (auto certificate = conditions_->hold(collision)) {
         complete(collision, *certificate);
     } else if (too_short_to_resolve(collision, restitution_)) {
-        if (auto widest = paper_.widest(collision)) {
+        if (auto widest = conditions_->widest(collision)) {
             complete(collision, *widest);
         } else {
             stop(Outcome::Kind::undecided,
@@ -191,7 +191,7 @@ void Execution::bounce(const Contact& contact, double e) {
 
 // THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
-    const double a = -surface_.normal_acceleration({collision.before.q, collision.restart});
+    const double a = -surface_.normal_acceleration({collision.before.q, collision.tangential});
     if (!(a > 0.0)) return false;
     const double u = e * collision.speed;
     return u * u / (2.0 * a) < 4.0 * surface_.gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
@@ -200,7 +200,7 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
 // e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and the completion is exact.
 void Execution::capture(const Collision& before) {
     Collision collision = before;
-    collision.restart = reinitialize(surface_.at(state_), state_.v, Reinitialization::kinetic);
+    collision.restart = collision.tangential;
     const Interval hddot = surface_.normal({collision.before.q, collision.restart}).hddot;
     if (certainly_negative(hddot)) {
         Certificate certificate;

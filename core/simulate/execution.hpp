@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "certify/paper.hpp"
+#include "certify/truncation.hpp"
 #include "simulate/flow.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/recorder.hpp"
@@ -56,7 +56,7 @@ class Execution {
     Run run_;
     Flow flow_;
     Surface surface_;
-    PaperConditions paper_;
+    std::unique_ptr<TruncationConditions> conditions_;
     Recorder record_;
     double restitution_;
     double t_ = 0.0;

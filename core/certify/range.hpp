@@ -1,0 +1,30 @@
+// The range of one expression over a box, enclosed as tightly as its gradient allows.
+#pragma once
+
+#include <vector>
+
+#include "expression/program.hpp"
+
+namespace achilles {
+
+// An evaluated expression with its derivatives with respect to some of its inputs; the other inputs stay fixed.
+class Range {
+ public:
+    Range() = default;
+    // `value` and `gradient` are prepared with the parameters; gradient output i is the derivative by input slots[i].
+    Range(Evaluator<Interval> value, Evaluator<Interval> gradient, std::vector<std::uint32_t> slots);
+
+    // Contains the value at every point of the box (one interval for each of the slots). Where the derivative by a
+    // variable keeps its sign, the extremes lie at that variable's ends; the rest is bounded by the mean-value form,
+    // and never worse than by plain evaluation. Undefined where the expression is not defined on the whole box.
+    Interval over(const std::vector<Interval>& box);
+
+ private:
+    Interval evaluate(const std::vector<Interval>& box);
+    Interval bound(const std::vector<Interval>& box, const std::vector<Interval>& slopes, bool upper);
+
+    Evaluator<Interval> value_, gradient_;
+    std::vector<std::uint32_t> slots_;
+};
+
+}  // namespace achilles
