@@ -6,6 +6,7 @@
 
 #include "figure/label.hpp"
 #include "output/output.hpp"
+#include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/widgets.hpp"
 
@@ -69,7 +70,8 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-std::string state_text(const Session& session, const Event& event) {
+// The coordinates after an event, and the rates where they fit too.
+std::string state_text(const Session& session, const Event& event, float width) {
     const auto& coordinates = session.description().coordinates;
     std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -81,7 +83,8 @@ std::string state_text(const Session& session, const Event& event) {
         rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
                              number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
     }
-    return positions + rates;
+    const std::string all = positions + rates;
+    return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
 }
 
 void show_header(PanelState& state) {
@@ -105,6 +108,7 @@ void show_header(PanelState& state) {
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {
+    const float right = ImGui::GetContentRegionAvail().x;
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     Markers markers = event_markers(session.theme(), event.kind);
@@ -116,8 +120,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     cell(kind_at, markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
-    paint_label(list, std::floor(at.x + units(state_at)), at.y, state_text(session, event), text_color(),
-                ImGui::GetFontSize());
+    paint_label(list, std::floor(at.x + units(state_at)), at.y,
+                state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
 }
 
 void show_row(const Session& session, const Row& row, bool is_reached, PanelState& state, Commands& commands) {
