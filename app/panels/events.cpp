@@ -6,6 +6,7 @@
 
 #include "figure/label.hpp"
 #include "output/output.hpp"
+#include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/widgets.hpp"
 
@@ -44,6 +45,17 @@ const Event* chosen(const Session& session) {
     return event.certificate ? &event : nullptr;
 }
 
+// A certificate in its symbols; the sentence itself is plain text, for terminals.
+std::string typeset_sentence(const Certificate& certificate) {
+    std::string text = sentence(certificate);
+    for (const auto& [plain, symbol] :
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
+          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, std::string_view(plain).size(), symbol);
+    return text;
+}
+
 std::vector<Row> rows(const Session& session, bool impacts, float width) {
     std::vector<Row> result;
     const auto& events = session.trajectory().events;
@@ -51,7 +63,7 @@ std::vector<Row> rows(const Session& session, bool impacts, float width) {
         if (events[i].kind == Event::Kind::impact && !impacts) continue;
         result.push_back({i, ""});
         if (!events[i].certificate || chosen(session) != nullptr) continue;
-        for (std::string& line : wrapped(sentence(*events[i].certificate), width))
+        for (std::string& line : wrapped(typeset_sentence(*events[i].certificate), width))
             result.push_back({i, std::move(line)});
     }
     return result;
@@ -65,7 +77,8 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-std::string state_text(const Session& session, const Event& event) {
+// The coordinates after an event, and the rates where they fit too.
+std::string state_text(const Session& session, const Event& event, float width) {
     const auto& coordinates = session.description().coordinates;
     std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -77,7 +90,8 @@ std::string state_text(const Session& session, const Event& event) {
         rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
                              number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
     }
-    return positions + rates;
+    const std::string all = positions + rates;
+    return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
 }
 
 void show_header(bool with_state, PanelState& state) {
@@ -102,6 +116,7 @@ void show_header(bool with_state, PanelState& state) {
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {
+    const float right = ImGui::GetContentRegionAvail().x;
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     Markers markers = event_markers(session.theme(), event.kind);
@@ -113,8 +128,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     cell(kind_at, markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
-    paint_label(list, std::floor(at.x + units(state_at)), at.y, state_text(session, event), text_color(),
-                ImGui::GetFontSize());
+    paint_label(list, std::floor(at.x + units(state_at)), at.y,
+                state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
 }
 
 void show_row(const Session& session, const Row& row, bool is_reached, PanelState& state, Commands& commands) {
