@@ -103,18 +103,14 @@ class Clock {
     std::optional<std::chrono::steady_clock::time_point> last_;
 };
 
-// Playing is seeking, by the clock; nothing a journal would keep.
-void play_on(Session& session, Clock& clock) {
-    if (!session.playing()) return clock.stop();
-    session.apply(command::Seek{session.time() + clock.elapsed()});
-    if (session.time() >= session.trajectory().end_time) session.apply(command::Pause{});
-}
-
 }  // namespace
 
 int explore(const ExploreOptions& options) {
     const std::vector<Command> journal = journal_of(options);
     Session session = open_session(options);
+    PanelState state = panel_state(true);
+    Window window(surface_options(options), "Achilles");
+    // After everything that can fail: a journal that is there already is not lost to a missing display.
     std::optional<JournalFile> record;
     if (!options.record.empty()) record.emplace(options.record);
     const auto keep = [&](const Command& command) {
@@ -126,11 +122,13 @@ int explore(const ExploreOptions& options) {
     };
     for (const Command& command : opening(session, options)) keep(command);
     for (const Command& command : journal) apply(command);
-    PanelState state = panel_state(true);
-    Window window(surface_options(options), "Achilles");
     Clock clock;
     window.run([&] {
-        play_on(session, clock);
+        // Playing is seeking, by the clock; nothing a journal would keep.
+        if (session.playing())
+            play_on(session, clock.elapsed(), state.loop);
+        else
+            clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);
         for (const std::string& file : window.dropped()) apply(command::Open{file});
         window.keep_drawing(session.playing());

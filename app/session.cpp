@@ -175,6 +175,16 @@ std::vector<Point> Session::present(std::size_t plot) const {
     return points;
 }
 
+void play_on(Session& session, double seconds, bool loop) {
+    if (!session.playing()) return;
+    session.apply(command::Seek{session.time() + seconds});
+    if (session.time() < session.trajectory().end_time) return;
+    if (loop)
+        session.apply(command::Play{});  // at the end: once more
+    else
+        session.apply(command::Pause{});
+}
+
 std::string to_text(const Session& session) {
     std::string text = fmt::format("system {}\n", session.system());
     const SystemDescription& description = session.description();

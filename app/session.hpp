@@ -91,6 +91,9 @@ class Session {
     std::string error_;
 };
 
+// Lets so much time pass for a session that plays. At the end it stops, or with `loop` begins again.
+void play_on(Session& session, double seconds, bool loop);
+
 // The session as text: what tests compare.
 std::string to_text(const Session& session);
 

@@ -9,13 +9,6 @@ namespace achilles {
 
 namespace {
 
-#ifndef ACHILLES_EXPLORER
-// Until the explorer is built.
-[[noreturn]] void not_yet(const char* command) {
-    throw InputError({}, {}, std::string("'") + command + "' is not available in this build");
-}
-#endif
-
 void add_options(CLI::App& command, ExploreOptions& options) {
     command.add_option("SYSTEM", options.system, "a path to a .toml file, or a name from 'achilles list'")
         ->type_name("");
@@ -26,11 +19,6 @@ void add_options(CLI::App& command, ExploreOptions& options) {
 }
 
 }  // namespace
-
-#ifndef ACHILLES_EXPLORER
-int explore(const ExploreOptions&) { not_yet("explore"); }
-int screenshot(const ScreenshotOptions&) { not_yet("screenshot"); }
-#endif
 
 void add_explore(CLI::App& program, int& status) {
     const auto options = std::make_shared<ExploreOptions>();

@@ -98,6 +98,15 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         commands.emplace_back(command::Play{});
 }
 
+// At the right end of the line.
+void loop_box(PanelState& state) {
+    const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("loop").x;
+    ImGui::SameLine(std::max(ImGui::GetContentRegionMax().x - width - units(4.0F), units(160.0F)));
+    ImGui::Checkbox("loop", &state.loop);
+    remember(state, "loop");
+    tooltip("begin again at the end of the run");
+}
+
 // The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
 // the height it took.
 float show_state(const Session& session, ImVec2 at, float width) {
@@ -152,6 +161,7 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(fmt::format("t = {:.3f} s", session.time()).c_str());
+    loop_box(state);
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);

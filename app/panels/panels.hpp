@@ -20,6 +20,7 @@ struct PanelState {
     std::vector<SystemEntry> systems;         // to choose from
     bool in_window = false;                   // a window may show how long the run took; a picture must not
     bool show_impacts = true;                 // in the event list
+    bool loop = false;                        // at the end of the run the player begins again
     int followed = -1;                        // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };

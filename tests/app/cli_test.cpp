@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "app/program.hpp"
+#include "image/image.hpp"
 
 namespace achilles::test {
 namespace {
@@ -62,6 +63,9 @@ const Refusal refusals[] = {
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
     {"no_system", "simulate", "achilles: SYSTEM is required" + more},
+    {"missing_journal", "screenshot --out a.png --journal none", "none: the journal cannot be read\n"},
+    {"screenshot_without_a_place", "screenshot ball_on_sine",
+     "achilles: --out is required\n'achilles screenshot --help' tells more\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
      "--size 1600: this is no size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
 };
@@ -90,6 +94,16 @@ TEST(Cli, BadTomlIsShownWithItsPlace) {
     EXPECT_NE(answer.err.find("\n    [[coordinate]\n"), std::string::npos) << answer.err;
     EXPECT_NE(answer.err.find('^'), std::string::npos) << answer.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.toml"});
+}
+
+TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
+    const Folder folder;
+    folder.put("tour.journal", "play\n  seeek 3\n");
+    const Answer answer = folder.run("screenshot --journal tour.journal --out a.png");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err.rfind("tour.journal:2:3: there is no command 'seeek'; did you mean 'seek'?\n", 0), 0u)
+        << answer.err;
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"tour.journal"});
 }
 
 TEST(Cli, TheCommandLineOverridesTheFile) {
@@ -199,6 +213,37 @@ TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
     EXPECT_EQ(answer.status, 0);
     for (const char* part : {"hybrid phase", "constrained phase", "zeno      t = 2.725142", "release"})
         EXPECT_NE(answer.out.find(part), std::string::npos) << part;
+}
+
+TEST(Cli, ScreenshotDrawsWhatTheJournalLeadsTo) {
+    const Folder folder;
+    folder.put("tour.journal", "# the second system, in contact\nopen double_pendulum\nset e 0.4\nseek 4\n");
+    const std::string size = " --size 1280x800 --out ";
+    ASSERT_EQ(folder.run("screenshot" + size + "start.png").status, 0);
+    ASSERT_EQ(folder.run("screenshot ball_on_sine" + size + "named.png").status, 0);
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal" + size + "tour.png").status, 0);
+    const Answer standard = folder.run("screenshot --journal tour.journal" + size + "-");
+    EXPECT_EQ(standard.out, content(folder.path() / "tour.png"));
+    EXPECT_EQ(content(folder.path() / "start.png"), content(folder.path() / "named.png"));
+    EXPECT_NE(content(folder.path() / "start.png"), content(folder.path() / "tour.png"));
+    const Image image = read_png(folder.path() / "tour.png");
+    EXPECT_EQ(image.width, 1280);
+    EXPECT_EQ(image.height, 800);
+    EXPECT_EQ(folder.run("screenshot ball_on_sine --max-impacts 3 --out early.png").status, 3);
+    EXPECT_EQ(read_png(folder.path() / "early.png").width, 1600);
+}
+
+TEST(Cli, AMissingDisplayIsOneMessageAndCostsNoJournal) {
+    const Folder folder;
+    folder.put("old.journal", "seek 3\n");
+    for (const char* system : {"explore ball_on_sine", "ball_on_sine", ""}) {
+        const Answer answer = folder.run(std::string(system) + " --record old.journal", "DISPLAY= WAYLAND_DISPLAY=");
+        EXPECT_EQ(answer.status, 2);
+        EXPECT_EQ(answer.err.rfind("achilles: ", 0), 0u) << answer.err;
+        EXPECT_NE(answer.err.find("display"), std::string::npos) << answer.err;
+        EXPECT_EQ(content(folder.path() / "old.journal"), "seek 3\n");
+    }
+    EXPECT_EQ(folder.files().size(), 1u);
 }
 
 TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {

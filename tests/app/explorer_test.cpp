@@ -140,9 +140,17 @@ TEST(Explorer, plays_seeks_selects_and_opens) {
     EXPECT_EQ(hands.session.time(), hands.session.trajectory().events[1].t);
     hands.click("reinitialization euclidean");
     EXPECT_EQ(hands.session.run().options.truncation.reinitialization, Reinitialization::euclidean);
-    hands.all.clear();
-    hands.click("conditions sharp");
-    EXPECT_TRUE(hands.all.empty());
+    for (const Conditions conditions : {Conditions::paper, Conditions::sharp}) {
+        hands.click("conditions " + std::string(to_text(conditions)));
+        EXPECT_EQ(hands.session.run().options.truncation.conditions, conditions);
+        hands.all.clear();
+        hands.click("conditions " + std::string(to_text(conditions)));
+        EXPECT_TRUE(hands.all.empty()) << "what is so already needs no command";
+    }
+    EXPECT_FALSE(hands.state.loop);
+    hands.click("loop", 0.2);
+    EXPECT_TRUE(hands.state.loop);
+    EXPECT_TRUE(hands.all.empty()) << "a matter of the view, in no journal";
     hands.click("systems");
     hands.click("open double_pendulum");
     EXPECT_EQ(hands.session.system(), "double_pendulum");

@@ -91,6 +91,23 @@ TEST(Session, plays_and_finds_events) {
     EXPECT_EQ(session.selected(), 0);
 }
 
+TEST(Session, plays_to_the_end_or_round_and_round) {
+    Session session = test::session("ball_on_sine");
+    play_on(session, 1.0, true);
+    EXPECT_EQ(session.time(), 0.0) << "it does not play";
+    session.apply(command::Play{});
+    play_on(session, 1.5, false);
+    EXPECT_EQ(session.time(), 1.5);
+    session.apply(command::Seek{19.5});
+    play_on(session, 1.0, true);
+    EXPECT_TRUE(session.playing());
+    EXPECT_EQ(session.time(), 0.0);
+    session.apply(command::Seek{19.5});
+    play_on(session, 1.0, false);
+    EXPECT_FALSE(session.playing());
+    EXPECT_EQ(session.time(), 20.0);
+}
+
 TEST(Session, opens_another_system) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Seek{4.0});
