@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "assets.hpp"
+#include "commands/commands.hpp"
 #include "journal.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
@@ -107,19 +108,19 @@ int explore(const ExploreOptions& options) {
         for (const std::string& file : window.dropped()) apply(command::Open{file});
         window.keep_drawing(session.playing());
     });
-    return 0;
+    return reached_end;
 }
 
 int screenshot(const ScreenshotOptions& options) {
-    const Session session = open_session(options);
-    PanelState state = panel_state(false);
     OutputFiles files;
     files.add(options.out);
+    const Session session = open_session(options);
+    PanelState state = panel_state(false);
     Offscreen surface(surface_options(options));
     const Image image = surface.frame([&] { explorer(session, state); }, 3);
     files.put(options.out, png_bytes(image));
     files.commit();
-    return 0;
+    return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
 }
 
 }  // namespace achilles

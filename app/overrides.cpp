@@ -37,9 +37,6 @@ void apply(const OptionOverrides& overrides, Options& options) {
 
 void refuse_unavailable(const SystemDescription& description, const OptionOverrides& overrides) {
     const Options& options = description.options;
-    if (options.truncation.conditions == Conditions::sharp)
-        throw InputError(overrides.conditions ? std::string() : description.file, {},
-                         "the sharp conditions are not available yet; use --conditions paper");
     if (options.method == Method::taylor)
         throw InputError(overrides.method ? std::string() : description.file, {},
                          "the Taylor method is not available yet; use --method dopri5");

@@ -121,7 +121,6 @@ void Session::perform(const command::Eps& command) {
 }
 
 void Session::perform(const command::UseConditions& command) {
-    if (command.conditions == Conditions::sharp) throw refusal("the sharp conditions are not available yet");
     Run changed = run();
     changed.options.truncation.conditions = command.conditions;
     rerun(changed);

@@ -59,7 +59,7 @@ struct Inequality {
 // tau_k (integration, rounding) and the accumulation over several truncations are not covered.
 struct Certificate {
     bool certified = false;
-    Conditions conditions = Conditions::paper;
+    Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
     bool below_rounding = false;                                   // completed since no further flight can be resolved
     double zeno_low = 0.0, zeno_high = 0.0;                        // encloses tau_inf

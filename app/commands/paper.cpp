@@ -24,7 +24,9 @@ namespace fs = std::filesystem;
 
 Trajectory run(const std::string& system) {
     const auto model = std::make_shared<const Model>(open_system(find_system(system), {}, {}));
-    return simulate(model, model->default_run());
+    Run paper = model->default_run();
+    paper.options.truncation.conditions = Conditions::paper;  // its figures show its truncation
+    return simulate(model, paper);
 }
 
 std::string png(const NamedFigure& named, double scale) {

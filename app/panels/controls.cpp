@@ -161,11 +161,10 @@ void start_value(const Session& session, std::size_t i, bool is_rate, PanelState
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value / factor});
 }
 
-// The first and the last entry of a pair of choices; the entry that is not available yet is grey and says why.
+// A row of buttons of which one is down.
 template <class Value, class Make>
 void choice(const char* id, const std::string& title, const std::string& about, Value now,
-            std::initializer_list<Value> all, PanelState& state, Commands& commands, const Make& make,
-            std::optional<Value> unavailable = {}) {
+            std::initializer_list<Value> all, PanelState& state, Commands& commands, const Make& make) {
     label(title, units(label_width));
     tooltip(about);
     ImGui::SameLine(0.0F, 0.0F);
@@ -175,17 +174,14 @@ void choice(const char* id, const std::string& title, const std::string& about, 
     for (const Value value : all) {
         if (!first) ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
         first = false;
-        const bool is_off = unavailable == value;
         const std::string word(to_text(value));
-        ImGui::BeginDisabled(is_off);
         const ImGuiCol color = value == now ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg;
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(color));
         if (ImGui::Button((word + "##" + id).c_str(), {width, 0.0F}) && value != now)
             commands.emplace_back(make(value));
         ImGui::PopStyleColor();
         remember(state, std::string(id) + " " + word);
-        ImGui::EndDisabled();
-        tooltip(is_off ? "not available yet" : about);
+        tooltip(about);
     }
 }
 
@@ -206,9 +202,11 @@ void truncation(const Session& session, PanelState& state, Commands& commands) {
     else if (q != t.eps_q || v != t.eps_v || time != t.eps_t)
         commands.emplace_back(command::Eps{q, v, time});
     choice<Conditions>(
-        "conditions", "conditions", "which inequalities must hold before the bouncing is cut short", t.conditions,
-        {Conditions::paper, Conditions::sharp}, state, commands, [](Conditions c) { return command::UseConditions{c}; },
-        Conditions::sharp);
+        "conditions", "conditions",
+        "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
+        "which choose their own neighbourhood and certify the restarted motion",
+        t.conditions, {Conditions::paper, Conditions::sharp}, state, commands,
+        [](Conditions c) { return command::UseConditions{c}; });
     choice<Reinitialization>("reinitialization", "restart",
                              "the velocity the constrained motion starts with: the paper's "
                              "euclidean projection, or the kinetic one of a plastic impact",

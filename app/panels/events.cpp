@@ -37,13 +37,20 @@ std::vector<std::string> wrapped(const std::string& text, float width) {
     return lines;
 }
 
+// The Zeno event that the user chose, which is shown with its certificate; or none.
+const Event* chosen(const Session& session) {
+    if (session.selected() == 0) return nullptr;
+    const Event& event = session.trajectory().events[static_cast<std::size_t>(session.selected() - 1)];
+    return event.certificate ? &event : nullptr;
+}
+
 std::vector<Row> rows(const Session& session, bool impacts, float width) {
     std::vector<Row> result;
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (events[i].kind == Event::Kind::impact && !impacts) continue;
         result.push_back({i, ""});
-        if (!events[i].certificate) continue;
+        if (!events[i].certificate || chosen(session) != nullptr) continue;
         for (std::string& line : wrapped(sentence(*events[i].certificate), width))
             result.push_back({i, std::move(line)});
     }
@@ -73,13 +80,14 @@ std::string state_text(const Session& session, const Event& event) {
     return positions + rates;
 }
 
-void show_header(PanelState& state) {
+void show_header(bool with_state, PanelState& state) {
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
                                    std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
+        if (!with_state && at >= speed_at) continue;  // a certificate stands there
         if (at != number_at) ImGui::SameLine();
         ImGui::SetCursorPosX(left + units(at));
         ImGui::TextUnformatted(text);
@@ -115,7 +123,9 @@ void show_row(const Session& session, const Row& row, bool is_reached, PanelStat
     const bool is_event = row.certificate.empty();
     const bool is_selected = session.selected() == event_number || (session.selected() == 0 && is_reached);
     ImGui::PushID(&row);
-    if (ImGui::Selectable("##row", is_selected)) commands.emplace_back(command::Select{event_number});
+    // Another click on the chosen event lets go of it.
+    if (ImGui::Selectable("##row", is_selected))
+        commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
     ImGui::PopID();
     if (is_event) remember(state, "event " + std::to_string(event_number));
     if (is_event)
@@ -141,14 +151,16 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
 }  // namespace
 
 void show_events(const Session& session, PanelState& state, Commands& commands) {
-    show_header(state);
+    show_header(chosen(session) == nullptr, state);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
     // As high as whole lines are.
     const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
     const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
                          units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
-    ImGui::BeginChild("list", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    const Event* event = chosen(session);
+    const float list_width = event == nullptr ? 0.0F : units(speed_at);
+    ImGui::BeginChild("list", {list_width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
     const std::vector<Row> all = rows(session, state.show_impacts, width);
     const int present = reached(session);
@@ -162,6 +174,15 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
             show_row(session, row, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();
+    if (event != nullptr) {
+        ImGui::SameLine(0.0F, units(8.0F));
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
+        ImGui::BeginChild("certificate", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+        show_certificate(*event, session.selected(), state, commands);
+        ImGui::EndChild();
+        ImGui::PopStyleVar(2);
+    }
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
 }

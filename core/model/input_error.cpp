@@ -1,4 +1,9 @@
+#include "model/input_error.hpp"
+
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <vector>
 
 #include "model/description.hpp"
 
@@ -6,68 +11,105 @@ namespace achilles {
 
 namespace {
 
-// At most this much of a line is shown: a file of one megabyte line must not fill the screen.
-constexpr std::size_t shown_width = 120;
-
-bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
-
-// The line and, below it, a caret at a byte column. Control characters are shown as spaces.
-std::string with_caret(std::string line, int column) {
-    if (column < 1 || line.empty()) return {};
-    auto at = std::min(static_cast<std::size_t>(column - 1), line.size());
-    std::string before, after;
-    if (at > shown_width / 2) {
-        std::size_t cut = at - shown_width / 2;
-        while (cut < at && is_continuation(line[cut])) ++cut;
-        line.erase(0, cut);
-        at -= cut;
-        before = "...";
+// Bytes of the UTF-8 character at the start of a text; 0 if it is none.
+std::size_t character_size(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t size = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
+    if (size == 0 || byte(0) > 0xF4 || size > text.size()) return 0;
+    for (std::size_t i = 1; i < size; ++i) {
+        if ((byte(i) & 0xC0) != 0x80) return 0;
     }
-    if (line.size() > shown_width) {
-        std::size_t cut = shown_width;
-        while (cut > 0 && is_continuation(line[cut])) --cut;
-        line.erase(cut);
-        after = "...";
-    }
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    const auto letters = [](std::string_view text) {
-        return static_cast<std::size_t>(
-            std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
-    };
-    const std::size_t indent = before.size() + letters(std::string_view(line).substr(0, std::min(at, line.size())));
-    return "\n    " + before + line + after + "\n    " + std::string(indent, ' ') + "^";
+    return size;
 }
 
-std::string whole_message(const std::string& file, Location at, const std::string& message, const std::string& hint,
-                          const std::string& line) {
-    std::string text = file;
-    if (at.line > 0) text += ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
-    text += (text.empty() ? "" : ": ") + message + with_caret(line, at.column);
-    if (!hint.empty()) text += "\n" + hint;
-    return text;
+// One printable character each: a tab is a space so that a caret below stays in step, what cannot be shown is '?'.
+std::vector<std::string> characters(std::string_view text) {
+    std::vector<std::string> list;
+    while (!text.empty()) {
+        const std::size_t size = character_size(text);
+        const bool control = static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7F;
+        if (text[0] == '\t') {
+            list.emplace_back(" ");
+        } else if (size == 0 || control) {
+            list.emplace_back("?");
+        } else {
+            list.emplace_back(text.substr(0, size));
+        }
+        text.remove_prefix(std::max<std::size_t>(1, size));
+    }
+    return list;
+}
+
+// The line and a caret under the column. Of a long line, what is near the caret.
+std::string with_caret(std::string_view line, int column) {
+    constexpr std::size_t around = 56;
+    const std::size_t target = byte_of_column(line, column);
+    // Four bytes a character are enough to reach as far as is shown.
+    std::size_t first = target > 4 * around ? target - 4 * around : 0;
+    while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xC0) == 0x80) --first;
+    std::vector<std::string> before = characters(line.substr(first, target - first));
+    std::vector<std::string> after = characters(line.substr(target, 4 * around));
+    std::string shown_line;
+    std::size_t indent = 0;
+    if (first > 0 || before.size() > around) {
+        before.erase(before.begin(), before.end() - static_cast<std::ptrdiff_t>(std::min(before.size(), around)));
+        shown_line = "...";
+        indent = 3;
+    }
+    const bool cut = after.size() > around || target + 4 * around < line.size();
+    after.resize(std::min(after.size(), around));
+    for (const std::string& character : before) shown_line += character;
+    for (const std::string& character : after) shown_line += character;
+    return fmt::format("    {}{}\n    {}^", shown_line, cut ? "..." : "", std::string(indent + before.size(), ' '));
+}
+
+std::string full_message(const std::string& file, Location at, const std::string& message, const std::string& hint,
+                         const std::string& line) {
+    std::string full = file.empty()  ? ""
+                       : at.line > 0 ? fmt::format("{}:{}:{}: ", file, at.line, at.column)
+                                     : file + ": ";
+    full += message;
+    if (!line.empty() && at.column > 0) full += '\n' + with_caret(line, at.column);
+    if (!hint.empty()) full += '\n' + hint;
+    return full;
 }
 
 }  // namespace
 
-InputError::InputError(std::string in_file, Location place, std::string what_is_wrong, std::string what_is_right,
+InputError::InputError(std::string file_, Location at_, std::string message_, std::string hint_,
                        const std::string& line)
-    : std::runtime_error(whole_message(in_file, place, what_is_wrong, what_is_right, line)),
-      file(std::move(in_file)),
-      message(std::move(what_is_wrong)),
-      hint(std::move(what_is_right)),
-      at(place) {}
+    : std::runtime_error(full_message(file_, at_, message_, hint_, line)),
+      file(std::move(file_)),
+      message(std::move(message_)),
+      hint(std::move(hint_)),
+      at(at_) {}
 
-InputError SystemDescription::error(Location at, const std::string& message, const std::string& hint) const {
+std::string line_of(std::string_view text, int line) {
     std::size_t begin = 0;
-    for (int line = 1; line < at.line && begin != std::string::npos; ++line) {
-        begin = source_text.find('\n', begin);
-        if (begin != std::string::npos) ++begin;
+    for (int i = 1; i < line; ++i) {
+        begin = text.find('\n', begin);
+        if (begin == text.npos) return "";
+        ++begin;
     }
-    std::string line;
-    if (at.line > 0 && begin != std::string::npos)
-        line = source_text.substr(begin, source_text.find('\n', begin) - begin);
-    return {file, at, message, hint, line};
+    std::string_view found = text.substr(begin, text.find('\n', begin) - begin);
+    if (found.ends_with('\r')) found.remove_suffix(1);
+    return std::string(found);
+}
+
+std::size_t byte_of_column(std::string_view line, int column) {
+    std::size_t byte = 0;
+    for (int i = 1; i < column && byte < line.size(); ++i) {
+        byte += std::max<std::size_t>(1, character_size(line.substr(byte)));
+    }
+    return std::min(byte, line.size());
+}
+
+std::string shown(std::string_view text) {
+    constexpr std::size_t most = 60;
+    const std::vector<std::string> list = characters(text.substr(0, 4 * most));
+    std::string result;
+    for (std::size_t i = 0; i < std::min(list.size(), most); ++i) result += list[i];
+    return list.size() > most || text.size() > 4 * most ? result + "..." : result;
 }
 
 }  // namespace achilles

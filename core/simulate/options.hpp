@@ -26,7 +26,7 @@ struct Truncation {
     double eps_q = 1e-6;  // position, Euclidean norm, in the coordinates' units
     double eps_v = 1e-6;  // velocity
     double eps_t = 1e-6;  // time, s
-    Conditions conditions = Conditions::paper;
+    Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
 };
 

@@ -84,6 +84,8 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
 
 double rest_time_with_threshold(const Trajectory& ball, double speed) {
     Run run = ball.run;
+    run.options.truncation.conditions =
+        Conditions::paper;  // the sharp ones would end the bouncing before the threshold
     double elapsed = 0.0;
     for (int zeno = 0; zeno < 2; ++zeno) {
         run.options.end_time = ball.run.options.end_time - elapsed;

@@ -40,8 +40,6 @@ const Refusal refusals[] = {
      "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
     {"setting_without_value", "simulate ball_on_sine --set g",
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
-    {"sharp_conditions", "simulate ball_on_sine --conditions sharp --json a.json",
-     "achilles: the sharp conditions are not available yet; use --conditions paper\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no 'shap' to choose; did you mean 'sharp'?\nthe choice is paper or sharp\n"},
     {"taylor_method", "simulate ball_on_sine --method taylor",
@@ -94,13 +92,15 @@ TEST(Cli, BadTomlIsShownWithItsPlace) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.toml"});
 }
 
-TEST(Cli, SharpConditionsOfAFileAreRefusedUnlessTheCommandLineSaysPaper) {
+TEST(Cli, TheCommandLineOverridesTheFile) {
     const Folder folder;
-    folder.put("drop.toml", drop + "[truncation]\nconditions = \"sharp\"\n");
+    folder.put("drop.toml", drop + "[run]\nmethod = \"taylor\"\n[truncation]\nconditions = \"paper\"\n");
     const Answer refused = folder.run("simulate drop.toml");
     EXPECT_EQ(refused.status, 2);
-    EXPECT_EQ(refused.err, "drop.toml: the sharp conditions are not available yet; use --conditions paper\n");
-    EXPECT_EQ(folder.run("simulate drop.toml --conditions paper").status, 0);
+    EXPECT_EQ(refused.err, "drop.toml: the Taylor method is not available yet; use --method dopri5\n");
+    const Answer answer = folder.run("simulate drop.toml --method dopri5 --conditions sharp");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_NE(answer.out.find("sharp conditions"), std::string::npos) << answer.out;
 }
 
 TEST(Cli, ListShowsNamesAndTitles) {
@@ -162,7 +162,7 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     EXPECT_EQ(root["options"]["eps_q"], 1e-4);
     EXPECT_EQ(root["options"]["eps_v"], 1e-3);
     EXPECT_EQ(root["options"]["eps_t"], 1e-4);
-    EXPECT_EQ(root["options"]["conditions"], "paper");
+    EXPECT_EQ(root["options"]["conditions"], "sharp");
     EXPECT_EQ(root["options"]["reinitialization"], "euclidean");
     EXPECT_EQ(content(folder.path() / "run.csv").rfind("t,phase,y,y',gap,", 0), 0u);
     EXPECT_NE(content(folder.path() / "run.csv").find("\n0,hybrid,2,-1,"), std::string::npos);

@@ -12,7 +12,12 @@ namespace {
 
 class Outputs : public testing::Test {
  protected:
-    Outputs() : model(test::load("ball_on_sine")), trajectory(simulate(model, model->default_run())) {}
+    Outputs() : model(test::load("ball_on_sine")), trajectory(simulate(model, with(Conditions::paper))) {}
+    achilles::Run with(Conditions conditions) const {
+        auto run = model->default_run();
+        run.options.truncation.conditions = conditions;
+        return run;
+    }
     std::shared_ptr<const Model> model;
     Trajectory trajectory;
 };
@@ -62,6 +67,23 @@ TEST_F(Outputs, JsonHasTheKeysOfTheContract) {
     EXPECT_EQ(json["end"]["q"][0].get<double>(), trajectory.end.q[0]);  // the same double
 }
 
+TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
+    const Trajectory sharp = simulate(model, with(Conditions::sharp));
+    const auto json = nlohmann::json::parse(to_json(sharp));
+    for (const auto& event : json["events"]) {
+        if (event["kind"] != "zeno") continue;
+        const auto& c = event["certificate"];
+        EXPECT_EQ(c["conditions"], "sharp");
+        EXPECT_LE(c["shadowing_position"].get<double>(), 1e-6);
+        EXPECT_LE(c["shadowing_velocity"].get<double>(), 1e-6);
+        EXPECT_EQ(c["decisive"], "time bound");
+        EXPECT_FALSE(c.contains("e1"));
+        EXPECT_EQ(c["inequalities"].size(), 5u);
+    }
+    EXPECT_NE(summary(sharp).find("of the true motion; decided by the time bound"), std::string::npos)
+        << summary(sharp);
+}
+
 TEST_F(Outputs, WhatIsNotFiniteIsNull) {
     trajectory.end.q[0] = std::numeric_limits<double>::quiet_NaN();
     trajectory.statistics.energy_drift = std::numeric_limits<double>::infinity();
@@ -94,7 +116,7 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
     EXPECT_NE(text.find("zeno      t = 2.725142173"), std::string::npos) << text;
     EXPECT_NE(text.find("release   t = 3.73182"), std::string::npos) << text;
     EXPECT_NE(text.find("tau_inf in [2.725142172"), std::string::npos) << text;
-    EXPECT_NE(text.find("decided by c3: velocity"), std::string::npos) << text;
+    EXPECT_NE(text.find("decided by the condition c3: velocity"), std::string::npos) << text;
     EXPECT_NE(text.find("do not cover"), std::string::npos) << text;
     EXPECT_NE(text.find("outcome: end time"), std::string::npos) << text;
 }

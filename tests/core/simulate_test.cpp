@@ -79,7 +79,7 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
     for (const Problem& problem : test::problems) {
         const auto model = test::load(problem.asset);
         auto run = model->default_run();
-        run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-9;
+        run.options.truncation = {1e-9, 1e-9, 1e-9, Conditions::paper, Reinitialization::kinetic};
         const Trajectory trajectory = simulate(model, run);
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         EXPECT_LT(trajectory.statistics.impacts, 150);
@@ -93,6 +93,40 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
             EXPECT_GT(event.certificate->velocity_bound, 1e-14);  // the bound it has, not the one that was asked for
             EXPECT_LT(event.certificate->velocity_bound, 1e-5);
         }
+    }
+}
+
+TEST(PaperProblems, SharpConditionsCutEarlierAndAreRight) {
+    for (const Problem& problem : test::problems) {
+        SCOPED_TRACE(problem.key);
+        const auto model = test::load(problem.asset);
+        auto run = model->default_run();
+        run.options.tolerance = 1e-12;
+        const auto expected = test::reference("fig4")["problems"][problem.key];
+        ASSERT_EQ(run.options.truncation.conditions, Conditions::sharp);
+        const Trajectory sharp = simulate(model, run);
+        ASSERT_EQ(sharp.outcome.kind, Outcome::Kind::end_time) << sharp.outcome.message;
+        const auto zenos = test::events_of(sharp, Event::Kind::zeno);
+        ASSERT_EQ(zenos.size(), expected["zeno_times"].size());
+        for (std::size_t i = 0; i < zenos.size(); ++i) {
+            const Certificate& c = *zenos[i].certificate;
+            // Later Zeno times carry the small errors of earlier truncations, which a certificate does not cover.
+            const double allowed = i == 0 ? 1e-11 : 1e-8;
+            EXPECT_GE(test::number(expected["zeno_times"][i]), c.zeno_low - allowed);
+            EXPECT_LE(test::number(expected["zeno_times"][i]), c.zeno_high + allowed);
+            EXPECT_NEAR(zenos[i].t, test::number(expected["zeno_times"][i]), 1e-6);
+            EXPECT_LE(*c.shadowing_position, 1e-6);
+            EXPECT_LE(*c.shadowing_velocity, 1e-6);
+        }
+        run.options.truncation.conditions = Conditions::paper;
+        const Trajectory paper = simulate(model, run);
+        EXPECT_LE(sharp.statistics.impacts, paper.statistics.impacts - 11 * static_cast<long>(zenos.size()));
+        // Third order: far from the Zeno point, and still right at the end.
+        expect_near(sharp.end.q, sharp.end.v, expected["end_state"], 5e-9, "end");
+        run.options.truncation = {1e-15, 1e-15, 1e-15, Conditions::sharp, Reinitialization::kinetic};
+        const Trajectory tiny = simulate(model, run);
+        EXPECT_EQ(tiny.outcome.kind, Outcome::Kind::end_time) << tiny.outcome.message;
+        for (const Event& event : test::events_of(tiny, Event::Kind::zeno)) EXPECT_TRUE(event.certificate->certified);
     }
 }
 
@@ -203,11 +237,13 @@ gap = "y"
 restitution = 0.5
 )toml";
 
-Trajectory on_floor(const std::string& start) {
+Trajectory on_floor(const std::string& start, Conditions conditions = Conditions::paper) {
     std::string text = floor_text;
     text.replace(text.find("START"), 5, start);
     const auto model = test::typed(text);
-    const Trajectory trajectory = simulate(model, model->default_run());
+    Run run = model->default_run();
+    run.options.truncation.conditions = conditions;
+    const Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     return trajectory;
 }
@@ -242,6 +278,16 @@ TEST(Starts, AboveTheFloorEndsAtTheClosedFormZenoTime) {
     // t1 = 1, v1 = 1: tau_inf = t1 + 2 e v1/(g (1 - e)) = 3
     EXPECT_NEAR(test::events_of(trajectory, Event::Kind::zeno).at(0).t, 3.0, 1e-12);
     EXPECT_EQ(trajectory.end_phase, Phase::Kind::constrained);
+}
+
+// Where hddot is constant the sharp bounds are equalities: the first impact is enough, and the Zeno time is exact.
+TEST(Starts, AboveAFlatFloorTheFirstImpactCertifiesTheClosedForm) {
+    const Trajectory trajectory = on_floor("start = 0.5\nrate = 0.0", Conditions::sharp);
+    const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
+    EXPECT_EQ(zeno.impacts, 0);
+    EXPECT_NEAR(zeno.t, 3.0, 1e-13);
+    EXPECT_LE(zeno.certificate->zeno_high - zeno.certificate->zeno_low, 1e-12);
+    EXPECT_LE(*zeno.certificate->shadowing_velocity, 1e-12);
 }
 
 TEST(Starts, BelowTheFloorIsRefused) { EXPECT_THROW(on_floor("start = -0.5"), InputError); }

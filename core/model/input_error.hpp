@@ -1,0 +1,19 @@
+// How an error in a text file is shown: the lines of the text, columns that count characters, names that stay short.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace achilles {
+
+// The line with that number, from 1, without its line break; "" where there is none.
+std::string line_of(std::string_view text, int line);
+
+// The byte at which the character of that column (from 1, UTF-8 characters) starts; the line's size if there is none.
+std::size_t byte_of_column(std::string_view line, int column);
+
+// What a person typed, fit for a message: control characters and broken UTF-8 become '?', and at most about 60
+// characters stay.
+std::string shown(std::string_view text);
+
+}  // namespace achilles

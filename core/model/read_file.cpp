@@ -1,0 +1,35 @@
+// Reading a system file from disk.
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+
+#include "model/description.hpp"
+
+namespace achilles {
+
+SystemDescription read_system(const std::filesystem::path& file) {
+    constexpr std::size_t largest = std::size_t{64} << 20;  // bytes; /dev/zero has no end
+    const std::string name = file.string();
+    const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
+    const auto reason = [] { return std::generic_category().message(errno); };
+
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored)) throw refuse("it is a directory");
+    struct Close {
+        void operator()(std::FILE* open) const { std::fclose(open); }
+    };
+    const std::unique_ptr<std::FILE, Close> open(std::fopen(name.c_str(), "rb"));
+    if (!open && errno == ENOENT) throw InputError(name, {}, "there is no such file");
+    if (!open) throw refuse(reason());
+    std::string text;
+    char block[1 << 16];
+    while (const std::size_t count = std::fread(block, 1, sizeof block, open.get())) {
+        text.append(block, count);
+        if (text.size() > largest) throw refuse("it is larger than 64 MB");
+    }
+    if (std::ferror(open.get()) != 0) throw refuse(reason());
+    return parse_system(std::move(text), name);
+}
+
+}  // namespace achilles

@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "journal.hpp"
+
+namespace achilles {
+namespace {
+
+const std::vector<Command> one_of_each{
+    command::Open{"ball_on_sine"},
+    command::Open{"/tmp/a \"strange\" #1\\file.toml"},
+    command::Set{"g", 9.81},
+    command::Set{"x'", -1.5},
+    command::Set{"theta1", 0.1 + 0.2},
+    command::End{20.0},
+    command::Tolerance{1e-10},
+    command::Eps{1e-6, 1e-6, 1e-6},
+    command::Eps{1e-6, 2e-6, 1.0 / 3.0},
+    command::UseConditions{Conditions::sharp},
+    command::UseReinitialization{Reinitialization::euclidean},
+    command::Seek{3.2},
+    command::Play{},
+    command::Pause{},
+    command::Select{25},
+};
+
+TEST(Command, reads_back_what_it_writes) {
+    for (const Command& command : one_of_each) EXPECT_EQ(parse_command(to_text(command)), command) << to_text(command);
+}
+
+TEST(Command, looks_as_the_manual_says) {
+    EXPECT_EQ(to_text(command::Open{"ball_on_sine"}), "open ball_on_sine");
+    EXPECT_EQ(to_text(command::Set{"g", 9.81}), "set g 9.81");
+    EXPECT_EQ(to_text(command::Set{"x'", 1.5}), "set x' 1.5");
+    EXPECT_EQ(to_text(command::Seek{3.2}), "seek 3.2");
+    EXPECT_EQ(to_text(command::Eps{1e-6, 1e-6, 1e-6}), "eps 1e-06");
+    EXPECT_EQ(parse_command("eps 1e-6"), Command(command::Eps{1e-6, 1e-6, 1e-6}));
+    EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
+}
+
+TEST(Journal, reads_back_what_it_writes) {
+    EXPECT_EQ(parse_journal(journal_text(one_of_each)), one_of_each);
+    EXPECT_EQ(parse_journal("# a tour\n\nplay\r\n   # on\npause"),
+              (std::vector<Command>{command::Play{}, command::Pause{}}));
+    EXPECT_TRUE(parse_journal("").empty());
+}
+
+struct Mistake {
+    const char* line;
+    int column;
+    const char* says;
+};
+
+TEST(Journal, names_the_place_of_a_mistake) {
+    const Mistake mistakes[] = {{"  seeek 3", 3, "did you mean 'seek'"},
+                                {"seek", 5, "needs more"},
+                                {"seek 3 4", 8, "'4' is too much"},
+                                {"seek soon", 6, "'soon' is not a finite number"},
+                                {"seek inf", 6, "not a finite number"},
+                                {"seek nan", 6, "not a finite number"},
+                                {"seek 1e999", 6, "not a finite number"},
+                                {"seek 3x", 6, "not a finite number"},
+                                {"set g", 6, "needs more"},
+                                {"eps 1 2", 7, "one number or three"},
+                                {"conditions strict", 12, "'strict'"},
+                                {"reinitialization none", 18, "'none'"},
+                                {"select 1.5", 8, "whole number"},
+                                {"open \"half", 6, "quotes"},
+                                {"play now", 6, "too much"},
+                                {"\x01\xff", 1, "no command"}};
+    for (const Mistake& mistake : mistakes) {
+        try {
+            parse_journal(std::string("# first\nplay\n") + mistake.line + "\nplay\n", "tour.journal");
+            ADD_FAILURE() << mistake.line;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.file, "tour.journal");
+            EXPECT_EQ(error.at.line, 3) << mistake.line;
+            EXPECT_EQ(error.at.column, mistake.column) << mistake.line;
+            EXPECT_NE(std::string(error.what()).find(mistake.says), std::string::npos) << error.what();
+        }
+    }
+}
+
+TEST(Journal, is_a_file_that_grows_line_by_line) {
+    const auto file = std::filesystem::temp_directory_path() / "achilles_command_test.journal";
+    {
+        JournalFile journal(file);
+        std::vector<Command> so_far;
+        for (const Command& command : one_of_each) {
+            journal.append(command);
+            so_far.push_back(command);
+            EXPECT_EQ(read_journal(file), so_far);
+        }
+    }
+    { const JournalFile anew(file); }
+    EXPECT_TRUE(read_journal(file).empty());
+    std::filesystem::remove(file);
+    EXPECT_THROW(read_journal(file), InputError);
+    EXPECT_THROW(read_journal(std::filesystem::temp_directory_path()), InputError);
+    EXPECT_THROW(JournalFile("/nowhere/at/all"), InputError);
+}
+
+}  // namespace
+}  // namespace achilles

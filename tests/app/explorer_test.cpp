@@ -1,0 +1,194 @@
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/open.hpp"
+#include "surface/window.hpp"
+
+namespace achilles {
+namespace {
+
+// A picture must not depend on shaders that an earlier run left in a cache.
+[[maybe_unused]] const int no_cache = setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+
+// One hand on one explorer.
+struct Hands {
+    explicit Hands(const std::string& system, const SurfaceOptions& options = test::surface())
+        : session(test::session(system)), surface(options) {
+        rest(3);
+    }
+    // A frame; what it asks for is done, as the window does it.
+    std::vector<Command> frame() {
+        std::vector<Command> commands;
+        surface.step([&] { commands = explorer(session, state); }, hand);
+        for (const Command& command : commands) session.apply(command);
+        all.insert(all.end(), commands.begin(), commands.end());
+        return commands;
+    }
+    void rest(int frames) {
+        for (int i = 0; i < frames; ++i) frame();
+    }
+    // Moves over a share of a control's width.
+    void point(const std::string& place, double share = 0.5) {
+        const Rectangle r = state.places.at(place);
+        hand.mouse_x = r.x + share * r.width;
+        hand.mouse_y = r.y + 0.5 * r.height;
+        rest(2);
+    }
+    void click(const std::string& place, double share = 0.5) {
+        point(place, share);
+        hand.left = true;
+        rest(2);
+        hand.left = false;
+        rest(2);
+    }
+    void press(int key) {
+        hand.keys = {key};
+        rest(2);
+        hand.keys.clear();
+        rest(2);
+    }
+    Image picture() {
+        return surface.frame([&] { explorer(session, state); }, 3);
+    }
+
+    Session session;
+    PanelState state = test::panels();
+    Offscreen surface;
+    Input hand;
+    std::vector<Command> all;
+};
+
+TEST(Explorer, does_nothing_by_itself) {
+    Hands hands("ball_on_sine");
+    EXPECT_TRUE(hands.all.empty());
+}
+
+TEST(Explorer, a_dragged_slider_changes_the_trajectory_and_derives_nothing) {
+    Hands hands("ball_on_sine");
+    const auto model = hands.session.model();
+    const std::string before = to_text(hands.session.trajectory());
+    hands.point("set g", 0.3);
+    hands.hand.left = true;
+    for (int i = 0; i < 10; ++i) {
+        hands.hand.mouse_x += 4.0;
+        hands.frame();
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    EXPECT_GE(hands.all.size(), 5U);
+    for (const Command& command : hands.all) {
+        ASSERT_TRUE(std::holds_alternative<command::Set>(command)) << to_text(command);
+        EXPECT_EQ(std::get<command::Set>(command).name, "g");
+    }
+    EXPECT_NE(hands.session.run().parameters[1], 1.0);
+    EXPECT_NE(to_text(hands.session.trajectory()), before);
+    EXPECT_EQ(hands.session.model(), model);
+    EXPECT_EQ(hands.session.error(), "");
+}
+
+TEST(Explorer, every_value_has_a_slider_that_works) {
+    for (const char* system : {"ball_on_sine", "double_pendulum"}) {
+        Hands hands(system);
+        std::vector<std::string> names;
+        for (const auto& p : hands.session.description().parameters) names.push_back("set " + p.name);
+        for (const auto& c : hands.session.description().coordinates)
+            names.insert(names.end(), {"set " + c.name, "set " + c.name + "'"});
+        names.insert(names.end(), {"tolerance", "end", "eps", "eps q", "eps v", "eps t"});
+        for (const std::string& name : names) {
+            hands.all.clear();
+            hands.click(name, name == "eps" ? 0.6 : 0.8);
+            ASSERT_FALSE(hands.all.empty()) << system << ": " << name;
+            EXPECT_EQ(to_text(hands.all[0]).rfind(name.substr(0, name.rfind("eps ", 0) == 0 ? 3 : name.size()), 0), 0U)
+                << to_text(hands.all[0]);
+        }
+    }
+}
+
+TEST(Explorer, a_typed_value_is_kept_exactly) {
+    Hands hands("ball_on_sine");
+    hands.point("set g");
+    hands.hand.keys = {key::left_control};
+    hands.rest(1);
+    hands.hand.left = true;
+    hands.rest(1);
+    hands.hand.left = false;
+    hands.hand.keys.clear();
+    hands.rest(2);
+    hands.hand.text = "9.806650001";
+    hands.rest(1);
+    hands.hand.text.clear();
+    hands.press(key::enter);
+    EXPECT_EQ(hands.session.run().parameters[1], 9.806650001);
+}
+
+TEST(Explorer, plays_seeks_selects_and_opens) {
+    Hands hands("ball_on_sine");
+    hands.click("play");
+    EXPECT_TRUE(hands.session.playing());
+    hands.press(' ');
+    EXPECT_FALSE(hands.session.playing());
+    hands.click("timeline", 0.5);
+    EXPECT_NEAR(hands.session.time(), 10.0, 0.1);
+    hands.click("plot 1", 0.25);
+    EXPECT_NEAR(hands.session.time(), 5.0, 0.1);
+    hands.session.apply(command::Seek{0.0});
+    hands.rest(2);
+    hands.click("event 2");
+    EXPECT_EQ(hands.session.selected(), 2);
+    EXPECT_EQ(hands.session.time(), hands.session.trajectory().events[1].t);
+    hands.click("reinitialization euclidean");
+    EXPECT_EQ(hands.session.run().options.truncation.reinitialization, Reinitialization::euclidean);
+    hands.all.clear();
+    hands.click("conditions sharp");
+    EXPECT_TRUE(hands.all.empty());
+    hands.click("systems");
+    hands.click("open double_pendulum");
+    EXPECT_EQ(hands.session.system(), "double_pendulum");
+}
+
+TEST(Explorer, draws_the_same_bytes_every_time) {
+    for (const double scale : {1.0, 2.0}) {
+        const SurfaceOptions options =
+            test::surface(static_cast<int>(1280 * scale), static_cast<int>(800 * scale), scale);
+        Hands a("double_pendulum", options), b("double_pendulum", options);
+        EXPECT_EQ(a.picture(), b.picture());
+    }
+}
+
+TEST(Explorer, fits_any_window_and_shows_messages) {
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, std::pair{60, 900}, std::pair{1200, 40}, std::pair{300, 200}}) {
+        Hands hands("ball_on_sine", test::surface(width, height));
+        hands.session.apply(command::Set{"e", 7.0});
+        EXPECT_NE(hands.session.error(), "");
+        EXPECT_EQ(hands.picture().width, width);
+    }
+}
+
+// tests/app/window_test.sh asks this where to put the mouse.
+TEST(Explorer, tells_where_the_slider_of_g_is) {
+    const Hands hands("ball_on_sine");
+    const Rectangle r = hands.state.places.at("set g");
+    std::printf("slider %d %d %d\n", static_cast<int>(r.x), static_cast<int>(r.y + 0.5F * r.height),
+                static_cast<int>(r.width));
+}
+
+TEST(ExplorerOnDisplay, the_window_shows_the_bytes_of_the_picture) {
+    if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "no DISPLAY";
+    const Session session = test::session("ball_on_sine");
+    PanelState offscreen_state = test::panels(), window_state = test::panels();
+    Offscreen surface(test::surface());
+    const Image expected = surface.frame([&] { explorer(session, offscreen_state); }, 3);
+    Window window(test::surface(), "Achilles");
+    int frames = 0;
+    window.run([&] {
+        explorer(session, window_state);
+        if (++frames == 3) window.close();
+    });
+    EXPECT_EQ(window.picture(), expected);
+}
+
+}  // namespace
+}  // namespace achilles

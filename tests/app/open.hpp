@@ -1,0 +1,35 @@
+// A session on a system of the assets, and a frame of the explorer.
+#pragma once
+
+#include <string>
+
+#include "panels/panels.hpp"
+#include "surface/offscreen.hpp"
+
+namespace achilles::test {
+
+inline SystemDescription system(const std::string& name) {
+    return read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml");
+}
+
+inline Session session(const std::string& name) { return {name, system(name), system}; }
+
+// A surface as explore.cpp sets it up.
+inline SurfaceOptions surface(int width = 1280, int height = 800, double scale = 1.0) {
+    SurfaceOptions result;
+    result.width = width;
+    result.height = height;
+    result.scale = scale;
+    result.figure_text_size = 13.0;
+    result.fonts = ACHILLES_BINARY_DIR "/assets/fonts";
+    return result;
+}
+
+inline PanelState panels() {
+    PanelState state;
+    state.systems = {{"ball_on_sine", "Ball bouncing on a sinusoidal surface"},
+                     {"double_pendulum", "Double pendulum with a mechanical stop"}};
+    return state;
+}
+
+}  // namespace achilles::test

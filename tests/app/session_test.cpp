@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include "app/open.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+namespace {
+
+TEST(Session, begins_with_the_run_of_the_file) {
+    const Session session = test::session("ball_on_sine");
+    EXPECT_EQ(session.time(), 0.0);
+    EXPECT_FALSE(session.playing());
+    EXPECT_EQ(session.plots().size(), 4U);
+    EXPECT_EQ(to_text(session.trajectory()), to_text(simulate(session.model(), session.model()->default_run())));
+}
+
+TEST(Session, setting_a_value_runs_the_same_model_again) {
+    Session session = test::session("ball_on_sine");
+    const auto model = session.model();
+    const std::uint32_t nodes = model->equations().gap.graph().size();
+    const std::string before = to_text(session.trajectory());
+    for (const double g : {1.1, 1.2, 1.3, 9.81}) session.apply(command::Set{"g", g});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.run().parameters[1], 9.81);
+    EXPECT_EQ(session.model(), model);
+    EXPECT_EQ(model->equations().gap.graph().size(), nodes) << "something was derived again";
+    EXPECT_NE(to_text(session.trajectory()), before);
+    session.apply(command::Set{"g", 1.0});
+    EXPECT_EQ(to_text(session.trajectory()), before);
+    session.apply(command::Set{"x'", 0.5});
+    EXPECT_EQ(session.run().v[0], 0.5);
+    session.apply(command::Set{"y", 3.0});
+    EXPECT_EQ(session.run().q[1], 3.0);
+}
+
+TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Set{"g", 2.0});
+    session.apply(command::Seek{3.0});
+    const std::string before = to_text(session);
+    const std::pair<Command, std::string> mistakes[] = {{command::Set{"yy", 1.0}, "did you mean 'y'"},
+                                                        {command::Set{"y", -5.0}, "gap"},
+                                                        {command::Set{"e", 1.5}, "restitution"},
+                                                        {command::End{-1.0}, "end time"},
+                                                        {command::Tolerance{0.0}, "tolerance"},
+                                                        {command::Eps{1e-6, -1.0, 1e-6}, "eps"},
+                                                        {command::Select{4000}, "event"},
+                                                        {command::Open{"nowhere"}, "nowhere"}};
+    for (const auto& [command, says] : mistakes) {
+        session.apply(command);
+        EXPECT_NE(session.error().find(says), std::string::npos) << to_text(command) << ": " << session.error();
+        std::string after = to_text(session);
+        after.erase(after.find("error "), ("error " + session.error() + "\n").size());
+        EXPECT_EQ(after, before) << to_text(command);
+    }
+    session.apply(command::Set{"g", 2.0});
+    EXPECT_EQ(to_text(session), before);
+}
+
+TEST(Session, options_change_the_run) {
+    Session session = test::session("double_pendulum");
+    session.apply(command::End{5.0});
+    EXPECT_EQ(session.trajectory().end_time, 5.0);
+    session.apply(command::Tolerance{1e-8});
+    session.apply(command::Eps{1e-3, 1e-4, 1e-5});
+    session.apply(command::UseReinitialization{Reinitialization::euclidean});
+    const Options& options = session.run().options;
+    EXPECT_EQ(options.tolerance, 1e-8);
+    EXPECT_EQ(options.truncation.eps_v, 1e-4);
+    EXPECT_EQ(options.truncation.reinitialization, Reinitialization::euclidean);
+    EXPECT_EQ(session.error(), "");
+}
+
+TEST(Session, plays_and_finds_events) {
+    Session session = test::session("ball_on_sine");
+    const auto& events = session.trajectory().events;
+    session.apply(command::Select{2});
+    EXPECT_EQ(session.selected(), 2);
+    EXPECT_EQ(session.time(), events[1].t);
+    session.apply(command::Seek{1e9});
+    EXPECT_EQ(session.time(), session.trajectory().end_time);
+    session.apply(command::Play{});
+    EXPECT_TRUE(session.playing());
+    EXPECT_EQ(session.time(), 0.0) << "play at the end means once more";
+    session.apply(command::Pause{});
+    EXPECT_FALSE(session.playing());
+    session.apply(command::Seek{15.0});
+    EXPECT_EQ(session.now().phase, Phase::Kind::constrained);
+    session.apply(command::End{1.0});
+    EXPECT_EQ(session.time(), 1.0) << "the present stays inside the run";
+    EXPECT_EQ(session.selected(), 0);
+}
+
+TEST(Session, opens_another_system) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Seek{4.0});
+    session.apply(command::Open{"double_pendulum"});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.system(), "double_pendulum");
+    EXPECT_EQ(to_text(session), to_text(test::session("double_pendulum")));
+}
+
+TEST(Session, knows_where_the_present_stands_in_a_plot) {
+    Session session = test::session("double_pendulum");
+    session.apply(command::Seek{2.0});
+    bool found = false;
+    for (const Point& point : session.present(0)) {
+        EXPECT_EQ(point.x, 2.0);
+        found = found || std::abs(point.y - session.now().state.q[0] * 57.29577951308232) < 1e-9;
+    }
+    EXPECT_TRUE(found);
+}
+
+}  // namespace
+}  // namespace achilles

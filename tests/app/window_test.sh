@@ -1,0 +1,54 @@
+#!/bin/bash
+# A real window on a display of its own: what it draws is what the offscreen picture draws, a slider dragged by the mouse
+# changes the run, Ctrl+Q closes the window with status 0.
+#     window_test.sh BUILD_FOLDER
+set -euo pipefail
+
+if [ "${2-}" != inside ]; then
+    # As small a screen as the window needs; no display of the person who runs the tests is touched.
+    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24" "$0" "$1" inside
+fi
+
+build=$1
+folder=$(mktemp -d)
+explorer=
+trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -rf "$folder"' EXIT
+export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder
+
+fail() { echo "window_test: $*" >&2; exit 1; }
+# Waits up to 30 s for a command to succeed.
+await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
+
+"$build/test_app" --gtest_filter='ExplorerOnDisplay.*' | tee "$folder/bytes"
+grep -q '\[  PASSED  \] 1 test' "$folder/bytes" || fail "the window does not show the bytes of the picture"
+
+read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is | grep '^slider ')
+
+"$build/achilles" explore ball_on_sine --size 1280x800 --record "$folder/journal" &
+explorer=$!
+await xdotool search --onlyvisible --class achilles || fail "no window appears"
+window=$(xdotool search --onlyvisible --class achilles | head -1)
+xdotool windowfocus --sync "$window" || true
+sleep 0.5
+
+xdotool mousemove --window "$window" $((x + width / 3)) "$y" sleep 0.3 mousedown 1 sleep 0.3
+for step in 1 2 3 4; do xdotool mousemove --window "$window" $((x + width / 3 + step * width / 10)) "$y" sleep 0.2; done
+xdotool mouseup 1 sleep 0.3
+await grep -q '^set g ' "$folder/journal" || fail "the slider's value is not recorded"
+grep '^set ' "$folder/journal"
+[ "$(grep -c '^set g ' "$folder/journal")" -ge 2 ] || fail "the slider does not follow the mouse"
+if grep '^set ' "$folder/journal" | grep -qv '^set g '; then fail "another value was changed"; fi
+
+# The journal leads to another picture than the untouched start: the trajectory changed.
+"$build/achilles" screenshot ball_on_sine --size 1280x800 --journal "$folder/journal" --out "$folder/after.png"
+"$build/achilles" screenshot ball_on_sine --size 1280x800 --out "$folder/before.png"
+cmp -s "$folder/before.png" "$folder/after.png" && fail "nothing changed"
+
+xdotool key --window "$window" space
+await grep -q '^play' "$folder/journal" || xdotool key space
+await grep -q '^play' "$folder/journal" || fail "space does not play"
+xdotool key ctrl+q
+status=0
+wait "$explorer" || status=$?
+explorer=
+[ "$status" -eq 0 ] || fail "the explorer ends with status $status"
