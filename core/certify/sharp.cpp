@@ -17,13 +17,6 @@ Interval rounded(double x) {
 
 Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
 
-std::vector<std::uint32_t> variables(const Layout& layout) {
-    std::vector<std::uint32_t> slots;
-    for (std::uint32_t i = 0; i < 2 * layout.n; ++i) slots.push_back(i);
-    slots.push_back(layout.sigma());
-    return slots;
-}
-
 // A radius that holds what was needed, with room: a fifth, and something where nothing was needed.
 double inflated(double need) { return 1.2 * need + std::numeric_limits<double>::min(); }
 
@@ -61,7 +54,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run)
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), variables(model.layout())),
+             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)),
       shadow_(model.evaluator<Interval>(model.bouncing().shadow, run.parameters)),
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
