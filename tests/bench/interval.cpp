@@ -65,15 +65,18 @@ class Bench {
 
     Tally run(long count) {
         std::vector<Case> batch(1000);
+        std::vector<double> times;  // of each batch; the median, since another process may interrupt some
         while (tally_.operations < count) {
             for (Case& c : batch) std::tie(c.a, c.b) = arguments(draw_, operation_);
             const auto start = std::chrono::steady_clock::now();
             for (Case& c : batch) c.ours = function_(c.a.interval, c.b.interval);
-            tally_.nanoseconds +=
-                std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count();
+            times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - start).count());
             for (const Case& c : batch) check(c);
             tally_.operations += static_cast<long>(batch.size());
         }
+        const auto median = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+        std::nth_element(times.begin(), median, times.end());
+        tally_.nanoseconds = *median * static_cast<double>(times.size());
         return tally_;
     }
 

@@ -18,6 +18,7 @@ using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<
 using Exact = Real<100>;
 
 inline bool encloses(const Interval& interval, const Exact& x) {
+    if (isinf(x)) return std::isinf(x > 0 ? interval.hi() : interval.lo());  // greater than any double
     const bool above = std::isinf(interval.lo()) || Exact(interval.lo()) <= x;
     const bool below = std::isinf(interval.hi()) || x <= Exact(interval.hi());
     return interval.is_defined() && above && below;
