@@ -1,5 +1,6 @@
 // bench_truth [COUNT]: certificates against the truth over COUNT random collisions (10000) of every system. Prints how
-// many were proved and how many of those are false, which must be none, and the medians of bound over truth.
+// many were proved and how many of those are false, which must be none, and the medians of bound over truth
+// (farthest: the velocity bound over the largest excursion on the way, which Def. 7 adds up).
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -156,7 +156,7 @@ bool TrueMotion::fly(Point& point, Real& time, double expected, double tolerance
 }
 
 std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) {
-    ZenoPoint result{0, collision, 0};
+    ZenoPoint result{0, collision, 0, {}};
     Point& point = result.point;
     const double first = -static_cast<double>(contact(point).hdot);
     for (; result.impacts < 100000; ++result.impacts) {
@@ -180,7 +180,9 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
         }
         for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * c.n[i];
         const double expected = 2.2 * static_cast<double>(e_ * w / a), speed = static_cast<double>(w);
+        result.velocities.push_back(point.v);
         if (!fly(point, result.time, expected, std::max(1e-32, 1e-20 * speed))) return std::nullopt;
+        result.velocities.push_back(point.v);
     }
     return std::nullopt;
 }

@@ -18,6 +18,7 @@ struct ZenoPoint {
     Real time;  // tau_inf - tau_k
     Point point;
     int impacts = 0;
+    std::vector<Reals> velocities;  // after each impact and before the next: the largest excursions on the way
 };
 
 class TrueMotion {

@@ -23,6 +23,8 @@ void Tally::add(const Trial& trial, const Certified& certified) {
         if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
         if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
     }
+    const double far = largest_excursion(trial, certified.asked.reinitialization);
+    if (far > 0.0) ratios[excursion].push_back(certified.certificate.velocity_bound / far);
     if (violated) ++violations;
 }
 
@@ -40,20 +42,22 @@ void add(Tallies& tallies, const Trial& trial) {
 }
 
 std::string table_head() {
-    return fmt::format("{:<16} {:<6} {:<10} {:<7} {:>7} {:>5} {:>4} {:>8} {:>9} {:>9} {:>9}\n", "system", "", "restart",
-                       "", "proved", "false", "n/a", "time", "position", "velocity", "shadowing");
+    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>10}\n", "system", "", "restart", "",
+                       "proved", "false", "n/a", "time", "position", "velocity", "farthest", "shadowing");
 }
 
 std::string table_rows(const std::string& system, const Tallies& tallies) {
     std::string rows;
     for (const auto& [key, tally] : tallies) {
         const auto [conditions, kind, held] = key;
-        rows +=
-            fmt::format("{:<16} {:<6} {:<10} {:<7} {:>7} {:>5} {:>4} {:>8.4f} {:>9.2f} {:>9.2f} {:>9.2f}\n", system,
-                        conditions == Conditions::paper ? "paper" : "sharp",
-                        kind == Reinitialization::kinetic ? "kinetic" : "euclidean", held ? "holds" : "widest",
-                        tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest),
-                        tally.median(Tally::position), tally.median(Tally::velocity), tally.median(Tally::shadowing));
+        rows += fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8.4f}", system,
+                            conditions == Conditions::paper ? "paper" : "sharp",
+                            kind == Reinitialization::kinetic ? "kinetic" : "euclidean", held ? "holds" : "widest",
+                            tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest));
+        rows += fmt::format("{:>9.2f}{:>9.2f}", tally.median(Tally::position), tally.median(Tally::velocity));
+        const bool paper = conditions == Conditions::paper;
+        rows += paper ? fmt::format("{:>9.2f}{:>10}\n", tally.median(Tally::excursion), "")
+                      : fmt::format("{:>9}{:>10.2f}\n", "", tally.median(Tally::shadowing));
     }
     return rows;
 }

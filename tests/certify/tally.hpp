@@ -13,8 +13,8 @@ namespace achilles::test {
 struct Tally {
     long certificates = 0, violations = 0, unknown = 0;  // unknown: no truth to compare with
     // bound/actual by what it is about; the time from tau_k on
-    std::array<std::vector<double>, 4> ratios;
-    enum Ratio { latest, position, velocity, shadowing };
+    std::array<std::vector<double>, 5> ratios;
+    enum Ratio { latest, position, velocity, excursion, shadowing };
 
     void add(const Trial& trial, const Certified& certified);
     double median(Ratio ratio) const;  // NaN without data

@@ -1,5 +1,6 @@
 #include "certify/truth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -45,6 +46,13 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
     result.push_back({About::tolerance, certified.asked.eps_q, paper ? q : shadow_q});
     result.push_back({About::tolerance, certified.asked.eps_v, paper ? v : shadow_v});
     return result;
+}
+
+double largest_excursion(const Trial& trial, Reinitialization kind) {
+    const Trial::Restarted& own = kind == Reinitialization::kinetic ? trial.kinetic : trial.euclidean;
+    Real most = distance(trial.zeno->point.v, own.restart.v);
+    for (const Reals& v : trial.zeno->velocities) most = std::max(most, distance(v, own.restart.v));
+    return actual(most);
 }
 
 Trials::Trials(std::shared_ptr<const Model> model, unsigned seed) : model_(std::move(model)), random_(seed) {}

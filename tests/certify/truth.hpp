@@ -41,6 +41,9 @@ struct Claim {
 // Everything that the certificate claims about the trial, next to what is true.
 std::vector<Claim> claims(const Trial& trial, const Certified& certified);
 
+// The largest |v - v*| on the way to the Zeno point, after tau_k. Not claimed, but it is what Def. 7 adds up.
+double largest_excursion(const Trial& trial, Reinitialization kind);
+
 // Reproducible trials of one system: states over the ranges that its description shows, impact speeds 1e-5 .. 1 and
 // tolerances 1e-6 .. 1e-1 (both log-uniform), restitution 0 .. 0.95, always hddot < 0.
 class Trials {
