@@ -35,7 +35,7 @@ const std::string more = "\n'achilles simulate --help' tells more\n";
 const Refusal refusals[] = {
     {"unknown_system", "simulate ball_on_sin --json a.json",
      "achilles: there is no system 'ball_on_sin'; did you mean 'ball_on_sine'?\n"
-     "a system is a path to a .toml file or one of: ball_on_sine, double_pendulum\n"},
+     "a system is a path to a .toml file or one of: ball_on_sine, double_pendulum, falling_rod\n"},
     {"missing_file", "simulate ./no.toml", "./no.toml: there is no such file\n"},
     {"unknown_setting", "simulate ball_on_sine --set gg=3 --json a.json",
      "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},

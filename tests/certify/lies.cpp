@@ -1,0 +1,81 @@
+#include "certify/lies.hpp"
+
+#include <cmath>
+
+namespace achilles::test {
+
+namespace {
+
+double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < n; ++i) sum += evaluator.output(first + i) * evaluator.output(first + i);
+    return std::sqrt(sum);
+}
+
+// |M g'|/W at the restart; the truth is a maximum of |M^-1 g'|/W around it.
+double eta_with_M(const Model& model, const Run& run, const State& state) {
+    const Equations& equations = model.equations();
+    Graph graph(equations.W.graph());  // a copy: the model stays as it is
+    const Layout& layout = model.layout();
+    const auto n = static_cast<std::size_t>(model.n());
+    std::vector<Expression> outputs;
+    for (std::size_t i = 0; i < n; ++i) {
+        Expression sum = graph.number(0);
+        for (std::size_t j = 0; j < n; ++j)
+            sum = sum + graph.adopt(equations.M[i * n + j]) * graph.adopt(equations.g[j]);
+        outputs.push_back(sum / graph.adopt(equations.W));
+    }
+    const Program program(outputs, Slots{layout.count(), 2 * layout.n, 2 * layout.n + layout.p});
+    auto evaluator = model.evaluator(program, run.parameters);
+    put(evaluator, state);
+    evaluator.run();
+    return norm(evaluator, 0, n);
+}
+
+// The interval of THEORY section 4 with the two extremes mixed up.
+void swap_accelerations(Certificate& c, double e, double w) {
+    const double a_min = c.a_max, a_max = c.a_min, r = a_max / a_min;
+    c.zeno_low = 2.0 * e * (1.0 + e) * w / (a_max * (1.0 - e * e / r));
+    c.zeno_high = 2.0 * e * (1.0 + e) * w / (a_min * (1.0 - e * e * r));
+}
+
+}  // namespace
+
+Certificate falsified(Certificate c, Lie lie, const Certified& about, const Run& run, const Model& model) {
+    const double w = about.collision.speed;
+    const double e = model.evaluator(model.restitution(), run.parameters).output(0);
+    switch (lie) {
+        case Lie::earliest_time:
+            c.zeno_low *= 100.0;
+            break;
+        case Lie::latest_time:
+            c.zeno_high /= 100.0;
+            break;
+        case Lie::position:
+            c.position_bound /= 100.0;
+            break;
+        case Lie::velocity:
+            c.velocity_bound /= 100.0;
+            break;
+        case Lie::shadowing_position:
+            if (c.shadowing_position) *c.shadowing_position /= 100.0;
+            break;
+        case Lie::shadowing_velocity:
+            if (c.shadowing_velocity) *c.shadowing_velocity /= 100.0;
+            break;
+        case Lie::swapped_accelerations:
+            swap_accelerations(c, e, w);
+            break;
+        case Lie::eta_with_M:
+            if (c.paper) {
+                const bool kinetic = c.reinitialization == Reinitialization::kinetic;
+                const double jumps = (e + (kinetic ? c.paper->e2 : 1.0)) / (1.0 - c.paper->e2);
+                const double eta = eta_with_M(model, run, {about.collision.before.q, about.collision.restart});
+                c.velocity_bound += jumps * w * (eta - c.paper->eta);
+            }
+            break;
+    }
+    return c;
+}
+
+}  // namespace achilles::test

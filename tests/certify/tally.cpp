@@ -1,0 +1,65 @@
+#include "certify/tally.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace achilles::test {
+
+void Tally::add(const Trial& trial, const Certified& certified) {
+    ++certificates;
+    if (!trial.zeno) {
+        ++unknown;
+        return;
+    }
+    bool violated = false;
+    for (const Claim& claim : claims(trial, certified)) {
+        violated = violated || !claim.holds();
+        const double ratio = claim.bound / claim.actual;
+        if (!(claim.actual > 0.0)) continue;
+        if (claim.about == Claim::About::latest) ratios[latest].push_back(ratio);
+        if (claim.about == Claim::About::position) ratios[position].push_back(ratio);
+        if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
+        if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
+    }
+    const double far = largest_excursion(trial, certified.asked.reinitialization);
+    if (far > 0.0) ratios[excursion].push_back(certified.certificate.velocity_bound / far);
+    if (violated) ++violations;
+}
+
+double Tally::median(Ratio ratio) const {
+    std::vector<double> sorted = ratios[ratio];
+    if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    return *middle;
+}
+
+void add(Tallies& tallies, const Trial& trial) {
+    for (const Certified& certified : trial.certified)
+        tallies[{certified.asked.conditions, certified.asked.reinitialization, certified.held}].add(trial, certified);
+}
+
+std::string table_head() {
+    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>10}\n", "system", "", "restart", "",
+                       "proved", "false", "n/a", "time", "position", "velocity", "farthest", "shadowing");
+}
+
+std::string table_rows(const std::string& system, const Tallies& tallies) {
+    std::string rows;
+    for (const auto& [key, tally] : tallies) {
+        const auto [conditions, kind, held] = key;
+        rows += fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8.4f}", system,
+                            conditions == Conditions::paper ? "paper" : "sharp",
+                            kind == Reinitialization::kinetic ? "kinetic" : "euclidean", held ? "holds" : "widest",
+                            tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest));
+        rows += fmt::format("{:>9.2f}{:>9.2f}", tally.median(Tally::position), tally.median(Tally::velocity));
+        const bool paper = conditions == Conditions::paper;
+        rows += paper ? fmt::format("{:>9.2f}{:>10}\n", tally.median(Tally::excursion), "")
+                      : fmt::format("{:>9}{:>10.2f}\n", "", tally.median(Tally::shadowing));
+    }
+    return rows;
+}
+
+}  // namespace achilles::test

@@ -1,0 +1,64 @@
+// Certificates against the truth: collisions near Zeno equilibria at random, what core/certify claims about them, and
+// what really happens.
+#pragma once
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "certify/bouncing.hpp"
+#include "certify/truncation.hpp"
+
+namespace achilles::test {
+
+// One certificate and what it is about.
+struct Certified {
+    Truncation asked;
+    bool held = false;  // the conditions hold for the tolerances; otherwise it is the widest that can be proved
+    Collision collision;
+    Certificate certificate;
+};
+
+// One collision with every certificate that it gets. The truth is known unless `zeno` is empty.
+struct Trial {
+    Run run;
+    std::vector<Certified> certified;
+    std::optional<ZenoPoint> zeno;
+    struct Restarted {
+        Point restart, at_zeno;  // where the constrained motion starts, and where it is at tau_inf
+    };
+    Restarted kinetic, euclidean;
+};
+
+// A claim is true if actual <= bound.
+struct Claim {
+    enum class About { earliest, latest, position, velocity, shadowing_position, shadowing_velocity, tolerance };
+    About about;
+    double bound, actual;
+    bool holds() const { return actual <= bound; }
+};
+
+// Everything that the certificate claims about the trial, next to what is true.
+std::vector<Claim> claims(const Trial& trial, const Certified& certified);
+
+// The largest |v - v*| on the way to the Zeno point, after tau_k. Not claimed, but it is what Def. 7 adds up.
+double largest_excursion(const Trial& trial, Reinitialization kind);
+
+// Reproducible trials of one system: states over the ranges that its description shows, impact speeds 1e-5 .. 1 and
+// tolerances 1e-6 .. 1e-1 (both log-uniform), restitution 0 .. 0.95, always hddot < 0.
+class Trials {
+ public:
+    Trials(std::shared_ptr<const Model> model, unsigned seed);
+    const Model& model() const { return *model_; }
+    Trial next();
+
+ private:
+    double uniform(double low, double high);
+    std::optional<State> zeno_equilibrium(const Run& run);
+    void certify(Trial& trial, const State& before);
+
+    std::shared_ptr<const Model> model_;
+    std::mt19937_64 random_;
+};
+
+}  // namespace achilles::test

@@ -1,0 +1,130 @@
+// Certificates against the truth on a sample; bench_truth does the same at length.
+#include <gtest/gtest.h>
+
+#include "certify/lies.hpp"
+#include "certify/tally.hpp"
+#include "core/systems.hpp"
+
+namespace achilles::test {
+
+namespace {
+
+constexpr int sample = 120;  // trials a system
+const char* const systems[] = {"ball_on_sine", "double_pendulum", "falling_rod"};
+
+State state_of(std::initializer_list<double> q, std::initializer_list<double> v) {
+    State state{Vector(q.size()), Vector(v.size())};
+    std::copy(q.begin(), q.end(), state.q.begin());
+    std::copy(v.begin(), v.end(), state.v.begin());
+    return state;
+}
+
+const char* flat_floor = R"(
+title = "Ball on a floor"
+coordinate = [{ name = "x", start = 0, rate = 0 }, { name = "y", start = 1, rate = 0 }]
+parameter = [{ name = "g", value = 2 }, { name = "e", value = 0.5 }]
+lagrangian = { kinetic = "(x'^2 + y'^2)/2", potential = "g*y" }
+constraint = [{ gap = "y", restitution = "e" }]
+)";
+
+}  // namespace
+
+// Law: on a flat floor the times between impacts are a geometric series, and nothing else changes.
+TEST(Truth, KnowsTheGeometricSeries) {
+    const auto model = typed(flat_floor);
+    const auto run = model->default_run();
+    TrueMotion motion(*model, run);
+    const auto zeno = motion.zeno(motion.collision(state_of({0.25, 0.0}, {3.0, -0.5})));
+    ASSERT_TRUE(zeno);
+    const Real expected = 0.5;  // 2 e w/(g (1 - e))
+    EXPECT_LT(abs(zeno->time - expected), 1e-18);
+    EXPECT_LT(abs(zeno->point.q[0] - Real(0.25) - 3 * expected), 1e-18);
+    EXPECT_LT(abs(zeno->point.q[1]), 1e-18);
+    EXPECT_GT(zeno->impacts, 20);
+}
+
+// The rest of the bouncing is replaced by its estimate at a speed where that no longer matters.
+TEST(Truth, DoesNotDependOnWhereItStops) {
+    const auto model = load("falling_rod");
+    const auto run = model->default_run();
+    TrueMotion motion(*model, run);
+    const Point start = motion.collision(state_of({0.0, 0.5 * std::cos(0.4), 0.4}, {0.1, -0.3, 0.5}));
+    const auto usual = motion.zeno(start), patient = motion.zeno(start, 1e-13);
+    ASSERT_TRUE(usual && patient);
+    EXPECT_GT(patient->impacts, usual->impacts);
+    EXPECT_LT(abs(usual->time - patient->time), 1e-15);
+    EXPECT_LT(distance(usual->point.q, patient->point.q), 1e-15);
+    EXPECT_LT(distance(usual->point.v, patient->point.v), 1e-15);
+}
+
+// Law: contact forces of a constrained motion do no work, and it stays on the surface.
+TEST(Truth, ConstrainedMotionKeepsEnergyAndContact) {
+    const auto model = load("double_pendulum");
+    const auto run = model->default_run();
+    TrueMotion motion(*model, run);
+    auto energy = model->evaluator<Real>(model->energy(), run.parameters);
+    const auto energy_of = [&](const Point& point) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            energy.input(i) = point.q[i];
+            energy.input(2 + i) = point.v[i];
+        }
+        energy.run();
+        return energy.output(0);
+    };
+    const Point start = motion.collision(state_of({-0.7, 0.0}, {1.0, 0.0}));
+    const Point end = motion.constrained(start, Real(1.5), 1e-22);
+    EXPECT_GT(distance(start.q, end.q), 0.1);
+    EXPECT_LT(abs(energy_of(end) - energy_of(start)), 1e-20);
+    EXPECT_LT(abs(end.q[1]), 1e-20);
+}
+
+// Law: whatever is certified is true.  Bars: the sharp time bound within 2 percent, the shadowing of the ball within 5.
+TEST(Truth, CertificatesAreTrue) {
+    for (const std::string system : systems) {
+        Trials trials(load(system), 1);
+        Tallies tallies;
+        for (int trial = 0; trial < sample; ++trial) add(tallies, trials.next());
+        SCOPED_TRACE("\n" + table_head() + table_rows(system, tallies));
+        for (const auto& [key, tally] : tallies) {
+            const auto [conditions, kind, held] = key;
+            EXPECT_EQ(tally.violations, 0);
+            EXPECT_EQ(tally.unknown, 0);
+            EXPECT_GT(tally.certificates, 0);
+            if (conditions != Conditions::sharp) continue;
+            EXPECT_LT(tally.median(Tally::latest), 1.02);
+            if (system == "ball_on_sine") {
+                EXPECT_LT(tally.median(Tally::shadowing), 5.0);
+            }
+        }
+    }
+}
+
+// A comparison that lets false certificates pass would prove nothing.
+TEST(Truth, EveryLieIsCaught) {
+    std::map<std::pair<Lie, Conditions>, int> caught;
+    for (const std::string system : systems) {
+        Trials trials(load(system), 1);
+        for (int count = 0; count < sample; ++count) {
+            const Trial trial = trials.next();
+            if (!trial.zeno) continue;
+            for (const Certified& honest : trial.certified) {
+                for (const Lie lie : lies) {
+                    Certified liar = honest;
+                    liar.certificate = falsified(honest.certificate, lie, honest, trial.run, trials.model());
+                    bool found = false;
+                    for (const Claim& claim : claims(trial, liar)) found = found || !claim.holds();
+                    if (found) ++caught[{lie, honest.asked.conditions}];
+                }
+            }
+        }
+    }
+    for (const Lie lie : lies) {
+        SCOPED_TRACE(static_cast<int>(lie));
+        const bool shadowing = lie == Lie::shadowing_position || lie == Lie::shadowing_velocity;
+        const int by_paper = caught[{lie, Conditions::paper}], by_sharp = caught[{lie, Conditions::sharp}];
+        EXPECT_TRUE(shadowing || by_paper > 0);
+        EXPECT_TRUE(lie == Lie::eta_with_M || by_sharp > 0);
+    }
+}
+
+}  // namespace achilles::test
