@@ -1,6 +1,7 @@
 // The explorer's two surfaces: a window that lives by the clock, and a picture that knows no clock.
 #include "explore.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -37,17 +38,37 @@ std::string first_system(const ExploreOptions& options) {
     return names.front();
 }
 
-// The session that the command line asks for, its journal replayed.
+std::vector<Command> journal_of(const ExploreOptions& options) {
+    return options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
+}
+
+// The session that the command line asks for.
 Session open_session(const ExploreOptions& options) {
-    const std::vector<Command> journal =
-        options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
     const std::string name = first_system(options);
     const Opener opener = [overrides = options.overrides](const std::string& system) {
         return open_system(find_system(system), {}, overrides);
     };
-    Session session(name, open_system(find_system(name), options.settings, options.overrides), opener);
-    for (const Command& command : journal) session.apply(command);
-    return session;
+    return {name, open_system(find_system(name), options.settings, options.overrides), opener};
+}
+
+// What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
+// line.
+std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
+    std::vector<Command> commands{command::Open{session.system()}};
+    const Options& run = session.run().options;
+    const OptionOverrides& given = options.overrides;
+    if (given.end_time) commands.emplace_back(command::End{run.end_time});
+    if (given.tolerance) commands.emplace_back(command::Tolerance{run.tolerance});
+    if (given.eps || given.eps_q || given.eps_v || given.eps_t)
+        commands.emplace_back(command::Eps{run.truncation.eps_q, run.truncation.eps_v, run.truncation.eps_t});
+    if (given.conditions) commands.emplace_back(command::UseConditions{*given.conditions});
+    if (given.reinitialization) commands.emplace_back(command::UseReinitialization{*given.reinitialization});
+    for (const std::string& setting : options.settings) {
+        std::string name = setting.substr(0, setting.find('='));
+        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+        if (const auto value = session.value(name)) commands.emplace_back(command::Set{name, *value});
+    }
+    return commands;
 }
 
 SurfaceOptions surface_options(const ExploreOptions& options) {
@@ -85,16 +106,22 @@ class Clock {
 }  // namespace
 
 int explore(const ExploreOptions& options) {
+    const std::vector<Command> journal = journal_of(options);
     Session session = open_session(options);
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
     std::optional<JournalFile> record;
     if (!options.record.empty()) record.emplace(options.record);
-    const auto apply = [&](const Command& command) {
+    const auto keep = [&](const Command& command) {
         if (record) record->append(command);
+    };
+    const auto apply = [&](const Command& command) {
+        keep(command);
         session.apply(command);
     };
+    for (const Command& command : opening(session, options)) keep(command);
+    for (const Command& command : journal) apply(command);
     Clock clock;
     window.run([&] {
         // Playing is seeking, by the clock; nothing a journal would keep.
@@ -112,7 +139,9 @@ int explore(const ExploreOptions& options) {
 int screenshot(const ScreenshotOptions& options) {
     OutputFiles files;
     files.add(options.out);
-    const Session session = open_session(options);
+    const std::vector<Command> journal = journal_of(options);
+    Session session = open_session(options);
+    for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
     Offscreen surface(surface_options(options));
     const Image image = surface.frame([&] { explorer(session, state); }, 3);

@@ -24,26 +24,23 @@ void expect_positive(double value, const char* what) {
         throw refusal(fmt::format("{} must be positive and finite, but it would be {}", what, value));
 }
 
-// Puts a value into a run by its name. Throws InputError with the nearest name.
-void put_value(const SystemDescription& description, Run& run, const std::string& name, double value) {
-    if (!std::isfinite(value)) throw refusal(fmt::format("'{}' must be finite", name));
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < description.parameters.size(); ++i) {
-        if (description.parameters[i].name == name) {
-            run.parameters[i] = value;
-            return;
-        }
-        names.push_back(description.parameters[i].name);
-    }
+// Where a run keeps the value of a name: a parameter, a coordinate's start x, its rate x'. Null if there is none.
+double* find_value(const SystemDescription& description, Run& run, const std::string& name) {
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        if (description.parameters[i].name == name) return &run.parameters[i];
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const std::string& coordinate = description.coordinates[i].name;
-        if (name == coordinate || name == coordinate + "'") {
-            (name == coordinate ? run.q : run.v)[static_cast<Eigen::Index>(i)] = value;
-            return;
-        }
-        names.insert(names.end(), {coordinate, coordinate + "'"});
+        if (name == coordinate) return &run.q[static_cast<Eigen::Index>(i)];
+        if (name == coordinate + "'") return &run.v[static_cast<Eigen::Index>(i)];
     }
-    throw refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name, did_you_mean(name, names)));
+    return nullptr;
+}
+
+InputError no_such_name(const SystemDescription& description, const std::string& name) {
+    std::vector<std::string> names;
+    for (const ParameterDescription& p : description.parameters) names.push_back(p.name);
+    for (const CoordinateDescription& c : description.coordinates) names.insert(names.end(), {c.name, c.name + "'"});
+    return refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name, did_you_mean(name, names)));
 }
 
 }  // namespace
@@ -93,8 +90,17 @@ void Session::perform(const command::Open& command) {
 
 void Session::perform(const command::Set& command) {
     Run changed = run();
-    put_value(description(), changed, command.name, command.value);
+    double* const value = find_value(description(), changed, command.name);
+    if (value == nullptr) throw no_such_name(description(), command.name);
+    if (!std::isfinite(command.value)) throw refusal(fmt::format("'{}' must be finite", command.name));
+    *value = command.value;
     rerun(changed);
+}
+
+std::optional<double> Session::value(const std::string& name) const {
+    Run copy = run();
+    const double* const found = find_value(description(), copy, name);
+    return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
 void Session::perform(const command::End& command) {

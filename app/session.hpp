@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ class Session {
     const std::shared_ptr<const Model>& model() const { return system_->model; }
     const SystemDescription& description() const { return system_->model->description(); }
     const Run& run() const { return motion_->trajectory.run; }
+    // Of a parameter, a coordinate's start x or its rate x'; nothing if there is no such name.
+    std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return motion_->trajectory; }
     const Mechanism& mechanism() const { return system_->mechanism; }
     // The world the mechanism needs during the whole run.

@@ -133,7 +133,7 @@ void parameters(const Session& session, PanelState& state, Commands& commands) {
         Slider slider{typeset_name(p.name),
                       "set " + p.name,
                       is_angle ? "\u00b0" : pretty_unit(p.unit),
-                      p.about,
+                      p.about.empty() ? p.name : p.name + ": " + p.about,
                       session.run().parameters[i] * factor,
                       p.range[0] * factor,
                       p.range[1] * factor};

@@ -6,6 +6,7 @@
 
 #include "figure/label.hpp"
 #include "output/output.hpp"
+#include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/widgets.hpp"
 
@@ -37,14 +38,32 @@ std::vector<std::string> wrapped(const std::string& text, float width) {
     return lines;
 }
 
+// The Zeno event that the user chose, which is shown with its certificate; or none.
+const Event* chosen(const Session& session) {
+    if (session.selected() == 0) return nullptr;
+    const Event& event = session.trajectory().events[static_cast<std::size_t>(session.selected() - 1)];
+    return event.certificate ? &event : nullptr;
+}
+
+// A certificate in its symbols; the sentence itself is plain text, for terminals.
+std::string typeset_sentence(const Certificate& certificate) {
+    std::string text = sentence(certificate);
+    for (const auto& [plain, symbol] :
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
+          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, std::string_view(plain).size(), symbol);
+    return text;
+}
+
 std::vector<Row> rows(const Session& session, bool impacts, float width) {
     std::vector<Row> result;
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (events[i].kind == Event::Kind::impact && !impacts) continue;
         result.push_back({i, ""});
-        if (!events[i].certificate) continue;
-        for (std::string& line : wrapped(sentence(*events[i].certificate), width))
+        if (!events[i].certificate || chosen(session) != nullptr) continue;
+        for (std::string& line : wrapped(typeset_sentence(*events[i].certificate), width))
             result.push_back({i, std::move(line)});
     }
     return result;
@@ -58,7 +77,8 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-std::string state_text(const Session& session, const Event& event) {
+// The coordinates after an event, and the rates where they fit too.
+std::string state_text(const Session& session, const Event& event, float width) {
     const auto& coordinates = session.description().coordinates;
     std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -70,16 +90,18 @@ std::string state_text(const Session& session, const Event& event) {
         rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
                              number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
     }
-    return positions + rates;
+    const std::string all = positions + rates;
+    return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
 }
 
-void show_header(PanelState& state) {
+void show_header(bool with_state, PanelState& state) {
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
                                    std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
+        if (!with_state && at >= speed_at) continue;  // a certificate stands there
         if (at != number_at) ImGui::SameLine();
         ImGui::SetCursorPosX(left + units(at));
         ImGui::TextUnformatted(text);
@@ -94,6 +116,7 @@ void show_header(PanelState& state) {
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {
+    const float right = ImGui::GetContentRegionAvail().x;
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     Markers markers = event_markers(session.theme(), event.kind);
@@ -105,8 +128,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     cell(kind_at, markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
-    paint_label(list, std::floor(at.x + units(state_at)), at.y, state_text(session, event), text_color(),
-                ImGui::GetFontSize());
+    paint_label(list, std::floor(at.x + units(state_at)), at.y,
+                state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
 }
 
 void show_row(const Session& session, const Row& row, bool is_reached, PanelState& state, Commands& commands) {
@@ -115,7 +138,9 @@ void show_row(const Session& session, const Row& row, bool is_reached, PanelStat
     const bool is_event = row.certificate.empty();
     const bool is_selected = session.selected() == event_number || (session.selected() == 0 && is_reached);
     ImGui::PushID(&row);
-    if (ImGui::Selectable("##row", is_selected)) commands.emplace_back(command::Select{event_number});
+    // Another click on the chosen event lets go of it.
+    if (ImGui::Selectable("##row", is_selected))
+        commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
     ImGui::PopID();
     if (is_event) remember(state, "event " + std::to_string(event_number));
     if (is_event)
@@ -141,14 +166,16 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
 }  // namespace
 
 void show_events(const Session& session, PanelState& state, Commands& commands) {
-    show_header(state);
+    show_header(chosen(session) == nullptr, state);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
     // As high as whole lines are.
     const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
     const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
                          units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
-    ImGui::BeginChild("list", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    const Event* event = chosen(session);
+    const float list_width = event == nullptr ? 0.0F : units(speed_at);
+    ImGui::BeginChild("list", {list_width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
     const std::vector<Row> all = rows(session, state.show_impacts, width);
     const int present = reached(session);
@@ -162,6 +189,15 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
             show_row(session, row, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();
+    if (event != nullptr) {
+        ImGui::SameLine(0.0F, units(8.0F));
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
+        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
+        ImGui::BeginChild("certificate", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+        show_certificate(*event, session.selected(), state, commands);
+        ImGui::EndChild();
+        ImGui::PopStyleVar(2);
+    }
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
 }

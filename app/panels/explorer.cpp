@@ -1,5 +1,6 @@
 // The frame: what stands where.
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "panels/widgets.hpp"
@@ -54,31 +55,43 @@ Parts lay_out(const Session& session) {
     return parts;
 }
 
-// Every line of a message; a line that quotes a file, and its caret, on a grid, so that the caret points where it
-// should.
+// A line of a message. One that quotes a file may have a caret below one of its letters.
 struct MessageLine {
     std::string text;
-    bool quoted;
+    bool quoted = false;
+    std::optional<std::size_t> caret;  // how many letters stand before it
 };
 
 std::vector<MessageLine> lines_of(const std::string& message) {
     std::vector<MessageLine> lines;
     std::istringstream stream(message);
-    for (std::string line; std::getline(stream, line);) lines.push_back({line, line.rfind("    ", 0) == 0});
+    for (std::string line; std::getline(stream, line);) {
+        const std::size_t first = line.find_first_not_of(' ');
+        if (!lines.empty() && lines.back().quoted && first != std::string::npos && line.substr(first) == "^")
+            lines.back().caret = first;
+        else
+            lines.push_back({line, line.rfind("    ", 0) == 0, {}});
+    }
     return lines;
 }
 
-void show_quoted(const std::string& line) {
-    const float advance = std::ceil(ImGui::CalcTextSize("m").x * 0.64F);
-    ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::Dummy({advance, ImGui::GetTextLineHeight()});
-    for (std::size_t i = 0; i < line.size();) {
-        std::size_t end = i + 1;
-        while (end < line.size() && (static_cast<unsigned char>(line[end]) & 0xC0) == 0x80) ++end;
-        ImGui::GetWindowDrawList()->AddText(at, packed(text_color()), line.data() + i, line.data() + end);
-        at.x += advance;
-        i = end;
-    }
+float height_of(const MessageLine& line, float wrap) {
+    if (line.quoted) return ImGui::GetTextLineHeight() * (line.caret ? 1.5F : 1.0F);
+    return ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap).y;
+}
+
+// Our letters differ in width, so the caret stands where the text before it ends.
+void show_quoted(const MessageLine& line) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({1.0F, height_of(line, 0.0F)});
+    ImGui::GetWindowDrawList()->AddText(at, packed(text_color()), line.text.c_str());
+    if (!line.caret) return;
+    const char* letter = line.text.c_str();
+    const char* const end = letter + line.text.size();
+    for (std::size_t i = 0; i < *line.caret && letter < end; ++i)
+        for (++letter; letter < end && (static_cast<unsigned char>(*letter) & 0xC0) == 0x80;) ++letter;
+    const float x = at.x + ImGui::CalcTextSize(line.text.c_str(), letter).x;
+    ImGui::GetWindowDrawList()->AddText({x, at.y + 0.95F * ImGui::GetTextLineHeight()}, packed(error_color()), "^");
 }
 
 }  // namespace
@@ -87,9 +100,7 @@ float error_height(const Session& session, float width) {
     const float wrap = width - 2.0F * (ImGui::GetStyle().WindowPadding.x + units(card_padding));
     float height = ImGui::GetStyle().WindowPadding.y + 2.0F * units(card_padding);
     for (const MessageLine& line : lines_of(session.error()))
-        height +=
-            ImGui::GetStyle().ItemSpacing.y +
-            (line.quoted ? ImGui::GetTextLineHeight() : ImGui::CalcTextSize(line.text.c_str(), nullptr, false, wrap).y);
+        height += ImGui::GetStyle().ItemSpacing.y + height_of(line, wrap);
     return height;
 }
 
@@ -103,7 +114,7 @@ void show_error(const Session& session) {
     ImGui::BeginGroup();
     for (const MessageLine& line : lines_of(session.error())) {
         if (line.quoted) {
-            show_quoted(line.text);
+            show_quoted(line);
             continue;
         }
         ImGui::PushStyleColor(ImGuiCol_Text, packed(error_color()));

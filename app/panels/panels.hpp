@@ -38,6 +38,10 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
 float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
+// What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
+// decided.
+std::vector<std::string> certificate_lines(const Event& event);
+void show_certificate(const Event& event, int number, PanelState& state, Commands& commands);
 void show_status(const Session& session, const PanelState& state);
 
 }  // namespace achilles

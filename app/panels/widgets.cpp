@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "paint/label.hpp"
 
 namespace achilles {
 
@@ -26,11 +29,23 @@ Color text_color() { return style_color(ImGuiCol_Text); }
 Color faint_color() { return style_color(ImGuiCol_TextDisabled); }
 Color error_color() { return {178, 34, 34, 255}; }
 
+std::string fitted(const std::string& text, float width) {
+    const float size = ImGui::GetFontSize();
+    if (label_width(text, size) <= width) return text;
+    std::string shorter = text;
+    while (!shorter.empty() && label_width(shorter + "\u2026", size) > width) {
+        // A letter may be several bytes.
+        while (shorter.size() > 1 && (static_cast<unsigned char>(shorter.back()) & 0xC0) == 0x80) shorter.pop_back();
+        shorter.pop_back();
+    }
+    return shorter + "\u2026";
+}
+
 void label(const std::string& text, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy({width, ImGui::GetFrameHeight()});
-    paint_label(ImGui::GetWindowDrawList(), at.x, at.y + ImGui::GetStyle().FramePadding.y, text, text_color(),
-                ImGui::GetFontSize());
+    paint_label(ImGui::GetWindowDrawList(), at.x, at.y + ImGui::GetStyle().FramePadding.y,
+                fitted(text, width - units(4.0F)), text_color(), ImGui::GetFontSize());
 }
 
 void section(const char* title) {

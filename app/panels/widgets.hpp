@@ -18,6 +18,8 @@ Color text_color();
 Color faint_color();
 Color error_color();
 
+// The text, or as much of it as fits and an ellipsis.
+std::string fitted(const std::string& text, float width);
 // A label with dots over its letters, on the current line, `width` wide however long it is.
 void label(const std::string& text, float width);
 // A quiet heading over a group of widgets.

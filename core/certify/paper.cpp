@@ -104,8 +104,8 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
             certificate.decisive = names[i];
         }
     }
-    certificate.inequalities.push_back({"e' < 1", e1.hi(), 1.0});
-    certificate.inequalities.push_back({"hddot < 0 over the neighbourhood", -a_min.lo(), 0.0});
+    certificate.inequalities.push_back({"e a_max/a_min", e1.hi(), 1.0});
+    certificate.inequalities.push_back({"normal acceleration", -a_min.lo(), 0.0});
     certificate.position_bound = (position * w).hi();
     certificate.velocity_bound = (velocity * w).hi();
     certificate.a_min = a_min.lo();

@@ -224,8 +224,8 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Bo
     c.inequalities = {{"time bound", half_width, truncation_.eps_t},
                       {"position bound", *c.shadowing_position, truncation_.eps_q},
                       {"velocity bound", *c.shadowing_velocity, truncation_.eps_v},
-                      {"e^2 a_max/a_min < 1", (square(e_) * time.r).hi(), 1.0},
-                      {"hddot < 0 over the neighbourhood", -c.a_min, 0.0}};
+                      {"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0},
+                      {"normal acceleration", -c.a_min, 0.0}};
     double closest = -1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         const double share = c.inequalities[i].left / c.inequalities[i].right;

@@ -13,6 +13,8 @@ std::string to_csv(const Trajectory& trajectory);
 std::string summary(const Trajectory& trajectory);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate);
+// "[low, high]" with as many digits as tell the ends apart, and two more.
+std::string interval_text(double low, double high);
 std::string version();
 
 }  // namespace achilles

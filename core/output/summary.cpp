@@ -16,13 +16,6 @@ std::string named(const Model& model, const Vector& q) {
     return text;
 }
 
-// As many digits as tell the ends of the interval apart, and two more.
-std::string interval(double low, double high) {
-    int digits = 8;
-    while (digits < 17 && fmt::format("{:.{}g}", low, digits - 2) == fmt::format("{:.{}g}", high, digits - 2)) ++digits;
-    return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
-}
-
 std::string impact_lines(const std::vector<const Event*>& impacts) {
     constexpr std::size_t shown_first = 4, shown_last = 1;
     std::string text;
@@ -48,10 +41,16 @@ std::string event_line(const Model& model, const Event& event) {
 
 }  // namespace
 
+std::string interval_text(double low, double high) {
+    int digits = 8;
+    while (digits < 17 && fmt::format("{:.{}g}", low, digits - 2) == fmt::format("{:.{}g}", high, digits - 2)) ++digits;
+    return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
+}
+
 std::string sentence(const Certificate& c) {
     if (!c.certified) return "not certified";
     std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}",
-                                   interval(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
+                                   interval_text(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g}", c.zeno_low);
     if (c.shadowing_position && *c.shadowing_position > 0.0)
         text += fmt::format("; at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",

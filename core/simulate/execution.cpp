@@ -212,7 +212,7 @@ void Execution::capture(const Collision& before) {
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
         certificate.decisive = "exact: restitution 0";
-        certificate.inequalities = {{"hddot < 0", hddot.hi(), 0.0}};
+        certificate.inequalities = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(collision, certificate);
     } else if (certainly_positive(hddot)) {
         bounce(surface_.at(state_), 0.0);

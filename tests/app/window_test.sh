@@ -39,8 +39,8 @@ grep '^set ' "$folder/journal"
 [ "$(grep -c '^set g ' "$folder/journal")" -ge 2 ] || fail "the slider does not follow the mouse"
 if grep '^set ' "$folder/journal" | grep -qv '^set g '; then fail "another value was changed"; fi
 
-# The journal leads to another picture than the untouched start: the trajectory changed.
-"$build/achilles" screenshot ball_on_sine --size 1280x800 --journal "$folder/journal" --out "$folder/after.png"
+# The journal stands alone (it opens the system itself) and leads to another picture than the untouched start: the trajectory changed.
+"$build/achilles" screenshot double_pendulum --size 1280x800 --journal "$folder/journal" --out "$folder/after.png"
 "$build/achilles" screenshot ball_on_sine --size 1280x800 --out "$folder/before.png"
 cmp -s "$folder/before.png" "$folder/after.png" && fail "nothing changed"
 

@@ -1,0 +1,112 @@
+// Beside the list of events: what is proved at the chosen Zeno point, and by how much each inequality holds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/output.hpp"
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::string with_minus(std::string text) {
+    for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
+        text.replace(at, 1, "\u2212");
+    return text;
+}
+
+// The share of the right-hand side that the left one uses up: 0 is a wide margin, 1 none. An inequality whose right
+// side is 0 (a sign) has none.
+double share_of(const Inequality& inequality) {
+    return inequality.right > 0.0 ? std::clamp(inequality.left / inequality.right, 0.0, 1.0) : 0.0;
+}
+
+void quiet(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+void show_title(const Certificate& certificate, int number, PanelState& state, Commands& commands) {
+    const std::string how = certificate.certified ? "certified" : "not certified";
+    ImGui::TextUnformatted(fmt::format("Zeno point, event {}: {}", number, how).c_str());
+    ImGui::SameLine();
+    quiet(fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
+                      to_text(certificate.reinitialization)));
+    const float width = ImGui::GetTextLineHeight();
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+    const bool close =
+        ImGui::InvisibleButton("close", {width, width}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    remember(state, "close certificate");
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float inset = 0.28F * width;
+    const ImU32 color = packed(ImGui::IsItemHovered() ? text_color() : faint_color());
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddLine({low.x + inset, low.y + inset}, {high.x - inset, high.y - inset}, color, units(1.5F));
+    list->AddLine({low.x + inset, high.y - inset}, {high.x - inset, low.y + inset}, color, units(1.5F));
+    tooltip("close (Escape)");
+    if (close) commands.emplace_back(command::Select{0});
+}
+
+// One row: name, left < right, and a bar of how much of the right side is used. The one that decided is set off.
+void show_inequality(const Inequality& inequality, bool decisive) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const Color color = decisive ? text_color() : faint_color();
+    list->AddText(at, packed(color), inequality.name.c_str());
+    const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
+    list->AddText({std::floor(at.x + units(138.0F)), at.y}, packed(color), sides.c_str());
+    const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
+    const float top = at.y + 0.35F * line, bottom = at.y + 0.7F * line;
+    if (room > units(12.0F) && inequality.right > 0.0) {
+        list->AddRectFilled({left, top}, {left + room, bottom}, packed(faint_color(), 0.25F), units(2.0F));
+        const float used = std::max(units(2.0F), room * static_cast<float>(share_of(inequality)));
+        list->AddRectFilled({left, top}, {left + used, bottom},
+                            decisive ? ImGui::GetColorU32(ImGuiCol_SliderGrabActive) : packed(faint_color()),
+                            units(2.0F));
+    }
+    ImGui::Dummy({width, line});
+    tooltip(decisive ? "this one decided: it holds by the least margin"
+                     : "the bar is the share of the right side that is used");
+}
+
+}  // namespace
+
+std::vector<std::string> certificate_lines(const Event& event) {
+    const Certificate& c = *event.certificate;
+    std::vector<std::string> lines;
+    lines.push_back("\u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
+    lines.push_back(
+        fmt::format("|q\u221e - q*| < {:.2g},  |v\u221e - v*| < {:.2g}", c.position_bound, c.velocity_bound));
+    if (c.shadowing_position)
+        lines.push_back(fmt::format("restart at \u03c4\u221e: q within {:.2g}, v within {:.2g}", *c.shadowing_position,
+                                    *c.shadowing_velocity));
+    lines.push_back(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min));
+    if (event.truncation)
+        lines.push_back(fmt::format("cut at t = {:.10g}, speed {:.3g}{}", event.truncation->t,
+                                    event.truncation->impact_speed, c.below_rounding ? " (below rounding)" : ""));
+    for (std::string& line : lines) line = with_minus(std::move(line));
+    return lines;
+}
+
+void show_certificate(const Event& event, int number, PanelState& state, Commands& commands) {
+    show_title(*event.certificate, number, state, commands);
+    const float half = std::floor(std::max(units(300.0F), 0.44F * ImGui::GetContentRegionAvail().x));
+    const float top = ImGui::GetCursorPosY(), left = ImGui::GetCursorPosX();
+    for (const std::string& line : certificate_lines(event)) ImGui::TextUnformatted(line.c_str());
+    const float below = ImGui::GetCursorPosY();
+    ImGui::SetCursorPos({left + half, top});
+    ImGui::BeginGroup();
+    for (const Inequality& inequality : event.certificate->inequalities)
+        show_inequality(inequality, inequality.name == event.certificate->decisive);
+    ImGui::EndGroup();
+    ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
+    ImGui::PushTextWrapPos(0.0F);
+    quiet("Not covered: integration and rounding errors before the cut, and how several cuts add up.");
+    ImGui::PopTextWrapPos();
+}
+
+}  // namespace achilles

@@ -1,0 +1,72 @@
+// The certificate of a Zeno point, as the explorer tells it.
+#include <gtest/gtest.h>
+
+#include "app/open.hpp"
+#include "panels/panels.hpp"
+
+namespace achilles {
+namespace {
+
+Event first_zeno(const Trajectory& trajectory) {
+    for (const Event& event : trajectory.events)
+        if (event.kind == Event::Kind::zeno) return event;
+    throw std::runtime_error("no Zeno point");
+}
+
+TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::UseConditions{Conditions::sharp});
+    const Event sharp = first_zeno(session.trajectory());
+    const std::vector<std::string> lines = certificate_lines(sharp);
+    ASSERT_EQ(lines.size(), 5u);
+    EXPECT_EQ(lines[0], "τ∞ in [2.72514188, 2.72514258]");
+    EXPECT_EQ(lines[2].rfind("restart at τ∞: q within ", 0), 0u) << lines[2];
+    EXPECT_EQ(lines[3], "normal acceleration −8.51873 to −8.50995");
+    session.apply(command::UseConditions{Conditions::paper});
+    EXPECT_EQ(certificate_lines(first_zeno(session.trajectory())).size(), 4u);  // no statement about the restart
+    int decisive = 0;
+    for (const Inequality& inequality : sharp.certificate->inequalities) {
+        EXPECT_LT(inequality.left, inequality.right);
+        decisive += inequality.name == sharp.certificate->decisive ? 1 : 0;
+    }
+    EXPECT_EQ(decisive, 1);
+}
+
+// A click on the Zeno row opens the card, a click on its cross closes it.
+TEST(CertificatePanel, OpensWithAClickAndCloses) {
+    Session session = test::session("ball_on_sine");
+    PanelState state = test::panels();
+    Offscreen surface(test::surface());
+    const auto frame = [&](const Input& input = {}) {
+        surface.step(
+            [&] {
+                for (const Command& command : explorer(session, state)) session.apply(command);
+            },
+            input);
+    };
+    const auto click = [&](const std::string& place) {
+        ASSERT_TRUE(state.places.contains(place)) << place;
+        const Rectangle& at = state.places[place];
+        Input input;
+        input.mouse_x = at.x + 0.5F * at.width;
+        input.mouse_y = at.y + 0.5F * at.height;
+        frame(input);
+        input.left = true;
+        frame(input);
+        input.left = false;
+        frame(input);
+    };
+    session.apply(command::Seek{2.7252});  // the list follows the present
+    for (int i = 0; i < 3; ++i) frame();
+    int zeno = 0;
+    const auto& events = session.trajectory().events;
+    while (events[static_cast<std::size_t>(zeno)].kind != Event::Kind::zeno) ++zeno;
+    click("event " + std::to_string(zeno + 1));
+    EXPECT_EQ(session.selected(), zeno + 1);
+    for (int i = 0; i < 2; ++i) frame();
+    click("close certificate");
+    EXPECT_EQ(session.selected(), 0);
+}
+
+}  // namespace
+}  // namespace achilles
