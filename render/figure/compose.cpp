@@ -15,11 +15,12 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Evaluates all of a view's quantities at a sample.
+// Evaluates all of a view's quantities at a sample, in the units they are shown in.
 class Values {
  public:
-    Values(const Program& program, const Trajectory& trajectory)
-        : evaluator_(trajectory.model->evaluator(program, trajectory.run.parameters)),
+    Values(const PreparedView& view, const Trajectory& trajectory)
+        : evaluator_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
+          quantities_(view.quantities()),
           layout_(trajectory.model->layout()) {}
     void set(const Sample& sample) {
         put(evaluator_, sample.state);
@@ -27,10 +28,11 @@ class Values {
         evaluator_.input(layout_.contact()) = sample.contact ? 1.0 : 0.0;
         evaluator_.run();
     }
-    double operator[](std::size_t i) const { return evaluator_.output(i); }
+    double operator[](std::size_t i) const { return evaluator_.output(i) * quantities_[i].factor; }
 
  private:
     Evaluator<double> evaluator_;
+    std::span<const PreparedView::Quantity> quantities_;
     const Layout& layout_;
 };
 
@@ -61,7 +63,9 @@ PreparedView::PreparedView(const Model& model, const ViewDescription& view) : na
     for (const Text& text : texts) quantities_.push_back(quantity(model.description(), text.text));
 }
 
-PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& text) {
+PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written) {
+    const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
+    const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
     Quantity result{typeset(text), "", 1.0, text == "t"};
     bool units = false;
     for (const CoordinateDescription& c : description.coordinates) {
@@ -84,60 +88,111 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     return Sampler(trajectory).all(between);
 }
 
-Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-              const Theme& theme) {
-    const auto& quantities = view.quantities_;
+namespace {
+
+// Two curves for each quantity: its hybrid and its constrained parts.
+void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
+    const auto& quantities = view.quantities();
     const std::size_t curves = quantities.size() - 1;
-    Panel panel;
-    panel.title = view.name_;
-    Values values(view.program_, trajectory);
-    Range x_range, y_range;
-    // Two curves for each quantity: its hybrid and its constrained parts, broken where the phase changes.
     for (std::size_t i = 0; i < curves; ++i) {
         for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
-            Curve curve;
+            Curve& curve = panel.curves.emplace_back();
             curve.stroke = phase_stroke(theme, kind, i, curves);
             const bool first = kind == Phase::Kind::hybrid;
             curve.label = curves == 1 ? legend_text(kind) : first ? quantities[i + 1].label : "";
-            panel.curves.push_back(curve);
         }
     }
+}
+
+Point point_of(double x, double y) {
+    return std::isfinite(x) && std::isfinite(y) ? Point{x, y} : Point{nothing, nothing};
+}
+
+// Fills the curves. Where the phase changes one breaks and the other goes on from the same point.
+void trace(Panel& panel, std::span<const Sample> samples, Values& values, Range& x_range, Range& y_range) {
+    const std::size_t curves = panel.curves.size() / 2;
+    std::vector<double> last(curves + 1), now(curves + 1);
     const Sample* previous = nullptr;
-    std::vector<double> last(quantities.size()), now(quantities.size());
     for (const Sample& sample : samples) {
         values.set(sample);
-        for (std::size_t i = 0; i < now.size(); ++i) now[i] = values[i] * quantities[i].factor;
+        for (std::size_t i = 0; i < now.size(); ++i) now[i] = values[i];
         const bool changed = previous == nullptr || previous->phase != sample.phase;
-        x_range.include(now[0]);
         for (std::size_t i = 0; i < curves; ++i) {
-            Curve& curve = panel.curves[2 * i + (sample.phase == Phase::Kind::hybrid ? 0 : 1)];
-            if (changed) {
-                if (!curve.points.empty()) curve.points.push_back({nothing, nothing});
-                if (previous != nullptr) curve.points.push_back({last[0], last[i + 1]});
-            }
-            const Point point{now[0], now[i + 1]};
-            curve.points.push_back(std::isfinite(point.x) && std::isfinite(point.y) ? point : Point{nothing, nothing});
-            y_range.include(now[i + 1]);
+            std::vector<Point>& points = panel.curves[2 * i + (sample.phase == Phase::Kind::hybrid ? 0 : 1)].points;
+            if (changed && !points.empty()) points.push_back({nothing, nothing});
+            if (changed && previous != nullptr) points.push_back(point_of(last[0], last[i + 1]));
+            points.push_back(point_of(now[0], now[i + 1]));
+            x_range.include(points.back().x);
+            y_range.include(points.back().y);
         }
         previous = &sample;
-        last = now;
+        std::swap(last, now);
     }
+}
+
+void add_markers(Panel& panel, const Trajectory& trajectory, Values& values, const Theme& theme) {
+    const std::size_t curves = panel.curves.size() / 2;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
-        Markers markers = event_markers(theme, kind);
+        Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         for (const Event& event : trajectory.events) {
             if (event.kind != kind) continue;
             values.set(at_event(event));
-            for (std::size_t i = 0; i < curves; ++i)
-                markers.points.push_back({values[0] * quantities[0].factor, values[i + 1] * quantities[i + 1].factor});
+            for (std::size_t i = 0; i < curves; ++i) {
+                const Point point = point_of(values[0], values[i + 1]);
+                if (!std::isnan(point.x)) markers.points.push_back(point);
+            }
         }
-        panel.markers.push_back(markers);
     }
-    if (quantities[0].is_time) x_range.low = 0.0;
-    set_ticks(panel.x, x_range.low, x_range.high, quantities[0].is_time ? 0.0 : 0.05);
+}
+
+// What lies in one of `columns` columns of the panel shows as a vertical line there: the first point, the lowest, the
+// highest and the last draw the same.
+std::vector<Point> thinned(const std::vector<Point>& points, const Axis& x, double columns) {
+    std::vector<Point> result;
+    const auto column = [&](const Point& p) { return std::floor((p.x - x.low) / (x.high - x.low) * columns); };
+    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
+        std::size_t low = begin, high = begin;
+        // A NaN is in no column, not even its own: it ends one and is kept.
+        for (end = begin + 1; end < points.size() && column(points[end]) == column(points[begin]); ++end) {
+            if (points[end].y < points[low].y) low = end;
+            if (points[end].y > points[high].y) high = end;
+        }
+        std::array<std::size_t, 4> kept{begin, std::min(low, high), std::max(low, high), end - 1};
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            if (i == 0 || kept[i] != kept[i - 1]) result.push_back(points[kept[i]]);
+    }
+    return result;
+}
+
+// A run of very many impacts has more points than a screen shows; short runs keep every one.
+void thin(Panel& panel) {
+    constexpr std::size_t many_points = 20000, many_markers = 8000;
+    for (Curve& curve : panel.curves)
+        if (curve.points.size() > many_points) curve.points = thinned(curve.points, panel.x, 4000.0);
+    for (Markers& markers : panel.markers)
+        if (markers.points.size() > many_markers) markers.points = thinned(markers.points, panel.x, 1000.0);
+}
+
+}  // namespace
+
+Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+              const Theme& theme) {
+    const auto& quantities = view.quantities();
+    const bool over_time = quantities[0].is_time, single = quantities.size() == 2;
+    Panel panel;
+    panel.title = view.name();
+    Values values(view, trajectory);
+    Range x_range, y_range;
+    add_curves(panel, view, theme);
+    trace(panel, samples, values, x_range, y_range);
+    add_markers(panel, trajectory, values, theme);
+    if (over_time) x_range = {0.0, trajectory.end_time};
+    set_ticks(panel.x, x_range.low, x_range.high, over_time ? 0.0 : 0.05);
     set_ticks(panel.y, y_range.low, y_range.high, 0.07);
+    thin(panel);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
-    if (curves == 1) panel.y.label = with_unit(quantities[1].label, quantities[1].unit);
-    if (curves > 1) place_legend(panel);
+    if (single) panel.y.label = with_unit(quantities[1].label, quantities[1].unit);
+    if (!single) place_legend(panel);
     return panel;
 }
 

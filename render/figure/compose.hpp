@@ -15,15 +15,18 @@ class PreparedView {
     // Throws InputError for an expression that is none.
     PreparedView(const Model& model, const ViewDescription& view);
 
- private:
-    friend Panel compose(const Trajectory&, std::span<const Sample>, const PreparedView&, const Theme&);
     // What one expression is called and by what its values are multiplied (180/pi for an angle shown in degrees).
     struct Quantity {
         std::string label, unit;
         double factor = 1.0;
         bool is_time = false;
     };
-    static Quantity quantity(const SystemDescription& description, const std::string& text);
+    const std::string& name() const { return name_; }
+    const Program& program() const { return program_; }
+    const std::vector<Quantity>& quantities() const { return quantities_; }  // x, then every y
+
+ private:
+    static Quantity quantity(const SystemDescription& description, const std::string& written);
 
     std::string name_;
     Program program_;  // x, then every y

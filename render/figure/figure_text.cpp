@@ -1,6 +1,9 @@
 // A figure as text: what golden tests compare before they compare pixels.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "figure/figure.hpp"
 
 namespace achilles {
@@ -17,15 +20,34 @@ std::string axis_text(const char* name, const Axis& axis) {
     return text + "\n";
 }
 
-// At most about forty of the points, always the last one.
+std::string number_text(double x) { return std::isnan(x) ? "nan" : fmt::format("{:.9g}", x + 0.0); }  // no "-0"
+
+// At most forty of the points, the first and the last among them.
 std::string points_text(const std::vector<Point>& points) {
-    const std::size_t stride = std::max<std::size_t>(1, (points.size() + 39) / 40);
+    constexpr std::size_t most = 40;
+    const std::size_t shown = std::min(most, points.size());
     std::string text;
-    for (std::size_t i = 0; i < points.size(); i += stride)
-        text += fmt::format(" ({:.9g}, {:.9g})", points[i].x + 0.0, points[i].y + 0.0);
-    if (!points.empty() && (points.size() - 1) % stride != 0)
-        text += fmt::format(" ({:.9g}, {:.9g})", points.back().x + 0.0, points.back().y + 0.0);
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Point& p = points[shown == 1 ? 0 : i * (points.size() - 1) / (shown - 1)];
+        text += fmt::format(" ({}, {})", number_text(p.x), number_text(p.y));
+    }
     return text;
+}
+
+const char* shape_text(Markers::Shape shape) {
+    switch (shape) {
+        case Markers::Shape::square:
+            return "square";
+        case Markers::Shape::circle:
+            return "circle";
+        case Markers::Shape::triangle:
+            return "triangle";
+        case Markers::Shape::diamond:
+            return "diamond";
+        case Markers::Shape::bar:
+            return "bar";
+    }
+    return "";
 }
 
 }  // namespace
@@ -42,9 +64,9 @@ std::string to_text(const Figure& figure) {
                             color_text(curve.stroke.color), curve.stroke.width,
                             curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(), points_text(curve.points));
         for (const Markers& markers : panel.markers)
-            text +=
-                fmt::format("  markers \"{}\" {} size {:.9g} points {}:{}\n", markers.label, color_text(markers.fill),
-                            markers.size, markers.points.size(), points_text(markers.points));
+            text += fmt::format("  markers \"{}\" {} {} size {:.9g} points {}:{}\n", markers.label,
+                                shape_text(markers.shape), color_text(markers.fill), markers.size,
+                                markers.points.size(), points_text(markers.points));
     }
     return text;
 }

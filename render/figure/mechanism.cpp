@@ -1,8 +1,11 @@
 #include "figure/mechanism.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
+#include <string_view>
+#include <utility>
 
 namespace achilles {
 
@@ -29,14 +32,63 @@ struct Box {
         y_low = std::min(y_low, p.y - radius);
         y_high = std::max(y_high, p.y + radius);
     }
+    template <class Placed>
+    void include(const Placed& placed) {
+        for (const Point& point : placed.points) include(point, std::max(0.0, placed.radius));
+    }
     bool empty() const { return x_low > x_high; }
+    // How far a point is outside, in the direction where it is farther.
+    double distance(const Point& p) const {
+        return std::max({x_low - p.x, p.x - x_high, y_low - p.y, p.y - y_high, 0.0});
+    }
 };
+
+// A curve that stands still, the surface mostly, counts where the motion is above it, not far below.
+void include_under(Box& all, const Box& motion, const std::vector<Point>& curve) {
+    const double height = std::max(motion.y_high - motion.y_low, 0.2 * (motion.x_high - motion.x_low));
+    for (const Point& p : curve)
+        if (p.x >= motion.x_low && p.x <= motion.x_high && p.y >= motion.y_low - height &&
+            p.y <= motion.y_high + height)
+            all.include(p);
+}
+
+// Of a floor, a wall or a pivot the place nearest to the motion is shown, unless it is far away.
+template <class Placed>
+void include_nearest(Box& all, const Box& motion, const Placed& placed) {
+    constexpr int parts = 100;
+    const double reach = std::max(motion.x_high - motion.x_low, motion.y_high - motion.y_low);
+    double least = std::numeric_limits<double>::infinity();
+    Point nearest;
+    for (std::size_t i = 0; i < placed.points.size(); ++i) {
+        const Point &a = placed.points[i], &b = placed.points[std::min(i + 1, placed.points.size() - 1)];
+        for (int k = 0; k < parts; ++k) {
+            const double s = static_cast<double>(k) / parts;
+            const Point p{a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)};
+            if (!(motion.distance(p) < least)) continue;
+            least = motion.distance(p);
+            nearest = p;
+        }
+    }
+    if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
+}
+
+// Whether an expression names one of the coordinates.
+bool names_coordinate(const SystemDescription& description, std::string_view text) {
+    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t end = i;
+        while (end < text.size() && is_part(text[end])) ++end;
+        for (const CoordinateDescription& c : description.coordinates)
+            if (c.name == text.substr(i, end - i)) return true;
+        i = std::max(end, i + 1);
+    }
+    return false;
+}
 
 }  // namespace
 
 Mechanism::Mechanism(const Model& model) : model_(model) {
     const SystemDescription& description = model.description();
-    std::vector<std::uint32_t> coordinates;
     for (const DrawingDescription& drawing : description.drawings) {
         Item item;
         item.description = drawing;
@@ -47,7 +99,8 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
             texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
         if (!drawing.width.text.empty()) texts.push_back(drawing.width);
         item.program = model.compile_drawing(texts, drawing.over);
-        item.moves = drawing.shape != Kind::curve && drawing.shape != Kind::text;
+        item.moves = std::any_of(texts.begin(), texts.end(),
+                                 [&](const Text& text) { return names_coordinate(description, text.text); });
         items_.push_back(std::move(item));
     }
     const auto named = [&](std::size_t i, const char* name) {
@@ -56,24 +109,25 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
     plane_ = items_.empty() && named(0, "x") && named(1, "y");
 }
 
-std::vector<Point> Mechanism::points(const Item& item, const State& state, std::span<const double> parameters) const {
-    Evaluator<double> run = model_.evaluator(item.program, parameters);
+Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, const State& state) const {
     put(run, state);
-    std::vector<Point> result;
-    if (item.description.shape != Kind::curve) {
-        run.run();
-        for (std::size_t i = 0; i < item.description.points.size(); ++i)
-            result.push_back({run.output(2 * i), run.output(2 * i + 1)});
-        return result;
-    }
     run.run();
+    const DrawingDescription& d = item.description;
+    Placed placed;
+    if (d.shape == Kind::disc) placed.radius = run.output(2);
+    if (!d.width.text.empty()) placed.width = run.output(run.output_count() - 1);
+    if (d.shape != Kind::curve) {
+        for (std::size_t i = 0; i < d.points.size(); ++i)
+            placed.points.push_back({run.output(2 * i), run.output(2 * i + 1)});
+        return placed;
+    }
     const double low = run.output(2), high = run.output(3);
     for (int i = 0; i <= curve_points; ++i) {
         run.input(model_.layout().own()) = low + (high - low) * i / curve_points;
         run.run();
-        result.push_back({run.output(0), run.output(1)});
+        placed.points.push_back({run.output(0), run.output(1)});
     }
-    return result;
+    return placed;
 }
 
 // The zero line of the gap over the window, by marching squares: segments, separated by NaN points.
@@ -108,8 +162,9 @@ std::vector<Point> Mechanism::zero_line(std::span<const double> parameters, cons
                 const double s = a / (a - b);
                 crossings.push_back({p.x + s * (q.x - p.x), p.y + s * (q.y - p.y)});
             }
-            if (crossings.size() < 2) continue;
-            line.insert(line.end(), {crossings[0], crossings[1], {nothing, nothing}});
+            // Two of them, or four in a saddle, which is two segments.
+            for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+                line.insert(line.end(), {crossings[k], crossings[k + 1], {nothing, nothing}});
         }
     }
     return line;
@@ -130,18 +185,16 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
         const DrawingDescription& d = item.description;
         const Color color = color_of(d.color, item.moves ? theme.body : theme.surface);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
-        put(run, state);
-        run.run();
-        const double width = d.width.text.empty() ? 2.0 : run.output(run.output_count() - 1);
+        Placed placed = place(item, run, state);
         const Shape::Kind kind = d.shape == Kind::disc   ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
-        Shape& shape = add(kind, color, width);
-        shape.points = points(item, state, parameters);
+        Shape& shape = add(kind, color, placed.width);
+        shape.points = std::move(placed.points);
         shape.fill = d.fill;
         shape.closed = d.fill && d.shape == Kind::polyline;
         shape.text = d.text;
-        if (d.shape == Kind::disc) shape.radius = run.output(2);
+        shape.radius = placed.radius;
     }
     if (plane_) {
         add(Shape::Kind::polyline, theme.surface, 2.0).points = zero_line(parameters, limits);
@@ -158,28 +211,32 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
 }
 
 Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> samples) const {
-    const auto& parameters = trajectory.run.parameters;
     Box box;
-    const std::size_t stride = std::max<std::size_t>(1, samples.size() / 300);
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
-        const State& state = samples[i].state;
-        if (plane_) box.include({state.q[0], state.q[1]});
-        for (const Item& item : items_) {
-            if (!item.moves) continue;
-            for (const Point& point : points(item, state, parameters)) box.include(point, 0.05);
-        }
+    const std::size_t stride = 1 + samples.size() / 1000;
+    if (plane_)
+        for (std::size_t i = 0; i < samples.size(); i += stride)
+            box.include({samples[i].state.q[0], samples[i].state.q[1]});
+    for (const Item& item : items_) {
+        if (!item.moves) continue;
+        Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
+        for (std::size_t i = 0; i < samples.size(); i += stride) box.include(place(item, run, samples[i].state));
     }
-    if (box.empty()) box.include({0.0, 0.0}, 1.0);
-    // A curve, the surface mostly, counts where the motion is above it.
+    const bool still = box.empty();  // then all there is must be seen
     Box all = box;
     for (const Item& item : items_) {
-        if (item.description.shape != Kind::curve) continue;
-        for (const Point& point : points(item, {trajectory.run.q, trajectory.run.v}, parameters))
-            if (point.x >= box.x_low && point.x <= box.x_high && point.y >= box.y_low - (box.y_high - box.y_low) &&
-                point.y <= box.y_high + (box.y_high - box.y_low))
-                all.include(point);
+        if (item.moves) continue;
+        Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
+        const Placed placed = place(item, run, {trajectory.run.q, trajectory.run.v});
+        if (still)
+            all.include(placed);
+        else if (item.description.shape == Kind::curve)
+            include_under(all, box, placed.points);
+        else
+            include_nearest(all, box, placed);
     }
-    const double room = 0.06 * std::max({all.x_high - all.x_low, all.y_high - all.y_low, 0.2});
+    if (all.empty()) all.include({0.0, 0.0}, 1.0);
+    const double size = std::max(all.x_high - all.x_low, all.y_high - all.y_low);
+    const double room = size > 0.0 ? 0.06 * size : 1.0;
     Drawing drawing;
     drawing.x_low = all.x_low - room;
     drawing.x_high = all.x_high + room;

@@ -25,10 +25,14 @@ class Mechanism {
  private:
     struct Item {
         DrawingDescription description;
-        Program program;  // its points' x and y, then radius or limits of the curve's parameter, then width
-        bool moves = false;
+        Program program;     // its points' x and y, then radius or limits of the curve's parameter, then width
+        bool moves = false;  // it names a coordinate
     };
-    std::vector<Point> points(const Item& item, const State& state, std::span<const double> parameters) const;
+    struct Placed {
+        std::vector<Point> points;
+        double radius = 0.0, width = 2.0;
+    };
+    Placed place(const Item& item, Evaluator<double>& run, const State& state) const;
     std::vector<Point> zero_line(std::span<const double> parameters, const Drawing& limits) const;
 
     const Model& model_;

@@ -43,7 +43,8 @@ const Event* nth(const Trajectory& trajectory, Event::Kind kind, int n) {
 std::string time_of(const Event* event) { return event == nullptr ? "none" : fmt::format("{:.9g}", event->t); }
 
 std::string row(const std::string& what, const std::string& paper, const std::string& ours, const std::string& why) {
-    return fmt::format("  {:<34} {:<14} {:<16} {}\n", what, paper, ours, why);
+    const std::string text = fmt::format("  {:<34} {:<14} {:<16} {}", what, paper, ours, why);
+    return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
 }  // namespace
@@ -126,7 +127,7 @@ std::string paper_table(const Trajectory& ball, const Trajectory& pendulum) {
                     "hddot = g sin(theta1)/L~");
     text += fmt::format(
         "\nThe second Zeno time of the ball is {}, not 11. A simulation that comes to rest at the first impact with\n"
-        "hddot < 0 and a speed below 1 does so at {:.4g} in the second valley, which is what the plot shows.\n"
+        "hddot < 0 and a speed below 1 does so at {:.4g} in the second valley, which one would read as about 11.\n"
         "The restitution is 0.5; the paper's text for Example 3 prints 10.5.\n",
         time_of(last), rest_time_with_threshold(ball, 1.0));
     return text;

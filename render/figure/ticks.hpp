@@ -1,12 +1,14 @@
-// Limits and ticks of an axis: steps of 1, 2 or 5, exact multiples, the fewest digits that tell neighbours apart.
+// Limits and ticks of an axis: steps of 1, 2 or 5, exact multiples, the fewest digits that tell neighbours apart;
+// powers of ten on a logarithmic axis.
 #pragma once
 
 #include "figure/figure.hpp"
 
 namespace achilles {
 
-// Sets limits and ticks. `margin` is the share of the range left free at each end; 0 keeps the limits as they are. At
-// most `most` labels. A range without extent gets one; limits that are not finite become [0, 1].
+// Sets limits and ticks; axis.logarithmic is set before. `margin` is the share of the range left free at each end; 0
+// keeps the limits as they are. At most `most` labels. A range without extent gets one; limits that are not finite
+// become [0, 1].
 void set_ticks(Axis& axis, double low, double high, double margin, int most = 6);
 
 // A number as a tick label: U+2212 for minus, never "-0", `decimals` digits after the point; in powers of ten beyond
