@@ -1,7 +1,9 @@
 #include "certify/paper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace achilles {
 
@@ -17,9 +19,10 @@ Interval around(double centre, double radius) { return Interval(centre) + Interv
 
 }  // namespace
 
-// Proved over the neighbourhood.
+// Proved over the neighbourhood: what Def. 7 needs, and its bounds on time, position and velocity.
 struct PaperConditions::Bounds {
-    Interval a_min, a_max, eta, zeta;
+    Interval a_min, a_max, eta, zeta, beta, w, e1, e2;
+    Interval time, position, velocity;  // per unit of w
 };
 
 PaperConditions::PaperConditions(const Model& model, const Run& run)
@@ -27,6 +30,8 @@ PaperConditions::PaperConditions(const Model& model, const Run& run)
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       point_(model.evaluator(model.bounds(), run.parameters)),
+      hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       box_(model.evaluator<Interval>(model.bounds(), run.parameters)),
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)) {}
 
@@ -45,78 +50,105 @@ bool PaperConditions::hopeless(const Collision& collision) {
            margin * velocity > truncation_.eps_v;
 }
 
-std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collision& collision,
-                                                                    const Truncation& neighbourhood) {
+std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collision& collision, double eps_q,
+                                                                    double eps_v) {
+    std::vector<Interval> box, n, f, g, v;
+    for (std::size_t i = 0; i < n_; ++i) box.push_back(around(collision.before.q[static_cast<Eigen::Index>(i)], eps_q));
     for (std::size_t i = 0; i < n_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        box_.input(i) = around(collision.before.q[k], neighbourhood.eps_q);
-        box_.input(n_ + i) = hull(around(collision.restart[k], neighbourhood.eps_v), Interval(collision.before.v[k]));
+        box.push_back(hull(around(collision.restart[k], eps_v), Interval(collision.before.v[k])));
+        v.emplace_back(collision.restart[k]);
     }
+    for (std::size_t i = 0; i < 2 * n_; ++i) box_.input(i) = box[i];
     box_.run();
-    std::vector<Interval> n, f;
+    put(surface_, collision.before);
+    surface_.run();
     for (std::size_t i = 0; i < n_; ++i) {
         n.push_back(box_.output(1 + i));
         f.push_back(box_.output(1 + n_ + i));
+        g.push_back(surface_.output(2 + n_ + i));
     }
-    const Interval a = -box_.output(0), eta = norm(n), zeta = norm(f);
-    if (!a.is_defined() || !eta.is_defined() || !zeta.is_defined() || !(a.lo() > 0.0)) return std::nullopt;
-    return Bounds{Interval(a.lo()), Interval(a.hi()), Interval(eta.hi()), Interval(zeta.hi())};
+    box.emplace_back(0.0);  // sigma: the box holds velocities themselves
+    const Interval a = -hddot_.over(box), eta = norm(n), zeta = norm(f), one(1.0), two(2.0);
+    if (!certainly_positive(a) || !eta.is_defined() || !zeta.is_defined()) return std::nullopt;
+    Bounds b{Interval(a.lo()),
+             Interval(a.hi()),
+             Interval(eta.hi()),
+             Interval(zeta.hi()),
+             norm(v) + Interval(eps_v),
+             abs(surface_.output(1)),
+             {},
+             {},
+             {},
+             {},
+             {}};
+    const Interval r = b.a_max / b.a_min;
+    b.e1 = e_ * r;
+    b.e2 = e_ * sqrt(r);
+    if (!certainly_less(b.e1, one)) return std::nullopt;
+    const bool kinetic = truncation_.reinitialization == Reinitialization::kinetic;
+    const Interval jumps = (kinetic ? e_ + b.e2 : one + e_) * b.eta / (one - b.e2);
+    b.time = two * e_ / (b.a_min * (one - b.e1));
+    b.position = b.beta * b.time;
+    b.velocity = jumps + b.zeta * b.time + (kinetic ? Interval(0.0) : one / norm(g));
+    return b;
 }
 
-std::optional<Certificate> PaperConditions::prove(const Collision& collision, const Truncation& neighbourhood) {
-    const auto bounds = bounds_over(collision, neighbourhood);
-    if (!bounds) return std::nullopt;
-    const auto& [a_min, a_max, eta, zeta] = *bounds;
-    put(surface_, collision.before);
-    surface_.run();
-    const Interval w = abs(surface_.output(1)), one(1.0), two(2.0), e = e_;
-    std::vector<Interval> g, v;
-    for (std::size_t i = 0; i < n_; ++i) {
-        g.push_back(surface_.output(2 + n_ + i));
-        v.emplace_back(collision.restart[static_cast<Eigen::Index>(i)]);
+// Meets the least neighbourhood that satisfies its own conditions from below; see the header.
+std::optional<Certificate> PaperConditions::prove(const Collision& collision, const Truncation& tolerances) {
+    double q = 0.0, v = 0.0;
+    for (int round = 0; round < 40; ++round) {
+        const auto bounds = bounds_over(collision, q, v);
+        if (!bounds) return std::nullopt;  // nor over any larger one
+        const double needed_q = (bounds->position * bounds->w).hi(), needed_v = (bounds->velocity * bounds->w).hi();
+        if (!((bounds->time * bounds->w).hi() < tolerances.eps_t) || !(needed_q < tolerances.eps_q) ||
+            !(needed_v < tolerances.eps_v))
+            return std::nullopt;
+        if (needed_q < q && needed_v < v) return certificate_of(collision, *bounds);
+        // A little more than was asked for, so that the growth comes to an end.
+        const auto more = [](double needed, double eps) {
+            return std::min(eps, 1.02 * needed + std::numeric_limits<double>::min());
+        };
+        q = std::max(q, more(needed_q, tolerances.eps_q));
+        v = std::max(v, more(needed_v, tolerances.eps_v));
     }
-    const Interval r = a_max / a_min, e1 = e * r, e2 = e * sqrt(r);
-    if (!certainly_less(e1, one)) return std::nullopt;
-    const Interval beta = norm(v) + Interval(neighbourhood.eps_v);
-    const bool kinetic = truncation_.reinitialization == Reinitialization::kinetic;
-    // Each bound is (time, position, velocity per unit of w) times w; c_i is the tolerance over the factor.
-    const Interval time = two * e / (a_min * (one - e1)), position = beta * time;
-    const Interval jumps = (kinetic ? e + e2 : one + e) * eta / (one - e2);
-    const Interval velocity = jumps + zeta * time + (kinetic ? Interval(0.0) : one / norm(g));
+    return std::nullopt;
+}
 
+Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) const {
     Certificate certificate;
+    certificate.certified = true;
     certificate.conditions = Conditions::paper;
     certificate.reinitialization = truncation_.reinitialization;
     const std::array<const char*, 3> names{"c1: time", "c2: position", "c3: velocity"};
-    const std::array<Interval, 3> factors{time, position, velocity};
-    const std::array<double, 3> tolerances{neighbourhood.eps_t, neighbourhood.eps_q, neighbourhood.eps_v};
-    certificate.certified = true;
-    double closest = -1.0;
+    const std::array<Interval, 3> factors{b.time, b.position, b.velocity};
+    // The c_i are those of the run's tolerances: the bounds over V are below V's own radii, and those below the
+    // tolerances.
+    const std::array<double, 3> eps{truncation_.eps_t, truncation_.eps_q, truncation_.eps_v};
     std::array<double, 3> c{};
+    double closest = -1.0;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Interval bound = factors[i] * w;
-        c[i] = factors[i].hi() > 0.0 ? (Interval(tolerances[i]) / Interval(factors[i].hi())).lo()
+        c[i] = factors[i].hi() > 0.0 ? (Interval(eps[i]) / Interval(factors[i].hi())).lo()
                                      : std::numeric_limits<double>::infinity();
-        if (!(bound.hi() < tolerances[i])) return std::nullopt;
-        certificate.inequalities.push_back({names[i], w.hi(), c[i]});
-        if (bound.hi() / tolerances[i] > closest) {
-            closest = bound.hi() / tolerances[i];
-            certificate.decisive = names[i];
-        }
+        certificate.inequalities.push_back({names[i], b.w.hi(), c[i]});
+        const double share = (factors[i] * b.w).hi() / eps[i];
+        if (share > closest) certificate.decisive = names[i];
+        closest = std::max(closest, share);
     }
-    certificate.inequalities.push_back({"e a_max/a_min", e1.hi(), 1.0});
-    certificate.inequalities.push_back({"normal acceleration", -a_min.lo(), 0.0});
-    certificate.position_bound = (position * w).hi();
-    certificate.velocity_bound = (velocity * w).hi();
-    certificate.a_min = a_min.lo();
-    certificate.a_max = a_max.hi();
+    certificate.inequalities.push_back({"e a_max/a_min", b.e1.hi(), 1.0});
+    certificate.inequalities.push_back({"normal acceleration", -b.a_min.lo(), 0.0});
+    certificate.position_bound = (b.position * b.w).hi();
+    certificate.velocity_bound = (b.velocity * b.w).hi();
+    certificate.a_min = b.a_min.lo();
+    certificate.a_max = b.a_max.hi();
     // The sharper interval for tau_inf (THEORY section 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
-    const Interval rebound = two * e * (one + e);
-    const Interval latest = rebound / (a_min * (one - square(e) * r)) * w;
-    const Interval earliest = rebound / (a_max * (one - square(e) / r)) * w;
+    const Interval one(1.0), r = b.a_max / b.a_min, rebound = Interval(2.0) * e_ * (one + e_) * b.w;
+    const Interval latest = rebound / (b.a_min * (one - square(e_) * r));
+    const Interval earliest = rebound / (b.a_max * (one - square(e_) / r));
     certificate.zeno_low = (Interval(collision.t) + Interval(earliest.lo())).lo();
     certificate.zeno_high = (Interval(collision.t) + Interval(latest.hi())).hi();
-    certificate.paper = Certificate::Paper{e1.hi(), e2.hi(), beta.hi(), eta.hi(), zeta.hi(), c[0], c[1], c[2]};
+    certificate.paper =
+        Certificate::Paper{b.e1.hi(), b.e2.hi(), b.beta.hi(), b.eta.hi(), b.zeta.hi(), c[0], c[1], c[2]};
     return certificate;
 }
 
@@ -126,17 +158,10 @@ std::optional<Certificate> PaperConditions::hold(const Collision& collision) {
 }
 
 std::optional<Certificate> PaperConditions::widest(const Collision& collision) {
-    Truncation neighbourhood = truncation_;
-    for (int doubling = 0; doubling < 60; ++doubling) {
-        if (auto certificate = prove(collision, neighbourhood)) {
-            certificate->below_rounding = true;
-            return certificate;
-        }
-        neighbourhood.eps_q = std::min(1.0, 2.0 * neighbourhood.eps_q);
-        neighbourhood.eps_v = std::min(1.0, 2.0 * neighbourhood.eps_v);
-        neighbourhood.eps_t = std::min(1.0, 2.0 * neighbourhood.eps_t);
-    }
-    return std::nullopt;
+    constexpr double any = 1e6;
+    auto certificate = prove(collision, {any, any, any, Conditions::paper, truncation_.reinitialization});
+    if (certificate) certificate->below_rounding = true;
+    return certificate;
 }
 
 }  // namespace achilles

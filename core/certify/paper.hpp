@@ -9,9 +9,15 @@
 //     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic: the restart is s
 //     itself
 //
-// w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q, |v_inf - v*| < eps_v.
+// w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q', |v_inf - v*| < eps_v'.
+//
+// Which eps' <= eps? A smaller V makes every bound smaller (inclusion is monotone), so among all V that satisfy their
+// own conditions there is a least one, and it is met from below: V grows to what its own bounds ask for, until they
+// stand still inside it. Where a bound exceeds eps on the way, no eps' <= eps can succeed; where eps' = eps succeeds,
+// so does the least V, with smaller bounds.
 #pragma once
 
+#include "certify/range.hpp"
 #include "certify/truncation.hpp"
 
 namespace achilles {
@@ -21,19 +27,21 @@ class PaperConditions : public TruncationConditions {
     PaperConditions(const Model& model, const Run& run);
 
     std::optional<Certificate> hold(const Collision& collision) override;
-    // The least neighbourhood, doubling from the run's tolerances, whose own conditions hold.
+    // The same with tolerances that nothing exceeds.
     std::optional<Certificate> widest(const Collision& collision) override;
 
  private:
     struct Bounds;
     bool hopeless(const Collision& collision);
-    std::optional<Certificate> prove(const Collision& collision, const Truncation& neighbourhood);
-    std::optional<Bounds> bounds_over(const Collision& collision, const Truncation& neighbourhood);
+    std::optional<Certificate> prove(const Collision& collision, const Truncation& tolerances);
+    std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v);
+    Certificate certificate_of(const Collision& collision, const Bounds& bounds) const;
 
     std::size_t n_;
     Truncation truncation_;
     Interval e_;
     Evaluator<double> point_;
+    Range hddot_;
     Evaluator<Interval> box_, surface_;
 };
 

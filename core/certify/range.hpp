@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "expression/program.hpp"
+#include "model/derive.hpp"
 
 namespace achilles {
 
@@ -26,5 +27,8 @@ class Range {
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
 };
+
+// The inputs that the programs of model/bouncing.hpp vary with: q, s, sigma.
+std::vector<std::uint32_t> bouncing_slots(const Layout& layout);
 
 }  // namespace achilles

@@ -17,13 +17,6 @@ Interval rounded(double x) {
 
 Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
 
-std::vector<std::uint32_t> variables(const Layout& layout) {
-    std::vector<std::uint32_t> slots;
-    for (std::uint32_t i = 0; i < 2 * layout.n; ++i) slots.push_back(i);
-    slots.push_back(layout.sigma());
-    return slots;
-}
-
 // A radius that holds what was needed, with room: a fifth, and something where nothing was needed.
 double inflated(double need) { return 1.2 * need + std::numeric_limits<double>::min(); }
 
@@ -61,11 +54,13 @@ SharpConditions::SharpConditions(const Model& model, const Run& run)
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), variables(model.layout())),
+             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)),
       shadow_(model.evaluator<Interval>(model.bouncing().shadow, run.parameters)),
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
       point_(model.evaluator(model.bouncing().hddot, run.parameters)),
+      point_gradient_(model.evaluator(model.bouncing().gradient, run.parameters)),
+      point_motion_(model.evaluator(model.bouncing().motion, run.parameters)),
       need_q_(n_),
       need_s_(n_) {}
 
@@ -78,12 +73,26 @@ void SharpConditions::set(Evaluator<Interval>& program, const Box& box) const {
     program.run();
 }
 
-// -hddot <= 0 at the collision itself: no proof can succeed. This is the only shortcut, and it never proves.
+// A guess in double of what a proof would find, to first order: how far -hddot varies over the least X there can be.
+// Where even that is too much, trying is put off to the next impact. It never replaces a proof.
 bool SharpConditions::hopeless(const Collision& collision) {
-    put(point_, State{collision.before.q, collision.tangential});
-    point_.input(sigma_) = 0.0;
-    point_.run();
-    return !(point_.output(0) < 0.0);
+    const State state{collision.before.q, collision.tangential};
+    for (Evaluator<double>* program : {&point_, &point_gradient_, &point_motion_}) {
+        put(*program, state);
+        program->input(sigma_) = 0.0;
+        program->run();
+    }
+    const double a = -point_.output(0), e = mid(e_), w = collision.speed;
+    if (!(a > 0.0) || (collision.restart - collision.tangential).norm() > truncation_.eps_v) return true;
+    const double T = 2.0 * e * w / (a * (1.0 - e));
+    double variation = std::abs(point_gradient_.output(2 * n_)) * w;
+    for (std::size_t i = 0; i < 2 * n_; ++i)
+        variation += std::abs(point_gradient_.output(i) * point_motion_.output(i)) * T;
+    const double low = a - variation, high = a + variation, r = high / low;
+    if (!(low > 0.0) || !(e * e * r < 1.0)) return true;
+    const double half_width = e * (1.0 + e) * w * (1.0 / (low * (1.0 - e * e * r)) - 1.0 / (high * (1.0 - e * e / r)));
+    constexpr double doubt = 1.5;  // what the guess may be wrong by
+    return half_width > doubt * truncation_.eps_t;
 }
 
 // The attained bound of section 4, if X allows it.

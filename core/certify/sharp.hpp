@@ -54,7 +54,7 @@ class SharpConditions : public TruncationConditions {
     Interval e_;
     Range hddot_;
     Evaluator<Interval> motion_, shadow_, surface_;
-    Evaluator<double> point_;
+    Evaluator<double> point_, point_gradient_, point_motion_;
     std::vector<double> need_q_, need_s_;  // radii that the last test of a box asked for
 };
 

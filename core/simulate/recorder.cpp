@@ -28,6 +28,7 @@ void Recorder::stretch(const State& state) {
     put(energy_, state);
     energy_.run();
     reference_ = energy_.output(0);
+    scale_ = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
 }
 
 void Recorder::step(const Flow& flow, double gap) {
@@ -38,10 +39,10 @@ void Recorder::step(const Flow& flow, double gap) {
     any_gap_ = true;
     put(energy_, flow.end());
     energy_.run();
-    // Relative to the parts, of which the sum may cancel to nothing.
-    const double scale = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
-    if (scale > 0.0)
-        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.output(0) - reference_) / scale);
+    // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
+    scale_ = std::max(scale_, std::abs(energy_.output(1)) + std::abs(energy_.output(2)));
+    if (scale_ > 0.0)
+        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.output(0) - reference_) / scale_);
 }
 
 void Recorder::event(Event event) {

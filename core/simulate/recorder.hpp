@@ -29,6 +29,7 @@ class Recorder {
     Trajectory trajectory_;
     Evaluator<double> energy_;
     double reference_ = 0.0;  // the energy at the start of the stretch
+    double scale_ = 0.0;      // the largest |T| + |V| of the stretch so far
     bool any_gap_ = false;
 };
 

@@ -1,0 +1,76 @@
+// What certificates cost, beside the run they belong to: medians of interleaved repetitions in one process.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "certify/truncation.hpp"
+#include "simulate/impact.hpp"
+#include "simulate/simulate.hpp"
+
+namespace {
+
+using namespace achilles;
+
+double median(std::vector<double> x) {
+    std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
+    return x[x.size() / 2];
+}
+
+template <class Work>
+double seconds(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// Every collision at which a run asked for a certificate: its impacts, and the one it was cut at.
+std::vector<Collision> collisions(const Trajectory& trajectory) {
+    Surface surface(*trajectory.model, trajectory.run);
+    std::vector<Collision> result;
+    for (const Event& event : trajectory.events) {
+        if (event.kind == Event::Kind::release) continue;
+        const State before{event.truncation ? event.truncation->q : event.q,
+                           event.truncation ? event.truncation->v_before : event.v_before};
+        const Contact contact = surface.at(before);
+        const auto kind = trajectory.run.options.truncation.reinitialization;
+        result.push_back({event.truncation ? event.truncation->t : event.t, before, -contact.hdot,
+                          reinitialize(contact, before.v, Reinitialization::kinetic),
+                          reinitialize(contact, before.v, kind)});
+    }
+    return result;
+}
+
+void measure(const std::string& file, Conditions kind) {
+    const auto model = std::make_shared<const Model>(read_system(file));
+    Run run = model->default_run();
+    run.options.truncation.conditions = kind;
+    const Trajectory trajectory = simulate(model, run);
+    const std::vector<Collision> all = collisions(trajectory);
+    const auto conditions = truncation_conditions(*model, run);
+    std::vector<double> whole, asked, one;
+    const Collision& last = all.back();
+    for (int repetition = 0; repetition < 201; ++repetition) {
+        whole.push_back(seconds([&] { simulate(model, run); }));
+        asked.push_back(seconds([&] {
+            for (const Collision& collision : all) conditions->hold(collision);
+        }));
+        one.push_back(seconds([&] { conditions->widest(last); }));
+    }
+    fmt::print(
+        "{:<16} {:<6} run {:8.1f} us   one certificate {:6.1f} us   all {} questions {:7.1f} us, {:5.1f} % of the "
+        "run\n",
+        model->description().coordinates[0].name == "x" ? "ball" : "pendulum", to_text(kind), 1e6 * median(whole),
+        1e6 * median(one), all.size(), 1e6 * median(asked), 100.0 * median(asked) / median(whole));
+}
+
+}  // namespace
+
+int main() {
+    for (const char* system : {"ball_on_sine", "double_pendulum"})
+        for (const Conditions kind : {Conditions::paper, Conditions::sharp})
+            measure(fmt::format("{}/assets/systems/{}.toml", ACHILLES_SOURCE_DIR, system), kind);
+}
