@@ -8,10 +8,10 @@ namespace achilles {
 
 namespace {
 
-// A computed number stands for every number that rounding could have made it from; the certificate holds for all of
-// them.
-Interval rounded(double x) {
-    const double radius = 0x1p-50 * std::abs(x);
+// A number computed from terms of this size stands for every number that rounding could have made it from; the
+// certificate holds for all of them. The size is that of the terms: s = v - n hdot may cancel.
+Interval rounded(double x, double size) {
+    const double radius = 0x1p-50 * size;
     return Interval(x) + Interval(-radius, radius);
 }
 
@@ -194,8 +194,9 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
     for (std::size_t i = 0; i < n_; ++i) g.push_back(surface_.output(2 + n_ + i));
     for (std::size_t i = 0; i < n_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        box.q0.push_back(rounded(collision.before.q[k]));
-        box.s0.push_back(rounded(collision.tangential[k]));
+        const double v = std::abs(collision.before.v[k]);
+        box.q0.push_back(rounded(collision.before.q[k], std::abs(collision.before.q[k])));
+        box.s0.push_back(rounded(collision.tangential[k], v + (abs(surface_.output(2 + i)) * box.w).hi()));
         const bool euclidean = truncation_.reinitialization == Reinitialization::euclidean;
         box.d.push_back(euclidean ? box.w * abs(surface_.output(2 + i) - g[i] / square(norm(g))) : Interval(0.0));
     }
