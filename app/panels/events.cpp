@@ -132,12 +132,13 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
                 state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
 }
 
-void show_row(const Session& session, const Row& row, bool is_reached, PanelState& state, Commands& commands) {
+void show_row(const Session& session, const Row& row, int index, bool is_reached, PanelState& state,
+              Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const int event_number = static_cast<int>(row.event) + 1;
     const bool is_event = row.certificate.empty();
     const bool is_selected = session.selected() == event_number || (session.selected() == 0 && is_reached);
-    ImGui::PushID(&row);
+    ImGui::PushID(index);  // not its address, which another frame gives to another row
     // Another click on the chosen event lets go of it.
     if (ImGui::Selectable("##row", is_selected))
         commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
@@ -186,7 +187,7 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const Row& row = all[static_cast<std::size_t>(i)];
-            show_row(session, row, static_cast<int>(row.event) == present, state, commands);
+            show_row(session, row, i, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();
     if (event != nullptr) {
