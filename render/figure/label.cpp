@@ -19,6 +19,18 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 34> letters{
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
+// Where the number ends that begins at i. Its exponent is part of it: the e of 1e3 is no name with an index.
+std::size_t end_of_number(std::string_view text, std::size_t i) {
+    while (i < text.size() && (is_digit(text[i]) || text[i] == '.')) ++i;
+    std::size_t exponent = i;
+    if (exponent < text.size() && (text[exponent] == 'e' || text[exponent] == 'E')) ++exponent;
+    if (exponent == i) return i;
+    if (exponent < text.size() && (text[exponent] == '+' || text[exponent] == '-')) ++exponent;
+    if (exponent == text.size() || !is_digit(text[exponent])) return i;
+    while (exponent < text.size() && is_digit(text[exponent])) ++exponent;
+    return exponent;
+}
+
 }  // namespace
 
 std::string typeset_name(std::string_view name) {
@@ -50,8 +62,8 @@ std::string typeset(std::string_view expression) {
             while (end < expression.size() && expression[end] == '\'') ++end;
             text += typeset_name(expression.substr(i, end - i));
         } else if (is_digit(c) || c == '.') {
-            while (end < expression.size() && (is_digit(expression[end]) || expression[end] == '.')) ++end;
-            text += expression.substr(i, end - i);
+            end = end_of_number(expression, i);
+            for (const char part : expression.substr(i, end - i)) text += part == '-' ? "\u2212" : std::string(1, part);
         } else {
             ++end;
             text += c == '*' ? "\u00B7" : c == '-' ? "\u2212" : std::string(1, c);

@@ -50,12 +50,13 @@ int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(s
 
 }  // namespace
 
-std::string tick_label(double value, double step) {
-    const double size = std::max(std::abs(value), step);
+std::string tick_label(double value, double step, double largest) {
+    const double size = std::max({std::abs(value), step, largest});
     if (size < 1e5 && (step >= 1e-4 || size >= 1e-2))
         return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
     if (value == 0.0) return "0";
-    const int exponent = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-12));
+    const double scale = std::max(std::abs(value), largest);
+    const int exponent = static_cast<int>(std::floor(std::log10(scale) + 1e-12));
     const double mantissa = value / std::pow(10.0, exponent);
     const int decimals = std::max(0, exponent - static_cast<int>(std::floor(std::log10(step) + 1e-9)));
     return with_minus(fmt::format("{:.{}f}", mantissa, std::min(decimals, 12))) + "\u00D710" + superscript(exponent);
@@ -78,10 +79,12 @@ void set_linear(Axis& axis, double low, double high, double margin, int most) {
     axis.high = high += room;
     const Step step = nice_step(low, high, most);
     const double minor = step.size / step.minor, slack = 1e-9 * (high - low);
+    const double first = std::ceil((low - slack) / step.size), last = std::floor((high + slack) / step.size);
+    const double largest = step.size * std::max(std::abs(first), std::abs(last));
     for (double i = std::ceil((low - slack) / minor); i * minor <= high + slack; ++i) {
         const bool major = std::fmod(std::abs(i), step.minor) == 0.0;
         const double value = major ? multiple(i / step.minor, step.size) : i * minor;
-        axis.ticks.push_back({value, major ? tick_label(value, step.size) : ""});
+        axis.ticks.push_back({value, major ? tick_label(value, step.size, largest) : ""});
     }
 }
 

@@ -26,6 +26,8 @@ TEST(Labels, NamesBecomeSymbols) {
     EXPECT_EQ(typeset_name("energy"), "energy");
     EXPECT_EQ(typeset("m*g*y - theta1'^2"), "m·g·y − θ\u0307₁^2");
     EXPECT_EQ(typeset("2.5*x1"), "2.5·x₁");
+    EXPECT_EQ(typeset("1e3*x - 2.5E-2*e1"), "1e3·x − 2.5E−2·e₁");
+    EXPECT_EQ(typeset("2*e"), "2·e");
     EXPECT_EQ(with_unit("h", ""), "h");
     EXPECT_EQ(with_unit("h", "m"), "h [m]");
 }

@@ -71,6 +71,16 @@ TEST(LinearTicks, EndForEveryRange) {
     EXPECT_EQ(axis_of(false, 1e17, 1e17 + 64).count, axis_of(false, 1e17, 1e17).count);
 }
 
+TEST(LinearTicks, ShareOneFormOnAnAxis) {
+    const auto labels = [](double low, double high) { return axis_of(false, low, high).text; };
+    EXPECT_EQ(labels(0, 2e5), "0 0.5×10⁵ 1.0×10⁵ 1.5×10⁵ 2.0×10⁵");
+    EXPECT_EQ(labels(-2e5, 2e5), "−2×10⁵ −1×10⁵ 0 1×10⁵ 2×10⁵");
+    EXPECT_EQ(labels(9.9e4, 1.01e5), "0.990×10⁵ 0.995×10⁵ 1.000×10⁵ 1.005×10⁵ 1.010×10⁵");
+    EXPECT_EQ(labels(0, 1.2e-4), "0 0.5×10⁻⁴ 1.0×10⁻⁴");
+    EXPECT_EQ(labels(0, 8e4), "0 20000 40000 60000 80000");
+    EXPECT_EQ(labels(0.00999, 0.01001), "0.009990 0.009995 0.010000 0.010005 0.010010");
+}
+
 TEST(LinearTicks, NeverSayMinusZero) {
     EXPECT_EQ(tick_label(-0.0, 1.0), "0");
     EXPECT_EQ(tick_label(-1e-17, 0.1), "0.0");
