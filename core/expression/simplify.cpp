@@ -46,6 +46,14 @@ std::pair<Expression, int> as_power(Expression e) {
     return {e, 1};
 }
 
+// Exact as long as it stays small: towers of powers must not fill the memory with digits.
+bool can_fold(const Rational& base, int exponent) {
+    constexpr std::size_t most_bits = 4096;
+    using boost::multiprecision::denominator, boost::multiprecision::numerator;
+    const auto bits = msb(abs(numerator(base))) + msb(denominator(base)) + 2;
+    return bits * static_cast<std::size_t>(std::abs(static_cast<long>(exponent))) <= most_bits;
+}
+
 bool fits(int exponent) { return exponent > -1000 && exponent < 1000; }
 
 }  // namespace
@@ -120,7 +128,7 @@ Expression power(Expression base, int exponent) {
     if (exponent == 0) return number(base, 1);
     if (exponent == 1) return base;
     if (exponent == -1) return number(base, 1) / base;
-    if (base.is_number() && (base.is_zero() ? exponent > 0 : std::abs(exponent) <= 64)) {
+    if (base.is_number() && (base.is_zero() ? exponent > 0 : can_fold(Builder::value(base), exponent))) {
         Rational result = 1;
         for (int i = 0; i < std::abs(exponent); ++i) result *= Builder::value(base);
         return number(base, exponent > 0 ? result : Rational(1 / result));

@@ -62,6 +62,10 @@ struct DrawingDescription {
     Location at;
 };
 
+// Every expression of a drawing: x and y of its points, then a disc's radius or a curve's limits, then the width if
+// given.
+std::vector<Text> texts_of(const DrawingDescription& drawing);
+
 struct ViewDescription {
     std::string name;
     Text x;

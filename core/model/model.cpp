@@ -91,10 +91,12 @@ Model::Model(SystemDescription description) : description_(std::move(description
     read_mass_matrix();
     derive(equations_, layout_, *graph_);
     compile();
-    for (const ViewDescription& view : description_.views) {  // a mistake in a view speaks now, not when it is drawn
+    for (const ViewDescription& view :
+         description_.views) {  // a mistake in a view or a drawing speaks now, not when it is drawn
         compile_view(std::span(&view.x, 1));
         compile_view(view.y);
     }
+    for (const DrawingDescription& drawing : description_.drawings) compile_drawing(texts_of(drawing), drawing.over);
 }
 
 Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const {

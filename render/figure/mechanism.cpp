@@ -92,12 +92,7 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
     for (const DrawingDescription& drawing : description.drawings) {
         Item item;
         item.description = drawing;
-        std::vector<Text> texts;
-        for (const auto& point : drawing.points) texts.insert(texts.end(), point.begin(), point.end());
-        if (drawing.shape == Kind::disc) texts.push_back(drawing.radius);
-        if (drawing.shape == Kind::curve)
-            texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
-        if (!drawing.width.text.empty()) texts.push_back(drawing.width);
+        const std::vector<Text> texts = texts_of(drawing);
         item.program = model.compile_drawing(texts, drawing.over);
         item.moves = std::any_of(texts.begin(), texts.end(),
                                  [&](const Text& text) { return names_coordinate(description, text.text); });

@@ -120,6 +120,12 @@ TEST_F(Expressions, ErrorsNameThePlaceAndTheLikelyWord) {
     EXPECT_EQ(error(std::string(100000, '(')).substr(0, 28), "200: nested more than 200 le");
 }
 
+TEST_F(Expressions, TowersOfPowersEndAtOnce) {
+    EXPECT_EQ(value("(2^10)^3"), 1073741824.0);
+    EXPECT_TRUE(std::isinf(value("((((2^64)^64)^64)^64)")));
+    EXPECT_EQ(value("((((0.5^64)^64)^64)^64)"), 0.0);
+}
+
 TEST_F(Expressions, LongSumsNeedNoDeepStack) {
     std::string text = "x";
     for (int i = 0; i < 20000; ++i) text += " + sin(x + " + std::to_string(i) + ")";

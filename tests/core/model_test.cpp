@@ -240,6 +240,9 @@ TEST(BadSystems, AreToldWhatIsWrong) {
     EXPECT_EQ(error_of(good, "start = 0.5", "start = -0.5"), "the gap is negative at the start: h = -0.5");
     EXPECT_EQ(error_of(good, "c^4/4", "log(c)"),
               "the acceleration is not finite at the start: a function is outside its domain");
+    EXPECT_EQ(error_of(good, "[lagrangian]",
+                       "[[drawing]]\nshape = \"disc\"\nat = [\"a\", \"bb\"]\nradius = 0.1\n[lagrangian]"),
+              "unknown name 'bb'; did you mean 'b'?");
     EXPECT_EQ(error_of(good, "value = 0.7", "value = 0.5"), "no error");
 }
 
