@@ -10,7 +10,7 @@ namespace {
 
 const std::vector<Command> one_of_each{
     command::Open{"ball_on_sine"},
-    command::Open{"/tmp/a \"strange\" #1\\file.toml"},
+    command::Open{"/some/a \"strange\" #1\\file.toml"},
     command::Set{"g", 9.81},
     command::Set{"x'", -1.5},
     command::Set{"theta1", 0.1 + 0.2},
