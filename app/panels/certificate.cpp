@@ -94,9 +94,12 @@ std::vector<std::string> certificate_lines(const Event& event) {
 
 void show_certificate(const Event& event, int number, PanelState& state, Commands& commands) {
     show_title(*event.certificate, number, state, commands);
-    const float half = std::floor(std::max(units(300.0F), 0.44F * ImGui::GetContentRegionAvail().x));
+    const std::vector<std::string> lines = certificate_lines(event);
+    float half = 0.44F * ImGui::GetContentRegionAvail().x;
+    for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));
+    half = std::floor(half);
     const float top = ImGui::GetCursorPosY(), left = ImGui::GetCursorPosX();
-    for (const std::string& line : certificate_lines(event)) ImGui::TextUnformatted(line.c_str());
+    for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
     const float below = ImGui::GetCursorPosY();
     ImGui::SetCursorPos({left + half, top});
     ImGui::BeginGroup();
