@@ -102,7 +102,6 @@ class Graph {
     const Node& node(std::uint32_t id) const;
     std::uint32_t size() const;
     Constant constant(std::uint32_t id) const;  // of a number node
-    double value(std::uint32_t id) const;       // of a number node, nearest
 
  private:
     friend class Expression;

@@ -114,8 +114,6 @@ Constant Graph::constant(std::uint32_t id) const {
             boost::multiprecision::denominator(value).str()};
 }
 
-double Graph::value(std::uint32_t id) const { return constant(id).nearest; }
-
 bool Expression::is_number() const { return Builder::is(*this, Operation::number); }
 bool Expression::is_zero() const { return is_number() && Builder::value(*this) == 0; }
 bool Expression::is_one() const { return is_number() && Builder::value(*this) == 1; }

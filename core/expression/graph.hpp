@@ -42,7 +42,7 @@ constexpr bool is_leaf(Operation operation) {
     return operation == Operation::number || operation == Operation::pi || operation == Operation::symbol;
 }
 
-// For every node up to e: does e depend on it?
+// For every node up to the last output: is it needed for one of them?
 std::vector<bool> reachable(std::span<const Expression> outputs);
 
 }  // namespace achilles

@@ -56,7 +56,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     variables.insert(variables.end(), v.begin(), v.end());
     variables.push_back(layout.sigma());
 
-    const Slots slots{layout.count(), 2 * layout.n, 2 * layout.n + layout.p};
+    const Slots slots = layout.slots();
     const auto program = [&](std::initializer_list<Row> parts) {
         Row outputs;
         for (const Row& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());

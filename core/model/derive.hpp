@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "expression/expression.hpp"
+#include "expression/program.hpp"
 
 namespace achilles {
 
@@ -19,6 +19,7 @@ struct Layout {
     std::uint32_t sigma() const { return 2 * n + p + 2; }    // stands for hdot where v = s + n sigma
     std::uint32_t own() const { return 2 * n + p + 3; }      // a drawn curve's own parameter
     std::uint32_t count() const { return 2 * n + p + 4; }
+    Slots slots() const { return {count(), 2 * n, 2 * n + p}; }
 };
 
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.

@@ -10,8 +10,6 @@ namespace achilles {
 
 namespace {
 
-Slots slots_of(const Layout& layout) { return {layout.count(), 2 * layout.n, 2 * layout.n + layout.p}; }
-
 // The place of a byte inside a text that starts at `text.at`.
 Location place_in(const Text& text, std::size_t offset) {
     Location at = text.at;
@@ -139,7 +137,7 @@ void Model::read_mass_matrix() {
 
 void Model::compile() {
     const Equations& e = equations_;
-    const Slots slots = slots_of(layout_);
+    const Slots slots = layout_.slots();
     const auto program = [&](std::initializer_list<std::vector<Expression>> parts) {
         std::vector<Expression> outputs;
         for (const auto& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());
@@ -258,7 +256,7 @@ Program Model::compile_view(std::span<const Text> texts) const {
     scope.allowed.emplace("energy", graph.adopt(equations_.energy));
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
-    return Program(outputs, slots_of(layout_));
+    return Program(outputs, layout_.slots());
 }
 
 Program Model::compile_drawing(std::span<const Text> texts, const std::string& own) const {
@@ -268,7 +266,7 @@ Program Model::compile_drawing(std::span<const Text> texts, const std::string& o
     if (!own.empty()) scope.allowed.insert_or_assign(own, graph.symbol(layout_.own()));
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
-    return Program(outputs, slots_of(layout_));
+    return Program(outputs, layout_.slots());
 }
 
 }  // namespace achilles

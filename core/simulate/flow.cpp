@@ -262,7 +262,6 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
 
 double Flow::begin_time() const { return stepper_->t; }
 double Flow::duration() const { return stepper_->span; }
-const State& Flow::begin() const { return stepper_->from; }
 const State& Flow::end() const { return stepper_->to; }
 long Flow::evaluations() const { return stepper_->evaluations; }
 

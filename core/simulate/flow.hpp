@@ -45,11 +45,10 @@ class Flow {
     // Moves the end of the last step along the motion by a time so short that a second-order Taylor step is exact.
     void shift_end(double dt);
 
-    // The last step: [begin_time, begin_time + duration], its ends, and q, v as polynomials in theta.
+    // The last step: [begin_time, begin_time + duration], its end, and q, v as polynomials in theta.
     double begin_time() const;
     double duration() const;
     double end_time() const { return begin_time() + duration(); }
-    const State& begin() const;
     const State& end() const;
     // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
     Polynomial watched() const;
