@@ -1,10 +1,13 @@
 #include "command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "expression/nearest.hpp"
@@ -14,6 +17,15 @@ namespace achilles {
 namespace {
 
 constexpr std::string_view spaces = " \t\r";
+
+// What would end the line or the word, and how it is written: \n.
+constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
+
+char meant_by(char letter) {
+    for (const auto& [written, meant] : escapes)
+        if (written == letter) return meant;
+    return letter;
+}
 
 struct Word {
     std::string text;
@@ -67,8 +79,9 @@ class Line {
         const int column = static_cast<int>(at) + 1;
         std::string result;
         for (++at; at < text_.size() && text_[at] != '"'; ++at) {
-            if (text_[at] == '\\' && at + 1 < text_.size()) ++at;
-            result += text_[at];
+            const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
+            if (escaped) ++at;
+            result += escaped ? meant_by(text_[at]) : text_[at];
         }
         if (at == text_.size()) throw error(column, "the quotes are not closed");
         ++at;
@@ -81,14 +94,20 @@ class Line {
     std::vector<Word> words_;
 };
 
-std::string quoted_where_needed(const std::string& word) {
-    if (!word.empty() && word[0] != '#' && word.find_first_of(" \t\r\"\\") == std::string::npos) return word;
+std::string quoted(const std::string& word) {
     std::string text = "\"";
     for (const char c : word) {
-        if (c == '"' || c == '\\') text += '\\';
-        text += c;
+        const auto* special =
+            std::find_if(escapes.begin(), escapes.end(), [c](const auto& e) { return e.second == c; });
+        if (special != escapes.end() || c == '"' || c == '\\') text += '\\';
+        text += special != escapes.end() ? special->first : c;
     }
     return text + '"';
+}
+
+std::string quoted_where_needed(const std::string& word) {
+    const bool is_plain = !word.empty() && word[0] != '#' && word.find_first_of(" \t\r\n\"\\") == std::string::npos;
+    return is_plain ? word : quoted(word);
 }
 
 Command read_eps(const Line& line) {
@@ -146,7 +165,29 @@ Command read_select(const Line& line) {
     return command::Select{line.whole_number(1)};
 }
 
-constexpr std::array<Verb, 11> verbs{{{"open", read_open},
+Command read_text_of_system(const Line& line) {
+    line.expect_arguments(1, 1, "write: text \"the whole file\", with \\n for every new line");
+    return command::Text{line.word(1).text};
+}
+
+Command read_save(const Line& line) {
+    line.expect_arguments(1, 2, "write: save FILE, or: save FILE overwrite");
+    if (line.count() == 3 && line.word(2).text != "overwrite")
+        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text),
+                         "write: save FILE, or: save FILE overwrite");
+    return command::Save{line.word(1).text, line.count() == 3};
+}
+
+template <bool shown>
+Command read_show(const Line& line) {
+    const std::string usage = fmt::format("write: {} editor", line.word(0).text);
+    line.expect_arguments(1, 1, usage);
+    if (line.word(1).text != "editor")
+        throw line.error(line.word(1).column, fmt::format("there is no panel '{}'", line.word(1).text), usage);
+    return command::Show{shown};
+}
+
+constexpr std::array<Verb, 16> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -156,7 +197,12 @@ constexpr std::array<Verb, 11> verbs{{{"open", read_open},
                                       {"seek", read_number<command::Seek>},
                                       {"play", read_alone<command::Play>},
                                       {"pause", read_alone<command::Pause>},
-                                      {"select", read_select}}};
+                                      {"select", read_select},
+                                      {"new", read_alone<command::New>},
+                                      {"text", read_text_of_system},
+                                      {"save", read_save},
+                                      {"show", read_show<true>},
+                                      {"hide", read_show<false>}}};
 
 struct Print {
     std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
@@ -178,6 +224,12 @@ struct Print {
     std::string operator()(const command::Play&) const { return "play"; }
     std::string operator()(const command::Pause&) const { return "pause"; }
     std::string operator()(const command::Select& c) const { return fmt::format("select {}", c.event); }
+    std::string operator()(const command::New&) const { return "new"; }
+    std::string operator()(const command::Text& c) const { return "text " + quoted(c.text); }
+    std::string operator()(const command::Save& c) const {
+        return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
+    }
+    std::string operator()(const command::Show& c) const { return c.editor ? "show editor" : "hide editor"; }
 };
 
 }  // namespace
@@ -200,8 +252,7 @@ Command parse_command(std::string_view text, const std::string& file, int line_n
     throw line.error(
         line.word(0).column,
         fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
-        "the commands are: open, set, end, tolerance, eps, conditions, reinitialization, seek, play, pause, "
-        "select");
+        fmt::format("the commands are: {}", fmt::join(names, ", ")));
 }
 
 }  // namespace achilles

@@ -4,8 +4,11 @@
 //     eps 1e-6                 eps 1e-6 1e-6 1e-7 (position, velocity, time)
 //     conditions paper         reinitialization kinetic
 //     seek 3.2                 play               pause              select 25
+//     new                      text "title = \"A ball\"\n..."          show editor        hide editor
+//     save mine.toml           save mine.toml overwrite
 //
-// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes".
+// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes",
+// where \n is a new line, \t a tab, \r a carriage return and \ before anything else that itself.
 #pragma once
 
 #include <string>
@@ -62,11 +65,29 @@ struct Select {
     friend bool operator==(const Select&, const Select&) = default;
 };
 
+struct New {  // a system to start from
+    friend bool operator==(const New&, const New&) = default;
+};
+struct Text {
+    std::string text;  // of the whole system file, as the editor holds it
+    friend bool operator==(const Text&, const Text&) = default;
+};
+struct Save {
+    std::string file;        // what the editor holds goes there
+    bool overwrite = false;  // whatever file may be there; else only the one that was opened or saved before
+    friend bool operator==(const Save&, const Save&) = default;
+};
+struct Show {
+    bool editor = true;  // in place of the sliders
+    friend bool operator==(const Show&, const Show&) = default;
+};
+
 }  // namespace command
 
 using Command =
     std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
-                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select>;
+                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select,
+                 command::New, command::Text, command::Save, command::Show>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

@@ -42,13 +42,19 @@ std::vector<Command> journal_of(const ExploreOptions& options) {
     return options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
 }
 
+// What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
+// hand; the others are shown when they are there.
+constexpr double frame_patience = 1.0 / 40.0;
+
 // The session that the command line asks for.
-Session open_session(const ExploreOptions& options) {
+Session open_session(const ExploreOptions& options, Patience patience) {
     const std::string name = first_system(options);
-    const Opener opener = [overrides = options.overrides](const std::string& system) {
-        return open_system(find_system(system), {}, overrides);
+    const auto finish = [overrides = options.overrides](SystemDescription& description) {
+        apply(overrides, description.options);
+        refuse_unavailable(description, overrides);
     };
-    return {name, open_system(find_system(name), options.settings, options.overrides), opener};
+    return {name, open_system(find_system(name), options.settings, options.overrides),
+            Library{[](const std::string& system) { return find_system(system); }, finish}, patience};
 }
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
@@ -107,7 +113,8 @@ class Clock {
 
 int explore(const ExploreOptions& options) {
     const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+    // A journal tells what was done after each run: then every run is waited for.
+    Session session = open_session(options, journal.empty() ? Patience(frame_patience) : Patience());
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
@@ -122,8 +129,11 @@ int explore(const ExploreOptions& options) {
     };
     for (const Command& command : opening(session, options)) keep(command);
     for (const Command& command : journal) apply(command);
+    session.set_patience(frame_patience);
+    session.on_ready(Window::wake);
     Clock clock;
     window.run([&] {
+        session.update();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (session.playing())
             play_on(session, clock.elapsed(), state.loop);
@@ -140,7 +150,7 @@ int screenshot(const ScreenshotOptions& options) {
     OutputFiles files;
     files.add(options.out);
     const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+    Session session = open_session(options, {});
     for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
     Offscreen surface(surface_options(options));

@@ -87,6 +87,8 @@ struct SystemDescription {
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
+// The text of a system file. Throws InputError if there is none to read.
+std::string read_text(const std::filesystem::path& file);
 // Reads a file. Throws InputError.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.

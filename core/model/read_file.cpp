@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-SystemDescription read_system(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file) {
     constexpr std::size_t largest = std::size_t{64} << 20;  // bytes; /dev/zero has no end
     const std::string name = file.string();
     const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
@@ -29,7 +29,11 @@ SystemDescription read_system(const std::filesystem::path& file) {
         if (text.size() > largest) throw refuse("it is larger than 64 MB");
     }
     if (std::ferror(open.get()) != 0) throw refuse(reason());
-    return parse_system(std::move(text), name);
+    return text;
+}
+
+SystemDescription read_system(const std::filesystem::path& file) {
+    return parse_system(read_text(file), file.string());
 }
 
 }  // namespace achilles
