@@ -94,6 +94,14 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
+// What the files dropped on the window ask for: one system, once changes of the text are saved or given up.
+std::vector<Command> dropped(Window& window, const Session& session, PanelState& state) {
+    std::vector<Command> commands;
+    const std::vector<std::string> files = window.dropped();
+    if (!files.empty()) request(session, state, command::Open{files.back()}, commands);
+    return commands;
+}
+
 // Seconds since it was last asked, none the first time.
 class Clock {
  public:
@@ -140,8 +148,8 @@ int explore(const ExploreOptions& options) {
         else
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);
-        for (const std::string& file : window.dropped()) apply(command::Open{file});
-        window.keep_drawing(session.playing());
+        for (const Command& command : dropped(window, session, state)) apply(command);
+        window.keep_drawing(session.playing() || is_typing(state));
     });
     return reached_end;
 }

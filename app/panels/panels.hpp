@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,28 @@ struct SystemEntry {
     std::string name, title;
 };
 
+// The text as the hand types it, until it rests and the text becomes a command; and what is asked about files.
+struct EditorState {
+    std::string text, known;  // as typed; as the session has it
+    int revision = 0;         // counts the texts that came from elsewhere
+    double resting = 0.0;     // s since the last letter
+    int go_to = 0;            // a line to scroll to; 0: none
+    bool is_active = false;   // letters go here
+
+    enum class Asking { nothing, open, save, unsaved };
+    Asking asking = Asking::nothing;
+    std::string path;                // typed in a dialog
+    std::optional<Command> waiting;  // to be done once the changes are saved or given up
+    bool has_saved = false;          // the command to save has been given, what waits may follow
+};
+
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
-    std::vector<SystemEntry> systems;         // to choose from
-    bool in_window = false;                   // a window may show how long the run took; a picture must not
-    bool show_impacts = true;                 // in the event list
-    bool loop = false;                        // at the end of the run the player begins again
+    std::vector<SystemEntry> systems;  // to choose from
+    bool in_window = false;            // a window may show how long the run took; a picture must not
+    bool show_impacts = true;          // in the event list
+    bool loop = false;                 // at the end of the run the player begins again
+    EditorState editor;
     int followed = -1;                        // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
@@ -30,9 +47,10 @@ std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Its parts, each inside a window of its own that the explorer has begun.
 using Commands = std::vector<Command>;
+void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
-void show_error(const Session& session);
-float error_height(const Session& session, float width);
+void show_editor(const Session& session, PanelState& state, Commands& commands);
+void show_dialogs(const Session& session, PanelState& state, Commands& commands);
 void show_mechanism(const Session& session);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();
@@ -43,5 +61,18 @@ void show_events(const Session& session, PanelState& state, Commands& commands);
 std::vector<std::string> certificate_lines(const Event& event);
 void show_certificate(const Event& event, int number, PanelState& state, Commands& commands);
 void show_status(const Session& session, const PanelState& state);
+
+// Letters were typed that are no command yet: frames must go on until they are.
+bool is_typing(const PanelState& state);
+// What was typed becomes a command now.
+void hand_over_text(EditorState& editor, Commands& commands);
+// Shows the editor in place of the sliders, or the sliders again.
+void toggle_editor(const Session& session, PanelState& state, Commands& commands);
+// A command that puts another text in place of the edited one: asks first where that has changes that are not saved.
+void request(const Session& session, PanelState& state, const Command& command, Commands& commands);
+// Begin to ask for a path. Saving asks where the text has no file yet.
+void ask_to_open(PanelState& state);
+void ask_to_save(const Session& session, PanelState& state);
+void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 
 }  // namespace achilles
