@@ -11,19 +11,18 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* template_text =
-    R"toml(# A ball on a flat floor. Change anything: what can be read takes effect at once.
-title  = "A new system"
-source = ""
+    R"toml(# A ball in a bowl. Change anything: what can be read takes effect when you pause.
+title = "A new system"
 
 [[coordinate]]
 name  = "x"
-start = 0.0
-rate  = 1.0
+start = -1.0
+rate  = 1.5
 unit  = "m"
 
 [[coordinate]]
 name  = "y"
-start = 1.0
+start = 1.5
 rate  = 0.0
 unit  = "m"
 
@@ -43,31 +42,35 @@ about = "gravity"
 
 [[parameter]]
 name  = "e"
-value = 0.7
+value = 0.6
 range = [0.0, 1.0]
 about = "restitution: normal speed after an impact over that before"
 
+# x' is the rate of x.
 [lagrangian]
 kinetic   = "m/2*(x'^2 + y'^2)"
 potential = "m*g*y"
 
+# The motion keeps the gap at zero or above; at an impact its rate is reversed and scaled.
 [[constraint]]
-gap         = "y"
+gap         = "y - x^2/8"
 restitution = "e"
 
 [run]
-end_time = 4.0
+end_time = 6.0
 
+# The surface, and the ball.
 [[drawing]]
 shape = "curve"
-over  = ["s", -1.0, 5.0]
-at    = ["s", "0"]
+over  = ["s", -4.0, 4.0]
+at    = ["s", "s^2/8"]
 
 [[drawing]]
 shape  = "disc"
 at     = ["x", "y"]
-radius = 0.04
+radius = 0.05
 
+# The plots.
 [[view]]
 name = "height"
 x = "t"

@@ -94,11 +94,22 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
-// What the files dropped on the window ask for: one system, once changes of the text are saved or given up.
-std::vector<Command> dropped(Window& window, const Session& session, PanelState& state) {
+// What the files dropped on the window ask for: a journal is replayed; a system is opened, once changes of the text are
+// saved or given up.
+std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
     std::vector<Command> commands;
-    const std::vector<std::string> files = window.dropped();
-    if (!files.empty()) request(session, state, command::Open{files.back()}, commands);
+    for (const std::string& file : window.dropped()) {
+        try {
+            if (std::filesystem::path(file).extension() == ".journal") {
+                const std::vector<Command> journal = read_journal(file);
+                commands.insert(commands.end(), journal.begin(), journal.end());
+            } else {
+                request(session, state, command::Open{file}, commands);
+            }
+        } catch (const InputError& problem) {
+            session.refuse(problem);
+        }
+    }
     return commands;
 }
 
@@ -139,6 +150,7 @@ int explore(const ExploreOptions& options) {
     for (const Command& command : journal) apply(command);
     session.set_patience(frame_patience);
     session.on_ready(Window::wake);
+    window.on_close([&] { return request_close(session, state); });
     Clock clock;
     window.run([&] {
         session.update();
@@ -149,6 +161,7 @@ int explore(const ExploreOptions& options) {
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);
         for (const Command& command : dropped(window, session, state)) apply(command);
+        if (state.editor.may_close) window.close();
         window.keep_drawing(session.playing() || is_typing(state));
     });
     return reached_end;

@@ -36,6 +36,9 @@ class Session {
     // text is no system.
     void apply(const Command& command);
 
+    // A mistake that is no command's: error() tells it until the next command.
+    void refuse(const InputError& problem) { error_ = problem.what(); }
+
     void set_patience(Patience patience) { patience_ = patience; }
     // Called on another thread when update() would take something in.
     void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }

@@ -76,6 +76,13 @@ void close(EditorState& editor) {
     ImGui::CloseCurrentPopup();
 }
 
+// Nothing is done of what was asked about.
+void give_up(EditorState& editor) {
+    editor.waiting.reset();
+    editor.is_closing = false;
+    close(editor);
+}
+
 bool is_escape() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false); }
 
 // The line to type a path in, what is to say about it, and two buttons. True when the path is chosen.
@@ -92,10 +99,7 @@ bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
     ImGui::PopStyleColor();
     const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
     ImGui::SameLine();
-    if (button("Cancel", state) || is_escape()) {
-        editor.waiting.reset();
-        close(editor);
-    }
+    if (button("Cancel", state) || is_escape()) give_up(editor);
     // Enter alone overwrites nothing.
     const bool chosen = verdict.is_good && (pressed || (entered && !verdict.asks));
     editor.keeps_path = entered && !chosen;  // Enter lets go of the line: hold it while it is wrong
@@ -116,14 +120,21 @@ void save_dialog(PanelState& state, const Session& session, Commands& commands) 
     close(editor);
     hand_over_text(editor, commands);
     commands.emplace_back(command::Save{file, judge(file).asks});
-    editor.has_saved = editor.waiting.has_value();
+    editor.has_saved = editor.waiting.has_value() || editor.is_closing;
+}
+
+// Nothing keeps what waited any longer.
+void go_on(EditorState& editor, Commands& commands) {
+    editor.may_close = std::exchange(editor.is_closing, false);
+    if (editor.waiting) commands.push_back(*std::exchange(editor.waiting, std::nullopt));
 }
 
 void unsaved_dialog(PanelState& state, const Session& session, Commands& commands) {
     EditorState& editor = state.editor;
     const std::string name = session.document().name;
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(fmt::format("The text of {} has changes that are not saved.", name).c_str());
+    const char* before = editor.is_closing ? "the window is closed" : "another takes its place";
+    ImGui::TextUnformatted(fmt::format("Save the text of {} before {}?", name, before).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     if (button("Save", state)) {
@@ -134,21 +145,19 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     ImGui::SameLine();
     if (button("Discard", state)) {
         close(editor);
-        commands.push_back(*std::exchange(editor.waiting, std::nullopt));
+        go_on(editor, commands);
         editor.known = editor.text;  // nor is what was typed last
     }
     ImGui::SameLine();
-    if (button("Cancel", state) || is_escape()) {
-        editor.waiting.reset();
-        close(editor);
-    }
+    if (button("Cancel", state) || is_escape()) give_up(editor);
 }
 
 // What waited for the changes to be saved is done once they are; if that failed, it is not.
-void go_on(const Session& session, EditorState& editor, Commands& commands) {
+void go_on_if_saved(const Session& session, EditorState& editor, Commands& commands) {
     if (!std::exchange(editor.has_saved, false)) return;
-    if (!session.document().is_changed()) commands.push_back(*editor.waiting);
+    if (!session.document().is_changed()) go_on(editor, commands);
     editor.waiting.reset();
+    editor.is_closing = false;
 }
 
 void take_keys(const Session& session, PanelState& state, Commands& commands) {
@@ -183,16 +192,26 @@ void save_or_ask(const Session& session, PanelState& state, Commands& commands) 
 void request(const Session& session, PanelState& state, const Command& command, Commands& commands) {
     if (!session.document().is_changed() && !is_typing(state)) return commands.push_back(command);
     state.editor.waiting = command;
+    state.editor.is_closing = false;
     state.editor.asking = EditorState::Asking::unsaved;
+}
+
+bool request_close(const Session& session, PanelState& state) {
+    if (state.editor.may_close || (!session.document().is_changed() && !is_typing(state))) return true;
+    state.editor.waiting.reset();
+    state.editor.is_closing = true;
+    state.editor.asking = EditorState::Asking::unsaved;
+    return false;
 }
 
 void show_dialogs(const Session& session, PanelState& state, Commands& commands) {
     EditorState& editor = state.editor;
-    go_on(session, editor, commands);
+    go_on_if_saved(session, editor, commands);
     take_keys(session, state, commands);
     using Asking = EditorState::Asking;
-    constexpr std::pair<Asking, const char*> titles[] = {
-        {Asking::open, "Open a system"}, {Asking::save, "Save the system"}, {Asking::unsaved, "Changes"}};
+    constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
+                                                         {Asking::save, "Save the system"},
+                                                         {Asking::unsaved, "Changes that are not saved"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });

@@ -114,7 +114,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     const float gutter = std::floor(digits * letter + 2.0F * units(gutter_padding));
     Rectangle all = remaining();
     // Whole lines: the last is not cut, until somebody scrolls.
-    const float paddings = 2.0F * ImGui::GetStyle().FramePadding.y, font = ImGui::GetFontSize();
+    const float paddings = ImGui::GetStyle().FramePadding.y + units(1.0F), font = ImGui::GetFontSize();
     height = std::max(std::floor((height - paddings) / font), 1.0F) * font + paddings;
     all.height = height;
     const ImVec2 padding = ImGui::GetStyle().FramePadding;

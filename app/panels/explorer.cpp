@@ -50,13 +50,14 @@ Parts lay_out(const Session& session, const std::string& message) {
     const float centre = std::floor(0.46F * width);
     const float timeline = timeline_height() + 2.0F * padding;
     Parts parts;
-    parts.controls = {0.0F, 0.0F, left, size.y - status};
+    // Beside a text the events would be too narrow for what a certificate says: they stand below it.
+    parts.controls = {0.0F, 0.0F, left, wide ? height : size.y - status};
     const float error = message.empty() ? 0.0F : card_height(message, centre);
     parts.error = {left, 0.0F, centre, error};
     parts.mechanism = {left, error, centre, height - timeline - error};
     parts.timeline = {left, height - timeline, centre, timeline};
     parts.plots = {left + centre, 0.0F, width - centre, height};
-    parts.events = {left, height, width, events};
+    parts.events = wide ? Rectangle{0.0F, height, size.x, events} : Rectangle{left, height, width, events};
     parts.status = {0.0F, size.y - status, size.x, status};
     return parts;
 }

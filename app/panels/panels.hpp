@@ -30,6 +30,8 @@ struct EditorState {
     bool keeps_path = false;         // what was entered was wrong: more letters go there
     std::optional<Command> waiting;  // to be done once the changes are saved or given up
     bool has_saved = false;          // the command to save has been given, what waits may follow
+    bool is_closing = false;         // it is the window that waits to be closed
+    bool may_close = false;          // now nothing is lost by it
 };
 
 // What belongs to the view and not to the session, so is in no journal.
@@ -71,6 +73,8 @@ void hand_over_text(EditorState& editor, Commands& commands);
 void toggle_editor(const Session& session, PanelState& state, Commands& commands);
 // A command that puts another text in place of the edited one: asks first where that has changes that are not saved.
 void request(const Session& session, PanelState& state, const Command& command, Commands& commands);
+// Whether the window may be closed at once; otherwise asks first, and then sets may_close.
+bool request_close(const Session& session, PanelState& state);
 // Begin to ask for a path. Saving asks where the text has no file yet.
 void ask_to_open(PanelState& state);
 void ask_to_save(const Session& session, PanelState& state);

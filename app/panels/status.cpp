@@ -61,7 +61,7 @@ void show_progress(const Run& run, const Watch& watch) {
     ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)}, accent);
     ImGui::PushStyleColor(ImGuiCol_Text, accent);
     ImGui::TextUnformatted(
-        fmt::format("running: t = {:.4g} of {:.4g} s   \u00b7   {:.0f} impacts", time, run.options.end_time, impacts)
+        fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts", time, run.options.end_time, impacts)
             .c_str());
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, units(24.0F));

@@ -243,6 +243,32 @@ TEST(Editor, asks_what_to_do_with_changes_that_are_not_saved) {
     EXPECT_EQ(folder.files().size(), 1U);
 }
 
+TEST(Editor, asks_before_the_window_is_closed_over_changes) {
+    const Folder folder;
+    Writer hands;
+    EXPECT_TRUE(request_close(hands.session, hands.state));
+    hands.write(ball() + "# 1");
+    EXPECT_FALSE(request_close(hands.session, hands.state));
+    hands.rest(3);
+    hands.click("dialog Cancel");
+    EXPECT_FALSE(hands.state.editor.may_close);
+    EXPECT_FALSE(request_close(hands.session, hands.state));
+    hands.rest(3);
+    hands.click("dialog Save");
+    hands.write_path((folder.path() / "mine.toml").string());
+    hands.press(key::enter);
+    EXPECT_TRUE(hands.state.editor.may_close);
+    EXPECT_EQ(content(folder.path() / "mine.toml"), ball() + "# 1");
+    EXPECT_TRUE(request_close(hands.session, hands.state));
+
+    Writer other;
+    other.write("nothing of value");
+    EXPECT_FALSE(request_close(other.session, other.state));
+    other.rest(3);
+    other.click("dialog Discard");
+    EXPECT_TRUE(other.state.editor.may_close);
+}
+
 TEST(Editor, another_text_takes_the_place_of_the_one_under_the_hand) {
     Writer hands;
     hands.write(ball() + "# more");

@@ -60,6 +60,15 @@ await grep -q "^save $folder/mine.toml" "$folder/journal" || fail "Ctrl+S does n
 await test -s "$folder/mine.toml" || fail "nothing was saved"
 [ "$(tail -c 9 "$folder/mine.toml")" = "# by hand" ] || fail "something else was saved"
 
+# A window that would close over changes asks first.
+xdotool key ctrl+End sleep 0.2
+xdotool type --delay 40 "!"
+xdotool sleep 0.2 key ctrl+q sleep 1
+kill -0 "$explorer" || fail "the window closes over changes that are not saved"
+xdotool key Escape sleep 0.5 mousemove --window "$window" 200 300 click 1 sleep 0.2 key ctrl+s
+saved_twice() { [ "$(grep -c "^save $folder/mine.toml" "$folder/journal")" -ge 2 ]; }
+await saved_twice || fail "the window is deaf after it was to be closed"
+
 close_window() {
     xdotool key ctrl+q
     status=0
