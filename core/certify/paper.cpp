@@ -126,15 +126,12 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     // tolerances.
     const std::array<double, 3> eps{truncation_.eps_t, truncation_.eps_q, truncation_.eps_v};
     std::array<double, 3> c{};
-    double closest = -1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         c[i] = factors[i].hi() > 0.0 ? (Interval(eps[i]) / Interval(factors[i].hi())).lo()
                                      : std::numeric_limits<double>::infinity();
         certificate.inequalities.push_back({names[i], b.w.hi(), c[i]});
-        const double share = (factors[i] * b.w).hi() / eps[i];
-        if (share > closest) certificate.decisive = names[i];
-        closest = std::max(closest, share);
     }
+    name_decisive(certificate);
     certificate.inequalities.push_back({"e a_max/a_min", b.e1.hi(), 1.0});
     certificate.inequalities.push_back({"normal acceleration", -b.a_min.lo(), 0.0});
     certificate.position_bound = (b.position * b.w).hi();
@@ -142,11 +139,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
     // The sharper interval for tau_inf (THEORY section 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
-    const Interval one(1.0), r = b.a_max / b.a_min, rebound = Interval(2.0) * e_ * (one + e_) * b.w;
-    const Interval latest = rebound / (b.a_min * (one - square(e_) * r));
-    const Interval earliest = rebound / (b.a_max * (one - square(e_) / r));
-    certificate.zeno_low = (Interval(collision.t) + Interval(earliest.lo())).lo();
-    certificate.zeno_high = (Interval(collision.t) + Interval(latest.hi())).hi();
+    set_zeno_time(certificate, collision.t, wait_for_zeno(e_, b.a_min, b.a_max, b.w));
     certificate.paper =
         Certificate::Paper{b.e1.hi(), b.e2.hi(), b.beta.hi(), b.eta.hi(), b.zeta.hi(), c[0], c[1], c[2]};
     return certificate;
