@@ -61,7 +61,7 @@ await test -s "$folder/mine.toml" || fail "nothing was saved"
 [ "$(tail -c 9 "$folder/mine.toml")" = "# by hand" ] || fail "something else was saved"
 
 # A window that would close over changes asks first.
-xdotool key ctrl+End sleep 0.2
+xdotool mousemove --window "$window" 200 300 sleep 0.2 click 1 sleep 0.3 key ctrl+End sleep 0.2
 xdotool type --delay 40 "!"
 xdotool sleep 0.2 key ctrl+q sleep 1
 kill -0 "$explorer" || fail "the window closes over changes that are not saved"
