@@ -22,6 +22,7 @@ struct EditorState {
     int revision = 0;         // counts the texts that came from elsewhere
     double resting = 0.0;     // s since the last letter
     int go_to = 0;            // a line to scroll to; 0: none
+    float height = 0.0F;      // of the text on the screen, pixels
     bool is_active = false;   // letters go here
 
     enum class Asking { nothing, open, save, unsaved };

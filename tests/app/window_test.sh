@@ -6,8 +6,9 @@
 set -euo pipefail
 
 if [ "${2-}" != inside ]; then
-    # As small a screen as the window needs; no display of the person who runs the tests is touched.
-    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24" "$0" "$1" inside
+    # As small a screen as the window needs; no display of the person who runs the tests is touched. Without -noreset the
+    # server starts anew when one explorer has closed, and the next may find it gone.
+    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset" "$0" "$1" inside
 fi
 
 build=$1
