@@ -82,7 +82,7 @@ bool is_escape() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape
 template <class Judge>
 bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
     EditorState& editor = state.editor;
-    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    if (ImGui::IsWindowAppearing() || editor.keeps_path) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-1.0F);
     const bool entered = ImGui::InputText("##path", &editor.path, ImGuiInputTextFlags_EnterReturnsTrue);
     remember(state, "path");
@@ -97,7 +97,9 @@ bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
         close(editor);
     }
     // Enter alone overwrites nothing.
-    return verdict.is_good && (pressed || (entered && !verdict.asks));
+    const bool chosen = verdict.is_good && (pressed || (entered && !verdict.asks));
+    editor.keeps_path = entered && !chosen;  // Enter lets go of the line: hold it while it is wrong
+    return chosen;
 }
 
 void open_dialog(PanelState& state, const Session& session, Commands& commands) {

@@ -27,6 +27,7 @@ struct EditorState {
     enum class Asking { nothing, open, save, unsaved };
     Asking asking = Asking::nothing;
     std::string path;                // typed in a dialog
+    bool keeps_path = false;         // what was entered was wrong: more letters go there
     std::optional<Command> waiting;  // to be done once the changes are saved or given up
     bool has_saved = false;          // the command to save has been given, what waits may follow
 };
