@@ -13,9 +13,6 @@ namespace achilles::test {
 
 namespace {
 
-// What --method accepts and computes with. A method that arrives is added here.
-const Method methods[] = {Method::dopri5};
-
 std::filesystem::path file_of(const std::string& system) { return source_file("assets/systems/" + system + ".toml"); }
 
 }  // namespace
@@ -26,13 +23,15 @@ std::string name_of(const testing::TestParamInfo<Case>& info) {
     return info.param.system + "_" + std::string(to_text(info.param.method));
 }
 
+std::vector<Method> all_methods() { return {Method::dopri5}; }
+
 std::vector<Case> all_cases() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
         if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
     std::vector<Case> cases;
-    for (const Method method : methods)
+    for (const Method method : all_methods())
         for (const std::string& name : names) cases.push_back({name, method});
     return cases;
 }

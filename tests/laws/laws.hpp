@@ -33,6 +33,8 @@ struct Case {
 void PrintTo(const Case& one, std::ostream* out);
 std::string name_of(const testing::TestParamInfo<Case>& info);
 
+// The methods that --method accepts and computes with.
+std::vector<Method> all_methods();
 // Every file in the folder with every method there is.
 std::vector<Case> all_cases();
 
