@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,12 @@ class Expression {
  private:
     Graph* graph_ = nullptr;
     std::uint32_t id_ = 0;
+};
+
+// More nodes, or more digits of exact numbers, than a graph may hold; what() is "it takes more than ...". Whatever
+// makes a node may throw it.
+struct TooLarge : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 // Arithmetic builds nodes and simplifies locally: constants fold, 0 and 1 vanish, x - x = 0, like factors gather.

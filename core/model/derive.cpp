@@ -1,5 +1,9 @@
 #include "model/derive.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace achilles {
 
 namespace {
@@ -13,6 +17,7 @@ class Factorisation {
         for (std::size_t j = 0; j < n; ++j) {
             pivots_[j] = M[j * n + j];
             for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - power(lower_[j * n + k], 2) * pivots_[k];
+            if (pivots_[j].is_zero()) throw std::domain_error(fmt::format("pivot {} is 0", j + 1));
             for (std::size_t i = j + 1; i < n; ++i) {
                 Expression entry = M[i * n + j];
                 for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
@@ -88,6 +93,7 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     }
     const Row impulse = mass.solve(e.g);  // M^-1 g'
     e.W = dot(e.g, impulse, graph);
+    if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
     for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : u / e.W);
 
     e.hddot = curvature + dot(e.g, e.f, graph);

@@ -87,6 +87,9 @@ struct SystemDescription {
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
+// The most bytes of a file: thousands of points of a polyline fit, and whatever else it holds is refused in a second.
+inline constexpr std::size_t largest_file = std::size_t{4} << 20;
+
 // Reads a file. Throws InputError.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.
