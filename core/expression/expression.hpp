@@ -117,9 +117,13 @@ class Graph {
     std::unique_ptr<Table> table_;
 };
 
-// d(expression)/d(symbol of that slot), for each slot of a list: one pass, shared nodes.
-std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
+// d(expression)/d(symbol of that slot): one pass over the graph for all expressions of a list.
 Expression derivative(Expression expression, std::uint32_t slot);
+std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot);
+// The same for each slot of a list: one row an expression, one column a slot.
+std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
+std::vector<std::vector<Expression>> jacobian(std::span<const Expression> expressions,
+                                              std::span<const std::uint32_t> slots);
 
 // The expression with symbols replaced: slots[i] becomes values[i].
 Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values);
