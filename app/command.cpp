@@ -187,7 +187,61 @@ Command read_show(const Line& line) {
     return command::Show{shown};
 }
 
-constexpr std::array<Verb, 16> verbs{{{"open", read_open},
+// The words from number `first` on.
+std::vector<std::string> words_from(const Line& line, std::size_t first) {
+    std::vector<std::string> result;
+    for (std::size_t i = first; i < line.count(); ++i) result.push_back(line.word(i).text);
+    return result;
+}
+
+bool read_switch(const Line& line, std::size_t i, const std::string& usage) {
+    const std::string& text = line.word(i).text;
+    if (text != "on" && text != "off")
+        throw line.error(line.word(i).column, fmt::format("'{}' is neither on nor off", text), usage);
+    return text == "on";
+}
+
+Command read_grid(const Line& line) {
+    line.expect_arguments(2, 2, "write: grid COLUMNS ROWS");
+    return command::Grid{line.whole_number(1), line.whole_number(2)};
+}
+
+Command read_plot(const Line& line) {
+    line.expect_arguments(3, 12, "write: plot NUMBER X Y..., expressions with spaces in double quotes");
+    return command::PlotView{line.whole_number(1), line.word(2).text, words_from(line, 3)};
+}
+
+Command read_zoom(const Line& line) {
+    line.expect_arguments(5, 5, "write: zoom NUMBER X_LOW X_HIGH Y_LOW Y_HIGH");
+    return command::Zoom{line.whole_number(1), line.number(2), line.number(3), line.number(4), line.number(5)};
+}
+
+Command read_fit(const Line& line) {
+    line.expect_arguments(1, 1, "write: fit NUMBER");
+    return command::Fit{line.whole_number(1)};
+}
+
+Command read_log(const Line& line) {
+    const std::string usage = "write: log NUMBER x on, or: log NUMBER y off";
+    line.expect_arguments(3, 3, usage);
+    const std::string& axis = line.word(2).text;
+    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
+    return command::AxisScale{line.whole_number(1), axis == "x", read_switch(line, 3, usage)};
+}
+
+Command read_curve(const Line& line) {
+    const std::string usage = "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off";
+    line.expect_arguments(3, 3, usage);
+    return command::ShowCurve{line.whole_number(1), line.whole_number(2), read_switch(line, 3, usage)};
+}
+
+Command read_link(const Line& line) {
+    const std::string usage = "write: link on, or: link off";
+    line.expect_arguments(1, 1, usage);
+    return command::Link{read_switch(line, 1, usage)};
+}
+
+constexpr std::array<Verb, 23> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -202,7 +256,16 @@ constexpr std::array<Verb, 16> verbs{{{"open", read_open},
                                       {"text", read_text_of_system},
                                       {"save", read_save},
                                       {"show", read_show<true>},
-                                      {"hide", read_show<false>}}};
+                                      {"hide", read_show<false>},
+                                      {"grid", read_grid},
+                                      {"plot", read_plot},
+                                      {"zoom", read_zoom},
+                                      {"fit", read_fit},
+                                      {"log", read_log},
+                                      {"curve", read_curve},
+                                      {"link", read_link}}};
+
+const char* on_off(bool on) { return on ? "on" : "off"; }
 
 struct Print {
     std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
@@ -230,6 +293,23 @@ struct Print {
         return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
     }
     std::string operator()(const command::Show& c) const { return c.editor ? "show editor" : "hide editor"; }
+    std::string operator()(const command::Grid& c) const { return fmt::format("grid {} {}", c.columns, c.rows); }
+    std::string operator()(const command::PlotView& c) const {
+        std::string text = fmt::format("plot {} {}", c.plot, quoted_where_needed(c.x));
+        for (const std::string& y : c.y) text += " " + quoted_where_needed(y);
+        return text;
+    }
+    std::string operator()(const command::Zoom& c) const {
+        return fmt::format("zoom {} {} {} {} {}", c.plot, c.x_low, c.x_high, c.y_low, c.y_high);
+    }
+    std::string operator()(const command::Fit& c) const { return fmt::format("fit {}", c.plot); }
+    std::string operator()(const command::AxisScale& c) const {
+        return fmt::format("log {} {} {}", c.plot, c.is_x ? "x" : "y", on_off(c.logarithmic));
+    }
+    std::string operator()(const command::ShowCurve& c) const {
+        return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
+    }
+    std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
 };
 
 }  // namespace

@@ -14,8 +14,6 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t most_plots = 4;
-
 // A refusal that names no file: the user's hand made the mistake.
 InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
@@ -46,25 +44,23 @@ InputError no_such_name(const SystemDescription& description, const std::string&
 }  // namespace
 
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
-    : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {
-    const auto& all = model->description().views;
-    for (std::size_t i = 0; i < std::min(all.size(), most_plots); ++i) views.emplace_back(*model, all[i]);
-}
+    : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {}
 
-Session::Motion::Motion(const System& system, const Run& run, const Theme& theme, Watch* watch)
-    : trajectory(simulate(system.model, run, watch)), sampler(trajectory) {
-    without_events.model = trajectory.model;
-    without_events.run = run;
-    const std::vector<Sample> samples = plot_samples(trajectory);
-    limits = system.mechanism.limits(trajectory, samples);
-    for (const PreparedView& view : system.views) plots.push_back(compose(trajectory, samples, view, theme));
-}
+Session::Motion::Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch)
+    : trajectory(simulate(system.model, run, watch)),
+      sampler(trajectory),
+      samples(plot_samples(trajectory)),
+      limits(system.mechanism.limits(trajectory, samples)),
+      revision(plotted.revision()),
+      plots(plotted.compose(trajectory, samples, theme)) {}
 
 Session::Session(const std::string& name, const SystemDescription& first, Library library, Patience patience)
-    : library_(std::move(library)), patience_(patience) {
-    document_ = {name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}};
-    const auto system = std::make_shared<const System>(name, first);
-    change_system(system, system->model->default_run());
+    : library_(std::move(library)),
+      patience_(patience),
+      document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
+      system_(std::make_shared<const System>(name, first)),
+      plots_(system_->model) {
+    change_system(system_, plots_, system_->model->default_run());
 }
 
 void Session::apply(const Command& command) {
@@ -99,7 +95,7 @@ void Session::begin_document(Document document) {
         selected_ = 0;
         time_ = 0.0;
         placed_.reset();
-        change_system(system, system->model->default_run());
+        change_system(system, Plots(system->model), system->model->default_run());
     } catch (const InputError& problem) {
         document_.problems = {problem};
         shows_editor_ = true;
@@ -135,15 +131,16 @@ void Session::read_document() {
             system->model->check(run);
         }
         placed_ = command::Seek{time_};
-        change_system(system, run);
+        change_system(system, plots_.carried_over(system->model), run);
     } catch (const InputError& problem) {
         document_.problems = {problem};
     }
 }
 
 // Shows the start of the system until its run is there. The run must be one that can start.
-void Session::change_system(const std::shared_ptr<const System>& system, const Run& run) {
+void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
     system_ = system;
+    plots_ = plots;
     motion_.reset();
     rerun(run);
     if (motion_ != nullptr) return;
@@ -151,7 +148,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const R
     at_once.request_stop();
     Watch watch;
     watch.stop = at_once.get_token();
-    motion_ = std::make_shared<Motion>(*system_, run, theme_, &watch);
+    motion_ = std::make_shared<Motion>(*system_, run, plots_, theme_, &watch);
     move_to(0.0);
 }
 
@@ -233,9 +230,9 @@ void Session::rerun(const Run& run) {
     asked_ = run;
     const auto watch = std::make_shared<Watch>();
     watch_ = watch;
-    worker_.start([system = system_, run, theme = theme_, watch](const std::stop_token& stop) {
+    worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
-        return std::make_shared<Motion>(*system, run, theme, watch.get());
+        return std::make_shared<Motion>(*system, run, plots, theme, watch.get());
     });
     receive(patience_);
 }
@@ -246,6 +243,7 @@ void Session::receive(Patience patience) {
     if (!motion) return;
     motion_ = *motion;
     watch_.reset();
+    compose_plots();  // they may have been changed meanwhile
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
     move_to(time_);
     if (placed_) apply(*std::exchange(placed_, std::nullopt));
@@ -261,11 +259,21 @@ void Session::move_to(double time) {
     now_ = motion_->sampler.at(time_);
 }
 
-std::vector<Point> Session::present(std::size_t plot) const {
-    const Panel panel = compose(motion_->without_events, {&now_, 1}, system_->views[plot], theme_);
-    std::vector<Point> points;
-    for (const Curve& curve : panel.curves) points.insert(points.end(), curve.points.begin(), curve.points.end());
-    return points;
+std::vector<double> Session::values(std::size_t plot, const Sample& sample) const {
+    return values_at(motion_->trajectory, sample, *plots_.list()[plot].prepared);
+}
+
+// How the run is looked at: nothing runs again.
+template <class PlotCommand>
+void Session::perform(const PlotCommand& command) {
+    plots_.perform(command);
+    compose_plots();
+}
+
+void Session::compose_plots() {
+    if (motion_->revision == plots_.revision()) return;
+    motion_->revision = plots_.revision();
+    motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
 }
 
 void play_on(Session& session, double seconds, bool loop) {
@@ -290,6 +298,7 @@ std::string to_text(const Session& session) {
     }
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
+    text += to_text(session.plotted());
     if (!session.error().empty()) text += "error " + session.error() + "\n";
     if (session.document().is_changed()) text += "the text is not saved\n";
     for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());

@@ -12,6 +12,7 @@
 #include "document.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
+#include "plots.hpp"
 #include "simulate/simulate.hpp"
 #include "worker.hpp"
 
@@ -61,10 +62,13 @@ class Session {
     const Mechanism& mechanism() const { return system_->mechanism; }
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return motion_->limits; }
-    // The first views of the system, at most four, composed.
+    // What is plotted, and the plots, composed.
+    const Plots& plotted() const { return plots_; }
     const std::vector<Panel>& plots() const { return motion_->plots; }
-    // Where the present stands in such a plot, in its units, one point a curve.
-    std::vector<Point> present(std::size_t plot) const;
+    // What a plot shows of an instant, in its units: x, then every y.
+    std::vector<double> values(std::size_t plot, const Sample& sample) const;
+    // The state at a time of the run that is shown.
+    Sample at(double time) const { return motion_->sampler.at(time); }
 
     double time() const { return time_; }
     const Sample& now() const { return now_; }  // the state at that time
@@ -80,15 +84,15 @@ class Session {
         std::string name;
         std::shared_ptr<const Model> model;
         Mechanism mechanism;
-        std::vector<PreparedView> views;
     };
     // One run and what is shown of it.
     struct Motion {
-        Motion(const System& system, const Run& run, const Theme& theme, Watch* watch);
+        Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch);
         Trajectory trajectory;
-        Trajectory without_events;  // of the same model and run
         Sampler sampler;
+        std::vector<Sample> samples;
         Drawing limits;
+        int revision = 0;  // of what is plotted
         std::vector<Panel> plots;
     };
 
@@ -107,11 +111,14 @@ class Session {
     void perform(const command::Text& command);
     void perform(const command::Save& command);
     void perform(const command::Show& command);
+    template <class PlotCommand>
+    void perform(const PlotCommand& command);
     void begin_document(Document document);
     void read_document();
-    void change_system(const std::shared_ptr<const System>& system, const Run& run);
+    void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);
+    void compose_plots();
     void place(const Command& command);
     void move_to(double time);
 
@@ -121,6 +128,7 @@ class Session {
     Document document_;
     bool shows_editor_ = false;
     std::shared_ptr<const System> system_;
+    Plots plots_;
     Run asked_;
     std::shared_ptr<Motion> motion_;  // of this system; of another run than the one asked for while that is under way
     std::shared_ptr<const Watch> watch_;  // of the run under way

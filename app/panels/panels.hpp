@@ -35,6 +35,18 @@ struct EditorState {
     bool may_close = false;          // now nothing is lost by it
 };
 
+// The menu of one plot: what is typed there.
+struct PlotMenu {
+    int plot = -1;
+    std::string x, y;
+};
+
+// A box that is being drawn in a plot.
+struct PlotBox {
+    int plot = -1;
+    Point from;  // pixels
+};
+
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
     std::vector<SystemEntry> systems;  // to choose from
@@ -42,7 +54,10 @@ struct PanelState {
     bool show_impacts = true;          // in the event list
     bool loop = false;                 // at the end of the run the player begins again
     EditorState editor;
-    int followed = -1;                        // the row the event list scrolled to last
+    PlotMenu plot_menu;
+    PlotBox box;
+    std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
+    int followed = -1;                                 // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
 
@@ -59,6 +74,10 @@ void show_mechanism(const Session& session);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
+// Above the plots: how many; and the menu behind a plot's title.
+void show_grid_bar(const Session& session, PanelState& state, Commands& commands);
+void open_plot_menu(const Session& session, std::size_t plot, PanelState& state);
+void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
 // What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
 // decided.
