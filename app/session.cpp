@@ -108,8 +108,9 @@ void Session::perform(const command::Text& command) {
 }
 
 void Session::perform(const command::Save& command) {
+    const std::string before = document_.source;
     save(document_, command.file, command.overwrite);
-    read_document();  // under its new name
+    if (document_.source != before) read_document();  // under its new name
 }
 
 void Session::perform(const command::Show& command) { shows_editor_ = command.editor; }
