@@ -15,7 +15,7 @@ class Invariance : public Law {
     // A system's motion with other texts, whose time runs `faster` times as fast and whose coordinates are `larger`
     // times as large, in the units of the file.
     Trajectory rewritten(const SystemDescription& description, double faster = 1.0, double larger = 1.0) const {
-        auto run = predictable_run(GetParam());
+        auto run = run_of(GetParam());
         run.options.tolerance = 1e-11;
         run.options.end_time /= faster;
         run.q *= larger;
