@@ -1,5 +1,6 @@
 #include "certify/lies.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace achilles::test {
@@ -71,7 +72,8 @@ Certificate falsified(Certificate c, Lie lie, const Collision& collision, const 
                 const bool kinetic = c.reinitialization == Reinitialization::kinetic;
                 const double jumps = (e + (kinetic ? c.paper->e2 : 1.0)) / (1.0 - c.paper->e2);
                 const double eta = eta_with_M(model, run, {collision.before.q, collision.restart});
-                c.velocity_bound += jumps * w * (eta - c.paper->eta);
+                const double added = run.options.truncation.eps_v / c.paper->c3 * w;
+                c.velocity_bound = std::min(c.velocity_bound, added + jumps * w * (eta - c.paper->eta));
             }
             break;
     }

@@ -25,14 +25,16 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
         if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
         if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
     }
-    const double far = largest_excursion(trial, certified.asked.reinitialization);
-    if (far > 0.0) ratios[excursion].push_back(certified.certificate.velocity_bound / far);
     if (certified.asked.conditions == Conditions::paper) {
+        const double far = largest_excursion(trial, certified.asked.reinitialization);
+        const double added = certified.asked.eps_v / certified.certificate.paper->c3 *
+                             trial.restarted(certified.asked.reinitialization).collision.speed;
+        if (far > 0.0) ratios[excursion].push_back(added / far);
         Run run = trial.run;
         run.options.truncation = certified.asked;
         const Collision& collision = trial.restarted(certified.asked.reinitialization).collision;
         const double least = Definition7(model, run).at(collision).velocity * collision.speed;
-        ratios[formula].push_back(certified.certificate.velocity_bound / least);
+        ratios[formula].push_back(added / least);
     }
     if (violated) ++violations;
 }

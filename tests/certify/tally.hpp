@@ -14,8 +14,9 @@ struct Tally {
     long certificates = 0, violations = 0, unknown = 0;  // unknown: no truth to compare with
     // bound/actual by what it is about; the time from tau_k on
     std::array<std::vector<double>, 6> ratios;
-    // excursion: velocity bound over the largest |v - v*| on the way; formula: velocity bound over what Def. 7 would
-    // give with the values at the restart for its maxima, so how much the neighbourhood costs.
+    // Of Def. 7's own velocity bound, w eps_v/c3, which the certificate's may undercut: excursion, over the largest
+    // |v - v*| on the way; formula, over what it would be with the values at the restart for its maxima, so what the
+    // neighbourhood costs.
     enum Ratio { latest, position, velocity, excursion, formula, shadowing };
 
     void add(const Trial& trial, const Certified& certified, const Model& model);
