@@ -47,6 +47,7 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, Method
     Faults faults;
     double least = 0.0;
     long impacts = 0, zenos = 0;
+    std::atomic<long> refused = 0;
     for (long done = 0; done < count; done += 10000) {
         const auto runs = runs_from(*model, starts, std::min(10000L, count - done), method);
         struct Summary {
@@ -54,6 +55,10 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, Method
             long impacts, zenos;
         };
         const auto summaries = simulate_many(model, runs, [&](std::size_t, Attempt&& attempt) {
+            if (std::holds_alternative<InputError>(attempt)) {
+                ++refused;
+                return Summary{0.0, 0, 0};
+            }
             const auto& trajectory = std::get<Trajectory>(attempt);
             const std::string wrong = fault(trajectory, 100.0 * trajectory.run.options.tolerance);
             if (!wrong.empty()) faults.add(wrong + "\n       " + start_of(trajectory));
@@ -67,8 +72,9 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, Method
             zenos += summary.zenos;
         }
     }
-    fmt::print("  {} random starts: {} impacts, {} Zeno points, least gap {:.1e}, {} faults\n", count, impacts, zenos,
-               least, faults.count);
+    fmt::print("  {} random starts: {} impacts, {} Zeno points, {} starts refused, least gap {:.1e}, {} faults\n",
+               count, impacts, zenos, refused.load(), least, faults.count);
+    std::fflush(stdout);
     return faults.count;
 }
 
@@ -80,8 +86,8 @@ long against_truth(const std::shared_ptr<const Model>& model, long count, Method
         run.options.tolerance = 1e-12;
         run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
     }
-    std::atomic<long> undecided = 0;
     const auto all = simulate_many(model, runs, [&](std::size_t i, Attempt&& attempt) {
+        if (std::holds_alternative<InputError>(attempt)) return Comparison{};
         const auto& trajectory = std::get<Trajectory>(attempt);
         const Comparison comparison = Judge(model, runs[i]).compare(trajectory);
         if (!comparison.agrees())
@@ -102,6 +108,7 @@ long against_truth(const std::shared_ptr<const Model>& model, long count, Method
         "  {} against 34 digits: error over sensitivity median {:.1e}, largest {:.1e}; sensitivity median {:.1e}; "
         "{} whose phases a start 1e-7 away changes; {} faults\n",
         count, errors[errors.size() / 2], errors.back(), sensitivities[errors.size() / 2], unstable, faults.count);
+    std::fflush(stdout);
     return faults.count;
 }
 

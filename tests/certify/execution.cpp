@@ -19,7 +19,7 @@ TrueRuns::TrueRuns(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
       motion_(model, run),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
-    if (!(e_ > 0 && e_ < 1)) throw std::invalid_argument("true runs need 0 < e < 1");
+    if (!(e_ >= 0 && e_ <= 1)) throw std::invalid_argument("true runs need 0 <= e <= 1");
 }
 
 TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
@@ -42,8 +42,9 @@ TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
 }
 
 void TrueRuns::fly() {
-    const double w_before = flight_.known == 1 ? -static_cast<double>(motion_.contact(flight_.point).hdot) : -1.0;
-    const double tolerance = precision * std::min(1.0, std::abs(w_before));
+    // The lower a flight, the less it may err.
+    const double rise = flight_.known == 1 ? static_cast<double>(motion_.contact(flight_.point).hdot) : 1.0;
+    const double tolerance = precision * std::min(1.0, rise);
     if (!motion_.fly(flight_, end_time_ - flight_.time, expected_, tolerance)) {
         flight_.time = end_time_;
         return;
@@ -53,7 +54,7 @@ void TrueRuns::fly() {
     Point& point = flight_.point;
     const Point slid = motion_.restart(point, Reinitialization::kinetic);
     const Real a = -motion_.normal_acceleration(slid);
-    if (w < cut_ && a > 0) {
+    if (a > 0 && e_ < 1 && (e_ == 0 || w < cut_)) {
         const Real rest = 2 * e_ * w / (a * (1 - e_));
         result_.events.push_back({Event::Kind::zeno, flight_.time + rest, w, point});
         point = slid;
@@ -62,9 +63,9 @@ void TrueRuns::fly() {
     }
     result_.events.push_back({Event::Kind::impact, flight_.time, w, point});
     for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * contact.n[i];
-    flight_.known = 1;
+    flight_.known = e_ > 0 ? 1 : 2;
     const double left = static_cast<double>(end_time_ - flight_.time);
-    expected_ = a > 0 ? std::min(left, 2.2 * static_cast<double>(e_ * w / a)) : left;
+    expected_ = a > 0 && e_ > 0 ? std::min(left, 2.2 * static_cast<double>(e_ * w / a)) : left;
 }
 
 void TrueRuns::stay() {
@@ -80,7 +81,7 @@ void TrueRuns::stay() {
 
 std::optional<Dip> TrueRuns::first_dip(const Point& start, double within) {
     Flight flight{start, 0, 0};
-    if (!motion_.fly_to_dip(flight, within, within, precision)) return std::nullopt;
+    if (!motion_.fly_to_dip(flight, within, within, 1e-22)) return std::nullopt;
     return Dip{flight.time, motion_.contact(flight.point).h, motion_.normal_acceleration(flight.point)};
 }
 

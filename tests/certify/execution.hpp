@@ -31,7 +31,7 @@ Point point_of(const State& state);
 
 class TrueRuns {
  public:
-    // 0 < e < 1.
+    // 0 <= e <= 1.
     TrueRuns(const Model& model, const Run& run);
 
     // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut`; what is left is a geometric

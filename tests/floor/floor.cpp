@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "simulate/impact.hpp"
 
@@ -117,7 +118,7 @@ double Starts::uniform(double low, double high) {
 State Starts::next() {
     const auto& coordinates = model_->description().coordinates;
     State state{Vector(model_->n()), Vector(model_->n())};
-    do {
+    for (int tries = 0; tries < 100000; ++tries) {
         for (Eigen::Index i = 0; i < state.q.size(); ++i) {
             const auto& coordinate = coordinates[static_cast<std::size_t>(i)];
             state.q[i] = uniform(coordinate.range[0], coordinate.range[1]);
@@ -125,8 +126,9 @@ State Starts::next() {
         }
         put(gap_, state);
         gap_.run();
-    } while (!(gap_.output(0) > 1e-6));
-    return state;
+        if (gap_.output(0) > 1e-6) return state;
+    }
+    throw std::runtime_error("the ranges of " + model_->description().file + " show no state in the air");
 }
 
 std::string start_of(const Trajectory& trajectory) {
@@ -202,9 +204,11 @@ std::optional<Grazing> GrazingStarts::tune(State start, double least_gap) {
     Surface surface(*model_, run_);
     double slope = 1.0, before = 0.0, step = 0.0;
     for (int round = 0; round < 20; ++round) {
-        const auto dip = truth_.first_dip(point_of(start), run_.options.end_time);
+        constexpr double soon = 3.0, near = 0.2;  // most starts have no such dip, and are given up at once
+        const auto dip = truth_.first_dip(point_of(start), std::min(soon, run_.options.end_time));
         if (!dip || !(dip->curvature > 0.1)) return std::nullopt;
         const double miss = static_cast<double>(dip->gap - Real(least_gap));
+        if (!(std::abs(miss) < near)) return std::nullopt;
         if (std::abs(miss) <= 1e-2 * std::abs(least_gap)) {
             const bool in_the_air = surface.at(start).h > 1e-3 && dip->t > 1e-3;
             return in_the_air ? std::optional(Grazing{start, *dip}) : std::nullopt;
