@@ -69,10 +69,13 @@ class GrazingStarts {
     Grazing next(double least_gap);
 
  private:
+    bool dips_near_the_floor(const State& start);
     std::optional<Grazing> tune(State start, double least_gap);
     std::shared_ptr<const Model> model_;
     Run run_;
+    double soon_;  // s, a dip later than this is not looked for
     Starts starts_;
+    Evaluator<double> flight_, gap_;
     TrueRuns truth_;
 };
 
