@@ -37,6 +37,8 @@ class Program {
  private:
     template <class Scalar>
     friend class Evaluator;
+    friend class SeriesCompiler;
+    friend class SeriesEvaluator;
     Slots slots_;
     std::vector<Constant> constants_;        // registers count .. count + constants - 1
     std::vector<Instruction> instructions_;  // results follow in order, one register each
@@ -65,6 +67,7 @@ class Evaluator {
     void run() { execute(program_->fixed_, program_->instructions_.size()); }
 
  private:
+    friend class SeriesEvaluator;
     void execute(std::size_t begin, std::size_t end);
     const Program* program_ = nullptr;
     std::vector<Scalar> registers_;

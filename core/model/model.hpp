@@ -19,6 +19,7 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/description.hpp"
+#include "series/series.hpp"
 #include "trajectory.hpp"
 
 namespace achilles {
@@ -44,6 +45,10 @@ class Model {
     const Program& energy() const { return energy_; }    // T + V, T, V
     const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
+
+    // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
+    const SeriesProgram& flight_series() const { return flight_series_; }
+    const SeriesProgram& contact_series() const { return contact_series_; }
 
     // The programs of the sharp conditions, derived when they are first asked for.
     const Bouncing& bouncing() const;
@@ -81,6 +86,7 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
+    SeriesProgram flight_series_, contact_series_;
     Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, force_, restitution_;
 };
 

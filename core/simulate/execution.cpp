@@ -81,6 +81,7 @@ Polynomial Execution::gap_along() {
     Polynomial h = flow_.watched();
     const int known = takeoff_.multiplicity;
     for (int j = 0; j < known; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
+    if (!flow_.watched_drifts()) return h;
     const Contact contact = surface_.at(flow_.end());
     const double value = contact.h - h(1.0), slope = contact.hdot * flow_.duration() - h.slope(1.0);
     if (std::abs(value) > 4.0 * surface_.gap_error(flow_.end())) {
@@ -97,14 +98,30 @@ Polynomial Execution::gap_along() {
 bool Execution::find_impact() {
     if (!advance(run_.options.end_time - flow_.end_time())) return true;
     Polynomial h = gap_along();
-    if (const std::optional<double> root = first_descent(h, takeoff_.multiplicity)) {
-        if (locate_impact(*root)) return true;
+    Descent descent = first_descent(h, takeoff_.multiplicity, flow_.remainder());
+    if (takeoff_.inside && descent.kind == Descent::Kind::none) descent.kind = Descent::Kind::undecided;
+    if (descent.kind == Descent::Kind::undecided) return leave_undecided(descent.theta);
+    if (descent.kind == Descent::Kind::root) {
+        if (locate_impact(descent.theta)) return true;
         h = gap_along();  // no impact after all, or the step became shorter
     }
-    flow_.move_gap({h(1.0), h.slope(1.0) / flow_.duration()});
-    takeoff_.multiplicity = 0;
-    take(surface_.at(flow_.end()).h);
+    Gap gap{h(1.0), h.slope(1.0) / flow_.duration()};
+    const Contact contact = surface_.at(flow_.end());
+    if (std::abs(contact.h - gap.h) > 4.0 * surface_.gap_error(flow_.end())) gap = {contact.h, contact.hdot};
+    flow_.move_gap(gap);
+    takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
+    take(contact.h);
     return false;
+}
+
+// Whether the gap closes cannot be told from here on: the run ends there. Always true.
+bool Execution::leave_undecided(double theta) {
+    if (theta > 0.0 && flow_.retake(theta * flow_.duration()) == Obstacle::none) take(surface_.at(flow_.end()).h);
+    stop(Outcome::Kind::undecided,
+         fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot "
+                     "be told just after {}",
+                     flow_.remainder(), where(t_, state_)));
+    return true;
 }
 
 // Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
@@ -112,7 +129,7 @@ bool Execution::find_impact() {
 bool Execution::locate_impact(double theta) {
     double duration = theta * flow_.duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Flow::Obstacle::none) {
+        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
             leave(obstacle);
             return true;
         }
@@ -122,7 +139,7 @@ bool Execution::locate_impact(double theta) {
         if (shortened || !(hdot < 0.0)) return false;
         const double correction = -h(1.0) / hdot;
         if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
-            flow_.shift_end(correction);
+            if (std::abs(correction) > 0x1p-52 * duration) flow_.shift_end(correction);
             break;
         }
         duration = std::max(duration + correction, 0.5 * duration);
@@ -273,10 +290,16 @@ bool Execution::stay(double until) {
         flow_.move_end(*projected);
         Polynomial force = flow_.watched();
         for (double& c : force.c) c = -c;  // -hddot = W lambda
-        force.c[2] += -surface_.normal_acceleration(*projected) - force(1.0);
+        if (flow_.watched_drifts()) force.c[2] += -surface_.normal_acceleration(*projected) - force(1.0);
         if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
-        const std::optional<double> root = first_descent(force, 0);
-        if (root && locate_release(*root)) return !outcome_;
+        const Descent descent = first_descent(force, 0, flow_.remainder());
+        if (descent.kind == Descent::Kind::undecided) {
+            stop(Outcome::Kind::undecided,
+                 "the contact force comes closer to zero than the integration knows it just after " +
+                     where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
+            return false;
+        }
+        if (descent.kind == Descent::Kind::root && locate_release(descent.theta)) return !outcome_;
         take(surface_.at(flow_.end()).h);
     }
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
@@ -287,7 +310,7 @@ bool Execution::stay(double until) {
 bool Execution::locate_release(double theta) {
     double duration = theta * flow_.duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Flow::Obstacle::none) {
+        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
             leave(obstacle);
             return true;
         }
@@ -340,8 +363,8 @@ bool Execution::advance(double longest) {
         return false;
     }
     const auto obstacle = flow_.step(longest);
-    if (obstacle != Flow::Obstacle::none) leave(obstacle);
-    return obstacle == Flow::Obstacle::none;
+    if (obstacle != Obstacle::none) leave(obstacle);
+    return obstacle == Obstacle::none;
 }
 
 // Accepts the flow's last step.
@@ -351,14 +374,14 @@ void Execution::take(double gap) {
     state_ = flow_.end();
 }
 
-void Execution::leave(Flow::Obstacle obstacle) {
+void Execution::leave(Obstacle obstacle) {
     const std::string place = where(t_, state_);
     switch (obstacle) {
-        case Flow::Obstacle::left_the_domain:
+        case Obstacle::left_the_domain:
             return stop(
                 Outcome::Kind::left_the_domain,
                 "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
-        case Flow::Obstacle::not_a_number:
+        case Obstacle::not_a_number:
             return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
         default:
             return stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);

@@ -30,13 +30,15 @@ class Execution {
  private:
     // How the gap leaves zero at the start of a flight: h, hdot, and how many of h, hdot, hddot are zero there.
     struct Takeoff {
-        Flow::Gap gap;
+        Gap gap;
         int multiplicity = 0;
+        bool inside = false;  // the last step ended with the gap inside its remainder
     };
 
     void start_in_contact(const Surface::Normal& normal);
     Polynomial gap_along();
     bool find_impact();
+    bool leave_undecided(double theta);
     bool locate_impact(double theta);
     void land();
     void bounce(const Contact& contact, double e);
@@ -49,7 +51,7 @@ class Execution {
 
     bool advance(double longest);
     void take(double gap);
-    void leave(Flow::Obstacle obstacle);
+    void leave(Obstacle obstacle);
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
