@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -26,7 +27,6 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run)
       run_(run),
       flow_(*model_, run_),
       surface_(*model_, run_),
-      conditions_(truncation_conditions(*model_, run_)),
       record_(model_, run_),
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
       state_{run.q, run.v} {}
@@ -167,10 +167,10 @@ void Execution::land() {
                         reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
     if (restitution_ == 0.0) {
         capture(collision);
-    } else if (auto certificate = conditions_->hold(collision)) {
+    } else if (auto certificate = prove(&TruncationConditions::hold, collision)) {
         complete(collision, *certificate);
     } else if (too_short_to_resolve(collision, restitution_)) {
-        if (auto widest = conditions_->widest(collision)) {
+        if (auto widest = prove(&TruncationConditions::widest, collision)) {
             complete(collision, *widest);
         } else {
             stop(Outcome::Kind::undecided,
@@ -180,6 +180,16 @@ void Execution::land() {
     } else {
         bounce(contact, restitution_);
     }
+}
+
+// Asks the truncation conditions, which stand ready from the first question on.
+std::optional<Certificate> Execution::prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
+                                            const Collision& collision) {
+    const auto clock = std::chrono::steady_clock::now();
+    if (!conditions_) conditions_ = truncation_conditions(*model_, run_);
+    auto certificate = ((*conditions_).*question)(collision);
+    proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return certificate;
 }
 
 // Newton's law, and the flight it starts.
@@ -390,6 +400,10 @@ void Execution::leave(Obstacle obstacle) {
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
-Trajectory Execution::finish() { return record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations()); }
+Trajectory Execution::finish() {
+    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations());
+    trajectory.statistics.certificate_seconds = proving_;
+    return trajectory;
+}
 
 }  // namespace achilles

@@ -41,6 +41,8 @@ class Execution {
     bool leave_undecided(double theta);
     bool locate_impact(double theta);
     void land();
+    std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
+                                     const Collision& collision);
     void bounce(const Contact& contact, double e);
     bool too_short_to_resolve(const Collision& collision, double e);
     void complete(const Collision& collision, Certificate certificate);
@@ -67,6 +69,7 @@ class Execution {
     double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
+    double proving_ = 0.0;  // s, the clock's
     std::optional<Outcome> outcome_;
 };
 
