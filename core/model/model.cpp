@@ -152,8 +152,8 @@ void Model::compile() {
     energy_ = program({{e.energy, e.kinetic, e.potential}});
     force_ = program({{e.lambda}});
     restitution_ = program({{e.restitution}});
-    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}));
-    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}));
+    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.n + 1);
+    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.n + 1);
 }
 
 const Bouncing& Model::bouncing() const {

@@ -73,14 +73,14 @@ Obstacle Taylor::expand(double longest) {
     const std::size_t w = 2 * n_;
     double* c = row(0);
     for (std::size_t i = 0; i < n_; ++i) {
-        series.input(i) = c[i] = to_.q[static_cast<Eigen::Index>(i)];
-        series.input(n_ + i) = c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
+        c[i] = to_.q[static_cast<Eigen::Index>(i)];
+        c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t i = 0; i < w; ++i) {
         if (!(std::abs(c[i]) < 1e150)) return Obstacle::not_a_number;
         units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
     }
-    series.begin();
+    series.begin(c);
     for (std::size_t i = 0; i < n_; ++i)
         if (!(series.start(n_ + 1 + i) > 0.0)) return Obstacle::left_the_domain;
     c[w] = flying ? gap_.h : series.start(n_);
@@ -96,11 +96,10 @@ Obstacle Taylor::expand(double longest) {
         c = row(k);
         const double inverse = 1.0 / k;
         for (std::size_t i = 0; i < n_; ++i) {
-            series.input(i) = c[i] = below[n_ + i] * inverse;
+            c[i] = below[n_ + i] * inverse;
             c[n_ + i] = (k == 1 ? series.start(i) : series.output(i)) * inverse;
-            series.input(n_ + i) = c[n_ + i];
         }
-        series.extend(k);
+        series.extend(k, c);
         c[w] = flying && k == 1 ? gap_.hdot : series.output(n_);
         if (k == 2 && flying) {
             // A flight is short where its parabola is; what is watched must be known well against its height.
