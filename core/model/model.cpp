@@ -146,6 +146,7 @@ void Model::compile() {
     flight_ = program({e.f, {e.hddot}, e.pivots});
     contact_ = program({e.f_c, {e.hddot}, e.pivots, {e.jerk}});
     gap_ = program({{e.gap}});
+    normal_ = program({{e.hddot}});
     release_ = program({{e.hddot, e.jerk}});
     surface_ = program({{e.gap, e.hdot}, e.n, e.g, {e.W}});
     bounds_ = program({{e.hddot}, e.n, e.f});

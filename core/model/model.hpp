@@ -39,6 +39,7 @@ class Model {
     const Program& flight() const { return flight_; }    // f (n), hddot, pivots (n)
     const Program& contact() const { return contact_; }  // f_c (n), hddot, pivots (n), jerk
     const Program& gap() const { return gap_; }          // h
+    const Program& normal() const { return normal_; }    // hddot
     const Program& release() const { return release_; }  // hddot, jerk
     const Program& surface() const { return surface_; }  // h, hdot, n (n), g (n), W
     const Program& bounds() const { return bounds_; }    // hddot, n (n), f (n): what Def. 7 needs over a box
@@ -87,7 +88,7 @@ class Model {
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
     SeriesProgram flight_series_, contact_series_;
-    Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, force_, restitution_;
+    Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
 };
 
 }  // namespace achilles

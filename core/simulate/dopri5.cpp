@@ -46,7 +46,7 @@ class Dopri5 : public Stepper {
     Polynomial watched() const override { return component(2 * n_); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder() const override;
-    bool watched_drifts() const override { return true; }
+    bool is_expansion() const override { return false; }
     long evaluations() const override { return evaluations_; }
 
  private:

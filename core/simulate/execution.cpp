@@ -34,7 +34,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run)
 // ---- the start ----
 
 void Execution::begin() {
-    const Contact contact = surface_.at(state_);
+    const Contact contact = contact_ = surface_.at(state_);
     takeoff_ = {{contact.h, contact.hdot}, 0};
     if (contact.h <= 4.0 * surface_.gap_error(state_)) {  // |h| and |hdot| within rounding count as zero
         takeoff_ = {{0.0, contact.hdot}, 1};
@@ -81,7 +81,7 @@ Polynomial Execution::gap_along() {
     Polynomial h = flow_.watched();
     const int known = takeoff_.multiplicity;
     for (int j = 0; j < known; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
-    if (!flow_.watched_drifts()) return h;
+    if (flow_.is_expansion()) return h;
     const Contact contact = surface_.at(flow_.end());
     const double value = contact.h - h(1.0), slope = contact.hdot * flow_.duration() - h.slope(1.0);
     if (std::abs(value) > 4.0 * surface_.gap_error(flow_.end())) {
@@ -102,6 +102,7 @@ bool Execution::find_impact() {
     if (takeoff_.inside && descent.kind == Descent::Kind::none) descent.kind = Descent::Kind::undecided;
     if (descent.kind == Descent::Kind::undecided) return leave_undecided(descent.theta);
     if (descent.kind == Descent::Kind::root) {
+        if (descent.theta == 0.0) return true;  // it came down within the remainder of the last step
         if (locate_impact(descent.theta)) return true;
         h = gap_along();  // no impact after all, or the step became shorter
     }
@@ -110,13 +111,13 @@ bool Execution::find_impact() {
     if (std::abs(contact.h - gap.h) > 4.0 * surface_.gap_error(flow_.end())) gap = {contact.h, contact.hdot};
     flow_.move_gap(gap);
     takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
-    take(contact.h);
+    take(contact);
     return false;
 }
 
 // Whether the gap closes cannot be told from here on: the run ends there. Always true.
 bool Execution::leave_undecided(double theta) {
-    if (theta > 0.0 && flow_.retake(theta * flow_.duration()) == Obstacle::none) take(surface_.at(flow_.end()).h);
+    if (theta > 0.0 && flow_.retake(theta * flow_.duration()) == Obstacle::none) take(surface_.at(flow_.end()));
     stop(Outcome::Kind::undecided,
          fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot "
                      "be told just after {}",
@@ -133,13 +134,14 @@ bool Execution::locate_impact(double theta) {
             leave(obstacle);
             return true;
         }
+        if (flow_.is_expansion()) break;
         const bool shortened = flow_.duration() < duration * (1.0 - 1e-12);
         const Polynomial h = gap_along();
         const double hdot = h.slope(1.0) / flow_.duration();
         if (shortened || !(hdot < 0.0)) return false;
         const double correction = -h(1.0) / hdot;
         if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
-            if (std::abs(correction) > 0x1p-52 * duration) flow_.shift_end(correction);
+            flow_.shift_end(correction);
             break;
         }
         duration = std::max(duration + correction, 0.5 * duration);
@@ -150,15 +152,15 @@ bool Execution::locate_impact(double theta) {
              "dh = 0 where contact happens: the normal is not defined at " + where(flow_.end_time(), flow_.end()));
         return true;
     }
-    flow_.move_end(*landed);
-    take(surface_.at(*landed).h);
+    flow_.move_end(landed->state);
+    take(landed->contact);
     return true;
 }
 
 // ---- impact ----
 
 void Execution::land() {
-    const Contact contact = surface_.at(state_);
+    const Contact& contact = contact_;
     if (!(contact.hdot < 0.0)) {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
@@ -183,8 +185,8 @@ void Execution::land() {
 }
 
 // Asks the truncation conditions, which stand ready from the first question on.
-std::optional<Certificate> Execution::prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
-                                            const Collision& collision) {
+std::optional<Certificate> Execution::prove(
+    std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
     const auto clock = std::chrono::steady_clock::now();
     if (!conditions_) conditions_ = truncation_conditions(*model_, run_);
     auto certificate = ((*conditions_).*question)(collision);
@@ -211,8 +213,10 @@ void Execution::bounce(const Contact& contact, double e) {
     state_.v = event.v_after;
     record_.event(std::move(event));
     const double hdot = -e * contact.hdot;
-    const double hddot = surface_.normal_acceleration(state_);
     takeoff_ = {{0.0, hdot}, 1};
+    first_step_ = 0.0;
+    if (flow_.is_expansion()) return;
+    const double hddot = surface_.normal_acceleration(state_);
     first_step_ = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
@@ -242,7 +246,7 @@ void Execution::capture(const Collision& before) {
         certificate.inequalities = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(collision, certificate);
     } else if (certainly_positive(hddot)) {
-        bounce(surface_.at(state_), 0.0);
+        bounce(contact_, 0.0);
         takeoff_ = {{0.0, 0.0}, 2};
     } else {
         stop(Outcome::Kind::undecided,
@@ -297,10 +301,10 @@ bool Execution::stay(double until) {
                  "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
             return false;
         }
-        flow_.move_end(*projected);
+        flow_.move_end(projected->state);
         Polynomial force = flow_.watched();
         for (double& c : force.c) c = -c;  // -hddot = W lambda
-        if (flow_.watched_drifts()) force.c[2] += -surface_.normal_acceleration(*projected) - force(1.0);
+        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(projected->state) - force(1.0);
         if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
         const Descent descent = first_descent(force, 0, flow_.remainder());
         if (descent.kind == Descent::Kind::undecided) {
@@ -309,8 +313,12 @@ bool Execution::stay(double until) {
                      where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
             return false;
         }
-        if (descent.kind == Descent::Kind::root && locate_release(descent.theta)) return !outcome_;
-        take(surface_.at(flow_.end()).h);
+        if (descent.kind == Descent::Kind::root) {
+            if (locate_release(descent.theta)) return !outcome_;
+            take(surface_.at(flow_.end()));  // the step became shorter
+        } else {
+            take(projected->contact);
+        }
     }
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
     return false;
@@ -326,21 +334,22 @@ bool Execution::locate_release(double theta) {
         }
         const auto projected = surface_.project(flow_.end(), false);
         if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) {
-            if (projected) flow_.move_end(*projected);
+            if (projected) flow_.move_end(projected->state);
             return false;
         }
-        flow_.move_end(*projected);
-        const double correction = -surface_.normal_acceleration(*projected) / surface_.jerk(*projected);
+        const State& end = projected->state;
+        flow_.move_end(end);
+        const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             flow_.shift_end(correction);
-            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(*again);
+            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(again->state);
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides
         duration = std::max(duration + correction, 0.5 * duration);
     }
-    take(surface_.at(flow_.end()).h);
+    take(surface_.at(flow_.end()));
     return true;
 }
 
@@ -377,9 +386,10 @@ bool Execution::advance(double longest) {
     return obstacle == Obstacle::none;
 }
 
-// Accepts the flow's last step.
-void Execution::take(double gap) {
-    record_.step(flow_, gap);
+// Accepts the flow's last step; `contact` is that of its end.
+void Execution::take(const Contact& contact) {
+    contact_ = contact;
+    record_.step(flow_, contact.h);
     t_ = flow_.end_time();
     state_ = flow_.end();
 }

@@ -52,7 +52,7 @@ class Execution {
     void release();
 
     bool advance(double longest);
-    void take(double gap);
+    void take(const Contact& contact);
     void leave(Obstacle obstacle);
     void stop(Outcome::Kind kind, std::string message);
 
@@ -65,11 +65,12 @@ class Execution {
     double restitution_;
     double t_ = 0.0;
     State state_;
+    Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;
     double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
-    double proving_ = 0.0;  // s, the clock's
+    double proving_ = 0.0;    // s, the clock's
     std::optional<Outcome> outcome_;
 };
 

@@ -37,7 +37,7 @@ class Flow {
     const State& end() const { return to_; }
     // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
     Polynomial watched() const { return stepper_->watched(); }
-    bool watched_drifts() const { return stepper_->watched_drifts(); }
+    bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder() const { return stepper_->remainder(); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.
     Piece piece(std::vector<double>& coefficients) const;

@@ -35,7 +35,11 @@ class Surface {
     double hdot_error(const State& state);
     // Moves q along n until |h| is at rounding level, then v to s (kept = false) or not at all (kept = true).
     // Returns nothing where that fails: dh = 0, or h cannot be brought to zero.
-    std::optional<State> project(State state, bool keep_velocity);
+    struct Placed {
+        State state;
+        Contact contact;  // there
+    };
+    std::optional<Placed> project(State state, bool keep_velocity);
     // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
     struct Normal {
         Interval hddot, jerk;
@@ -46,7 +50,7 @@ class Surface {
 
  private:
     std::size_t n_;
-    Evaluator<double> surface_, release_;
+    Evaluator<double> surface_, normal_, release_;
     Evaluator<Interval> gap_, surface_enclosure_, release_enclosure_;
 };
 

@@ -46,9 +46,10 @@ class Stepper {
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
     // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
     virtual double remainder() const = 0;
-    // True if watched() is integrated beside (q, v), so that it drifts from its value at (q, v) within the tolerance;
-    // false if it is the expansion of that value.
-    virtual bool watched_drifts() const = 0;
+    // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the
+    // state's own value, and no first guess is needed. False if it is integrated to its end: watched() then drifts from
+    // its value at (q, v) within the tolerance, and between the ends it is interpolated.
+    virtual bool is_expansion() const = 0;
 
     virtual long evaluations() const = 0;
 };

@@ -25,7 +25,7 @@ class Taylor : public Stepper {
     Polynomial watched() const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder() const override;
-    bool watched_drifts() const override { return false; }
+    bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
 
  private:
