@@ -56,7 +56,8 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
       zero_(program.program_),
       now_(program.series_ + lanes_, 0.0),
       factors_(program.rules_.size(), {0.0, 0.0, 0.0}),
-      rows_(2 * lanes_ * (highest_order + 1), 0.0) {
+      rows_(2 * lanes_ * (highest_order + 1), 0.0),
+      older_(lanes_, 0.0) {
     for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
     zero_.fix();
     zero_.registers_.resize(program.registers_, 0.0);
@@ -170,13 +171,13 @@ void SeriesEvaluator::extend(int k, const double* inputs) {
     static const InnerSums inner = inner_sums();
     double* const n = now_.data();
     double* const sums = n + program_->series_;
-    inner(rows_.data(), lanes_, k, sums);
+    inner(rows_.data(), lanes_, k, older_.data(), sums);
     const double inverse = reciprocals[static_cast<std::size_t>(k)];
     for (std::size_t i = 0; i < program_->weighted_; ++i) sums[i] *= inverse;
     for (std::size_t i = 0; i < inputs_; ++i) n[1 + i] = inputs[i];
     const std::array<double, 3>* f = factors_.data();
     for (const SeriesProgram::Rule& rule : program_->rules_) {
-        n[rule.result] = ((*f)[0] * n[rule.x] + (*f)[1] * n[rule.y]) + (*f)[2] * n[rule.w];
+        n[rule.result] = ((*f)[2] * n[rule.w] + (*f)[1] * n[rule.y]) + (*f)[0] * n[rule.x];
         ++f;
     }
     keep(k);

@@ -40,7 +40,8 @@ class SeriesProgram {
         Operation operation = Operation::number;  // number: register a
         std::uint32_t a = 0, b = 0;
     };
-    // Order k of series `result` is f[0] x_k + f[1] y_k + f[2] w_k. An operand is a series or an inner sum.
+    // Order k of series `result` is (f[2] w_k + f[1] y_k) + f[0] x_k: what is known last comes last. An operand is a
+    // series or an inner sum.
     struct Rule {
         std::uint32_t result, x, y, w;
     };
@@ -123,6 +124,7 @@ class SeriesEvaluator {
     std::vector<double> now_;                     // order k: series, inner sums
     std::vector<std::array<double, 3>> factors_;  // per rule
     std::vector<double> rows_;                    // per order: the left factors of all inner sums, then the right ones
+    std::vector<double> older_;                   // what the inner sums of the next order have so far
 };
 
 }  // namespace achilles
