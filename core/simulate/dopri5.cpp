@@ -211,7 +211,8 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
     const std::size_t first = coefficients.size();
     coefficients.resize(first + 10 * n_);
     for (std::size_t i = 0; i < 2 * n_; ++i) {
-        const Polynomial p = component(i);
+        Polynomial p = component(i);
+        p.c[1] += nodes_[4][i] - p(1.0);
         for (std::size_t k = 0; k <= 4; ++k) coefficients[first + 2 * n_ * k + i] = p.c[k];
     }
     return 4;

@@ -84,7 +84,7 @@ Polynomial Execution::gap_along() {
     if (flow_.is_expansion()) return h;
     const Contact contact = surface_.at(flow_.end());
     const double value = contact.h - h(1.0), slope = contact.hdot * flow_.duration() - h.slope(1.0);
-    if (std::abs(value) > 4.0 * surface_.gap_error(flow_.end())) {
+    if (!surface_.within_gap_error(value, 4.0, contact, flow_.end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
         const int m = std::max(2, known);
         const double b = slope - m * value;
@@ -108,7 +108,7 @@ bool Execution::find_impact() {
     }
     Gap gap{h(1.0), h.slope(1.0) / flow_.duration()};
     const Contact contact = surface_.at(flow_.end());
-    if (std::abs(contact.h - gap.h) > 4.0 * surface_.gap_error(flow_.end())) gap = {contact.h, contact.hdot};
+    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow_.end())) gap = {contact.h, contact.hdot};
     flow_.move_gap(gap);
     takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
     take(contact);
@@ -222,9 +222,12 @@ void Execution::bounce(const Contact& contact, double e) {
 
 // THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
+    // Far from it where the last step was neither short nor low.
+    const double last = flow_.duration(), q = collision.before.q.cwiseAbs().maxCoeff();
+    if (last > 1e-6 * (1.0 + collision.t) && last * collision.speed > 1e-8 * (1.0 + q)) return false;
+    const double u = e * collision.speed;
     const double a = -surface_.normal_acceleration({collision.before.q, collision.tangential});
     if (!(a > 0.0)) return false;
-    const double u = e * collision.speed;
     return u * u / (2.0 * a) < 4.0 * surface_.gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
 }
 

@@ -81,14 +81,13 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     piece.contact = motion_ == Motion::contact;
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
+    if (!moved_) return piece;
     // An end that was moved onto the surface is met.
-    const auto n = static_cast<std::size_t>(to_.q.size());
-    double* const c = coefficients.data() + piece.first;
-    for (std::size_t i = 0; i < 2 * n; ++i) {
-        double sum = 0.0;
-        for (std::size_t k = piece.degree + 1; k-- > 0;) sum += c[2 * n * k + i];
-        const auto j = static_cast<Eigen::Index>(i < n ? i : i - n);
-        c[2 * n + i] += (i < n ? to_.q[j] : to_.v[j]) - sum;
+    const Eigen::Index n = to_.q.size();
+    double* const linear = coefficients.data() + piece.first + 2 * n;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        linear[i] += to_.q[i] - stepper_->current_state().q[i];
+        linear[n + i] += to_.v[i] - stepper_->current_state().v[i];
     }
     return piece;
 }

@@ -46,6 +46,13 @@ double Surface::gap_error(const State& state) {
     return rad(gap_.output(0));
 }
 
+// What the rounding of q alone does to h is a part of the bound and at hand.
+bool Surface::within_gap_error(double value, double times, const Contact& contact, const State& state) {
+    constexpr double surely = 0.5 * 0x1p-53;  // half, for its own rounding
+    const double part = surely * contact.g.cwiseProduct(state.q).cwiseAbs().sum();
+    return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
+}
+
 double Surface::hdot_error(const State& state) {
     put(surface_enclosure_, state);
     surface_enclosure_.run();
@@ -57,7 +64,7 @@ std::optional<Surface::Placed> Surface::project(State state, bool keep_velocity)
     for (int round = 0; round <= rounds; ++round) {
         Contact contact = at(state);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
-        if (contact.h == 0.0 || std::abs(contact.h) <= gap_error(state) * (round < rounds ? 1.0 : 4.0)) {
+        if (within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state)) {
             if (!keep_velocity) {
                 state.v -= contact.hdot * contact.n;
                 contact.hdot = 0.0;

@@ -31,7 +31,9 @@ class Surface {
     Contact at(const State& state);
     // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
     double gap_error(const State& state);
-    // The same for hdot.
+    // Is |value|, a difference of gaps, within `times` that bound at q?
+    bool within_gap_error(double value, double times, const Contact& contact, const State& state);
+    // The bound for hdot.
     double hdot_error(const State& state);
     // Moves q along n until |h| is at rounding level, then v to s (kept = false) or not at all (kept = true).
     // Returns nothing where that fails: dh = 0, or h cannot be brought to zero.

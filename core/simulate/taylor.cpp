@@ -15,7 +15,7 @@ constexpr int lowest = 5;  // a release is a triple root: the gap needs more ter
 // The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
 // radius of convergence. The weights are processor cycles, measured: a step on its own, a rule, a lane of inner sums.
 int best_order(const SeriesProgram& program, double tolerance) {
-    const double step = 1500.0, order = 40.0 + 5.0 * static_cast<double>(program.rules()),
+    const double step = 3000.0, order = 40.0 + 5.0 * static_cast<double>(program.rules()),
                  square = 0.25 * static_cast<double>(program.inner_sums());
     int best = lowest;
     double least = std::numeric_limits<double>::infinity();
@@ -55,14 +55,16 @@ double Taylor::parabola_root(double longest) const {
     return std::min(longest, h1 > 0.0 ? (h1 + root) / (-2.0 * h2) : 2.0 * h0 / (root - h1));
 }
 
+// m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
 double Taylor::magnitude(int k) const {
     const double* const c = row(k);
-    double largest = 0.0;
+    double largest = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < width_; ++i) {
         const double size = std::abs(c[i]) * units_[i];
-        if (!(size <= largest)) largest = size;  // a NaN stays
+        largest = std::max(largest, size);
+        sum += size;
     }
-    return largest;
+    return sum < std::numeric_limits<double>::infinity() ? largest : sum;
 }
 
 // The series at the state where the stepper stands, to the order that is needed.
@@ -124,14 +126,13 @@ Obstacle Taylor::expand(double longest) {
 // Where the last two terms reach 1. By symmetry they may be much smaller than the first ones left out; the two before
 // them tell: half of the step is within their reach. In a series that was cut early these are large by right.
 double Taylor::natural_step() const {
-    double step = std::numeric_limits<double>::infinity();
+    double exponent = std::numeric_limits<double>::infinity();  // of 2
     const int counted = order_ < guarded ? 2 : 4;
     for (int k = order_; k > order_ - counted; --k) {
         const double m = magnitude_[static_cast<std::size_t>(k)];
-        const double longer = k > order_ - 2 ? 1.0 : 2.0;
-        if (m > 0.0) step = std::min(step, longer * std::pow(m, -1.0 / k));
+        if (m > 0.0) exponent = std::min(exponent, (k > order_ - 2 ? 0.0 : 1.0) - std::log2(m) / k);
     }
-    return step;
+    return std::exp2(exponent);
 }
 
 void Taylor::evaluate(double duration) {
