@@ -123,9 +123,11 @@ class Search {
         if (!inside_ && rises_and_falls == 0 && starts_above) return false;
         if (!inside_ && rises_and_falls == 1 && starts_above) {
             if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, low, high));
-            inside_ = true;
-            since_ = low;
-            return false;
+            if (crossings_below == 0) {
+                inside_ = true;
+                since_ = low;
+                return false;
+            }
         }
         if (inside_ && !starts_above) {
             if (rises_and_falls == 0 && crossings_below == 0) return below && find(Descent::Kind::root, low);
