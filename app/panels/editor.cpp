@@ -251,7 +251,7 @@ void hand_over_text(EditorState& editor, Commands& commands) {
 
 void toggle_editor(const Session& session, PanelState& state, Commands& commands) {
     hand_over_text(state.editor, commands);
-    commands.emplace_back(command::Show{!session.shows_editor()});
+    commands.emplace_back(command::Show{"editor", !session.shows_editor()});
 }
 
 void show_editor(const Session& session, PanelState& state, Commands& commands) {

@@ -26,7 +26,7 @@ std::string ball() { return test::system("ball_on_sine").source_text; }
 struct Writer : Hands {
     explicit Writer(const std::string& system = "ball_on_sine", const SurfaceOptions& options = test::surface())
         : Hands(system, options) {
-        session.apply(command::Show{true});
+        session.apply(command::Show{"editor", true});
         rest(2);
     }
     void write(const std::string& text) {
