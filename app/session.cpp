@@ -84,28 +84,25 @@ void Session::apply(const Command& command) {
 
 namespace {
 
+template <class... Kinds>
+bool is_one_of(const Command& command) {
+    return (std::holds_alternative<Kinds>(command) || ...);
+}
+
 // Commands that undo takes back. More of the same kind and for the same thing, as a dragged slider gives, are one
 // change.
 bool is_change(const Command& command) {
-    return std::visit(
-        []<class Kind>(const Kind&) {
-            using namespace command;
-            return std::is_same_v<Kind, Open> || std::is_same_v<Kind, Start> || std::is_same_v<Kind, Set> ||
-                   std::is_same_v<Kind, End> || std::is_same_v<Kind, Tolerance> || std::is_same_v<Kind, Eps> ||
-                   std::is_same_v<Kind, UseConditions> || std::is_same_v<Kind, UseReinitialization> ||
-                   std::is_same_v<Kind, New> || std::is_same_v<Kind, Text> || std::is_same_v<Kind, Grid> ||
-                   std::is_same_v<Kind, PlotView> || std::is_same_v<Kind, Zoom> || std::is_same_v<Kind, Fit> ||
-                   std::is_same_v<Kind, AxisScale> || std::is_same_v<Kind, ShowCurve>;
-        },
-        command);
+    return is_one_of<command::Open, command::New, command::Text, command::Start, command::Set, command::End,
+                     command::Tolerance, command::Eps, command::UseConditions, command::UseReinitialization,
+                     command::Grid, command::PlotView, command::Zoom, command::Fit, command::AxisScale,
+                     command::ShowCurve>(command);
 }
 
 bool goes_on(const Command& last, const Command& next) {
     if (last.index() != next.index()) return false;
     if (const auto* set = std::get_if<command::Set>(&next)) return std::get<command::Set>(last).name == set->name;
     if (const auto* zoom = std::get_if<command::Zoom>(&next)) return std::get<command::Zoom>(last).plot == zoom->plot;
-    return std::holds_alternative<command::Start>(next) || std::holds_alternative<command::End>(next) ||
-           std::holds_alternative<command::Tolerance>(next) || std::holds_alternative<command::Eps>(next);
+    return is_one_of<command::Start, command::End, command::Tolerance, command::Eps>(next);
 }
 
 }  // namespace
@@ -206,7 +203,6 @@ void Session::read_document() {
     document_.problems.clear();
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
-        refuse_unavailable(description, {});
         const auto system = std::make_shared<const System>(document_.name, description);
         // Read once more as it stood there: the command line may have put other values over it.
         const SystemDescription before = parse_system(this->description().source_text, this->description().file);
