@@ -306,6 +306,11 @@ TEST(Description, hostile_files_end_in_a_message) {
                                     std::string("\xef\xbb\xbf"), std::string("\n\n\n["), std::string(1, '\0')}) {
         EXPECT_NE(message_of(text), "") << text;
     }
+    std::string parameters;
+    for (int i = 0; i <= 1000; ++i) parameters += "[[parameter]]\nname = \"p" + std::to_string(i) + "\"\nvalue = 1\n";
+    EXPECT_EQ(message_of(title + least + parameters),
+              "f.toml:3012:1: more than 1000 [[parameter]]\n    [[parameter]]\n    ^");
+    EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: it is larger than 4 MB");
     // Every prefix of a good file is either good or a message.
     for (std::size_t size = 0; size < least.size(); ++size) message_of(least.substr(0, size));
 }
