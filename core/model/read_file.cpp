@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-SystemDescription read_system(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file) {
     const std::string name = file.string();
     const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
     const auto reason = [] { return std::generic_category().message(errno); };
@@ -28,7 +28,11 @@ SystemDescription read_system(const std::filesystem::path& file) {
         if (text.size() > largest_file) break;  // /dev/zero has no end
     }
     if (std::ferror(open.get()) != 0) throw refuse(reason());
-    return parse_system(std::move(text), name);
+    return text;
+}
+
+SystemDescription read_system(const std::filesystem::path& file) {
+    return parse_system(read_text(file), file.string());
 }
 
 }  // namespace achilles
