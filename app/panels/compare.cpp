@@ -61,7 +61,7 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
                 i < after.size() ? number(after[i], "{:.10g}") : "\u2013", "");
     }
     row("impacts", std::to_string(pinned.statistics.impacts), std::to_string(present.statistics.impacts),
-        std::to_string(present.statistics.impacts - pinned.statistics.impacts));
+        number(static_cast<double>(present.statistics.impacts - pinned.statistics.impacts)));
     row("end", pinned.end_time, present.end_time);
     if (!same_system) return;
     const auto& coordinates = session.description().coordinates;

@@ -229,6 +229,7 @@ void Model::check(const Run& run) const {
     positive("eps_v", options.truncation.eps_v);
     positive("eps_t", options.truncation.eps_t);
     if (options.max_impacts < 1) fail({}, "max_impacts must be at least 1");
+    if (options.max_steps < 1) fail({}, "max_steps must be at least 1");
     for (std::size_t i = 0; i < run.parameters.size(); ++i)
         if (!std::isfinite(run.parameters[i]))
             fail(description_.parameters[i].at,

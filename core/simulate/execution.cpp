@@ -397,6 +397,12 @@ bool Execution::advance(double longest) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;
     }
+    if (record_.steps() >= run_.options.max_steps) {
+        stop(Outcome::Kind::too_many_steps,
+             fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time",
+                         record_.steps(), t_));
+        return false;
+    }
     const auto obstacle = flow_.step(longest);
     if (obstacle != Obstacle::none) leave(obstacle);
     return obstacle == Obstacle::none;
