@@ -119,7 +119,6 @@ void Session::read_document() {
     document_.problems.clear();
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
-        refuse_unavailable(description, {});
         const auto system = std::make_shared<const System>(document_.name, description);
         // Read once more as it stood there: the command line may have put other values over it.
         const SystemDescription before = parse_system(this->description().source_text, this->description().file);
