@@ -1,8 +1,8 @@
 #include "expression/program.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <map>
-#include <set>
 
 #include "expression/graph.hpp"
 
@@ -10,45 +10,40 @@ namespace achilles {
 
 namespace {
 
-// The same instructions in an order in which runs of one operation are long: as many as are ready, then those of the
-// operation of which most are ready. Operands stand before their users.
-class Schedule {
- public:
-    explicit Schedule(const Graph& graph) : graph_(graph) {}
-
-    std::vector<std::uint32_t> order(const std::vector<std::uint32_t>& ids) {
-        std::vector<std::uint32_t> result, left = ids;
-        std::set<std::uint32_t> pending(ids.begin(), ids.end());
-        while (!left.empty()) {
-            std::map<Operation, int> ready;
-            for (const std::uint32_t id : left)
-                if (is_ready(id, pending)) ++ready[graph_.node(id).operation];
-            const auto most = std::max_element(ready.begin(), ready.end(),
-                                               [](const auto& x, const auto& y) { return x.second < y.second; });
-            // One pass finds those that become ready by others of the same run: operands come first in `left`.
-            std::vector<std::uint32_t> later;
-            for (const std::uint32_t id : left) {
-                if (graph_.node(id).operation == most->first && is_ready(id, pending)) {
-                    result.push_back(id);
-                    pending.erase(id);
-                } else {
-                    later.push_back(id);
-                }
+// The same instructions in an order in which runs of one operation are long: always the operation of which most are
+// ready, until none of it is. Operands stand before their users.
+std::vector<std::uint32_t> in_runs(const std::vector<std::uint32_t>& ids, const Graph& graph) {
+    const std::uint32_t most = ids.empty() ? 0 : ids.back() + 1;
+    std::vector<bool> pending(most, false);
+    for (const std::uint32_t id : ids) pending[id] = true;
+    std::vector<int> missing(most, 0);  // operands that are still to come
+    std::vector<std::vector<std::uint32_t>> users(most);
+    std::map<Operation, std::deque<std::uint32_t>> ready;
+    for (const std::uint32_t id : ids) {
+        const Graph::Node& node = graph.node(id);
+        if (!is_leaf(node.operation)) {
+            for (const std::uint32_t operand : {node.a, is_binary(node.operation) ? node.b : node.a}) {
+                if (!pending[operand] || (operand == node.a && missing[id] > 0)) continue;
+                ++missing[id];
+                users[operand].push_back(id);
             }
-            left = std::move(later);
         }
-        return result;
+        if (missing[id] == 0) ready[node.operation].push_back(id);
     }
-
- private:
-    bool is_ready(std::uint32_t id, const std::set<std::uint32_t>& pending) const {
-        const Graph::Node& node = graph_.node(id);
-        if (is_leaf(node.operation)) return true;
-        return !pending.contains(node.a) && !(is_binary(node.operation) && pending.contains(node.b));
+    std::vector<std::uint32_t> order;
+    while (order.size() < ids.size()) {
+        const auto run = std::max_element(
+            ready.begin(), ready.end(), [](const auto& x, const auto& y) { return x.second.size() < y.second.size(); });
+        while (!run->second.empty()) {
+            const std::uint32_t id = run->second.front();
+            run->second.pop_front();
+            order.push_back(id);
+            for (const std::uint32_t user : users[id])
+                if (--missing[user] == 0) ready[graph.node(user).operation].push_back(user);
+        }
     }
-
-    const Graph& graph_;
-};
+    return order;
+}
 
 }  // namespace
 
@@ -80,7 +75,7 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
     std::uint32_t next = slots.count + static_cast<std::uint32_t>(constants_.size());
     for (const std::vector<std::uint32_t>& part : order) {
         const std::size_t begin = instructions_.size();
-        for (const std::uint32_t id : Schedule(graph).order(part)) {
+        for (const std::uint32_t id : in_runs(part, graph)) {
             const Graph::Node& node = graph.node(id);
             if (instructions_.size() > begin && instructions_.back().operation != node.operation)
                 runs_.push_back(instructions_.size());

@@ -23,6 +23,10 @@ class SeriesCompiler {
         next_series_ = 1 + slots.fixed_begin;
         forms_.resize(count);
         for (std::uint32_t i = 0; i < slots.fixed_begin; ++i) forms_[i] = {{1 + i, one}};
+        for (std::uint32_t reg = first_moving_; reg < count; ++reg) {
+            const Instruction& in = program_.instructions_[reg - first];
+            function_registers_.emplace(std::pair(in.operation, in.a), reg);
+        }
         for (std::uint32_t reg = first_moving_; reg < count; ++reg)
             forms_[reg] = translate(program_.instructions_[reg - first], reg);
         for (const std::uint32_t output : program_.outputs_) {
@@ -132,7 +136,7 @@ class SeriesCompiler {
     Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
                  std::optional<std::uint32_t> partner_value = {}) {
         const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
-        if (const auto found = made_.find(key); found != made_.end()) return found->second.first;
+        if (const auto found = made_.find(key); found != made_.end()) return found->second;
         seed.a = a.value;
         seed.b = b.value;
         seed.scale_a = a.scale;
@@ -181,16 +185,13 @@ class SeriesCompiler {
                 break;
         }
         series_.seeds_.push_back(seed);
-        made_.emplace(key, std::pair(result, partner));
+        made_.emplace(key, result);
+        partners_.emplace(result.series, partner);
         return result;
     }
     // A result that has no register in the program.
     Operand hidden(Seed seed, const Operand& a, const Operand& b) { return make(seed, a, b, next_register_++); }
-    Operand partner_of(const Operand& result) const {
-        for (const auto& [key, made] : made_)
-            if (made.first.series == result.series) return made.second;
-        return result;
-    }
+    Operand partner_of(const Operand& result) const { return partners_.at(result.series); }
 
     Operand product(const Operand& a, const Operand& b) {
         const bool same = a.value == b.value && a.series == b.series;
@@ -201,16 +202,15 @@ class SeriesCompiler {
     Operand sine_and_cosine(const Instruction& in) {
         const bool circular = in.operation == Operation::sin || in.operation == Operation::cos;
         const Operand a = operand(in.a);
-        std::uint32_t sine = next_register_++;
-        std::optional<std::uint32_t> cosine;
-        for (std::size_t i = program_.fixed_; i < program_.instructions_.size(); ++i) {
-            if (program_.instructions_[i].a != in.a) continue;
-            const Operation other = program_.instructions_[i].operation;
-            const auto reg = first_moving_ + static_cast<std::uint32_t>(i - program_.fixed_);
-            if (other == (circular ? Operation::sin : Operation::sinh)) sine = reg;
-            if (other == (circular ? Operation::cos : Operation::cosh)) cosine = reg;
-        }
-        return make({.kind = Kind::sin_cos, .sign = circular ? -1.0 : 1.0}, a, a, sine, cosine);
+        const auto existing = [&](Operation function) -> std::optional<std::uint32_t> {
+            const auto found = function_registers_.find({function, in.a});
+            if (found == function_registers_.end()) return std::nullopt;
+            return found->second;
+        };
+        const auto sine = existing(circular ? Operation::sin : Operation::sinh);
+        const auto cosine = existing(circular ? Operation::cos : Operation::cosh);
+        return make({.kind = Kind::sin_cos, .sign = circular ? -1.0 : 1.0}, a, a, sine ? *sine : next_register_++,
+                    cosine);
     }
 
     // base^n, n >= 2, by repeated squaring.
@@ -323,9 +323,10 @@ class SeriesCompiler {
     std::uint32_t first_moving_ = 0, next_register_ = 0, next_series_ = 0;
     std::vector<Form> forms_;  // of the program's registers that move
     std::map<std::tuple<Operation, std::uint32_t, std::uint32_t>, std::uint32_t> coefficient_ids_;
-    std::map<std::tuple<Kind, Operation, double, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>,
-             std::pair<Operand, Operand>>
+    std::map<std::tuple<Kind, Operation, double, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, Operand>
         made_;
+    std::map<std::uint32_t, Operand> partners_;                                        // by the series of the result
+    std::map<std::pair<Operation, std::uint32_t>, std::uint32_t> function_registers_;  // by function and operand
     std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::uint32_t> sum_ids_;
     std::vector<Pending> sums_;
 };

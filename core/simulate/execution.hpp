@@ -12,6 +12,9 @@
 
 namespace achilles {
 
+// An instant and a state in words, for messages.
+std::string where(double t, const State& state);
+
 class Execution {
  public:
     // `watch` may be null; otherwise it lives as long as this.

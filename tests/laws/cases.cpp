@@ -15,7 +15,7 @@ std::string name_of(const testing::TestParamInfo<Case>& info) {
     return info.param.system + "_" + std::string(to_text(info.param.method));
 }
 
-std::vector<Method> all_methods() { return {Method::dopri5}; }
+std::vector<Method> all_methods() { return {Method::taylor, Method::dopri5}; }
 
 std::vector<Case> all_cases() {
     std::vector<std::string> names;

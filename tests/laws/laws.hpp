@@ -28,7 +28,7 @@ Violations contact_force(const Trajectory& trajectory);
 // One file of assets/systems, integrated by one method.
 struct Case {
     std::string system;
-    Method method = Method::dopri5;
+    Method method = Method::taylor;
 };
 void PrintTo(const Case& one, std::ostream* out);
 std::string name_of(const testing::TestParamInfo<Case>& info);
