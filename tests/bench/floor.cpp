@@ -119,7 +119,9 @@ long grazing(const std::shared_ptr<const Model>& model, long count, Method metho
     for (const double least : {1e-10, -1e-10, 1e-13}) {
         std::map<std::string, long> seen;
         for (long i = 0; i < count; ++i) {
-            const Grazing grazing = source.next(least);
+            const auto found = source.next(least);
+            if (!found) break;
+            const Grazing& grazing = *found;
             for (const double tolerance : {1e-14, model->default_run().options.tolerance}) {
                 Run run = model->default_run();
                 run.options.method = method;
@@ -145,7 +147,7 @@ long grazing(const std::shared_ptr<const Model>& model, long count, Method metho
         }
         fmt::print("  dips to {:.0e}:", least);
         for (const auto& [what, number] : seen) fmt::print("  {} {}", number, what);
-        fmt::print("\n");
+        fmt::print("{}\n", seen.empty() ? "  no start found" : "");
         std::fflush(stdout);
     }
     return wrong;

@@ -199,12 +199,13 @@ GrazingStarts::GrazingStarts(std::shared_ptr<const Model> model, unsigned seed)
       gap_(model_->evaluator(model_->gap(), run_.parameters)),
       truth_(*model_, run_) {}
 
-Grazing GrazingStarts::next(double least_gap) {
-    while (true) {
+std::optional<Grazing> GrazingStarts::next(double least_gap) {
+    for (int tries = 0; tries < 2000; ++tries) {
         const State start = starts_.next();
         if (!dips_near_the_floor(start)) continue;
-        if (const auto found = tune(start, least_gap)) return *found;
+        if (auto found = tune(start, least_gap)) return found;
     }
+    return std::nullopt;
 }
 
 // Most starts do not, which 34 digits need not find out: Heun's method will do.
