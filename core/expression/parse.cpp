@@ -37,7 +37,8 @@ std::string shown(std::string_view rest) {
 
 class Parser {
  public:
-    Parser(std::string_view text, const Scope& scope, Graph& graph) : text_(text), scope_(scope), graph_(graph) {}
+    Parser(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts)
+        : text_(text), scope_(scope), graph_(graph), parts_(parts) {}
 
     Expression whole() {
         skip_space();
@@ -85,7 +86,20 @@ class Parser {
         }
     }
 
+    // One term of a sum.
     Expression product() {
+        const std::size_t begin = at_;
+        const Expression term = factors();
+        if (parts_ != nullptr && depth_ == 0) parts_->terms.push_back({begin, term});
+        return noted(begin, term);
+    }
+
+    Expression noted(std::size_t begin, Expression part) {
+        if (parts_ != nullptr) parts_->all.push_back({begin, part});
+        return part;
+    }
+
+    Expression factors() {
         Expression left = signed_factor();
         for (;;) {
             const std::size_t where = at_;
@@ -107,10 +121,11 @@ class Parser {
         const Level level(*this);
         if (take('-')) return -signed_factor();
         if (take('+')) return signed_factor();
-        const Expression base = atom();
+        const std::size_t begin = at_;
+        const Expression base = noted(begin, atom());
         const std::size_t where = at_;
         if (!take('^')) return base;
-        return raise(base, signed_factor(), where);  // 2^3^2 = 2^(3^2)
+        return noted(begin, raise(base, signed_factor(), where));  // 2^3^2 = 2^(3^2)
     }
 
     Expression raise(Expression base, Expression exponent, std::size_t where) {
@@ -195,15 +210,15 @@ class Parser {
             return found->second;
         }
         const auto reason = scope_.forbidden.find(full);
-        if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second);
+        if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second, full);
         fail_at_unknown(begin, bare, full);
     }
 
     Expression call(std::string_view word, Operation function, std::size_t begin) {
         const std::size_t open = at_;
         if (!take('('))
-            throw ParseError(begin,
-                             "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)");
+            throw ParseError(
+                begin, "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)", word);
         const Expression argument = sum();
         if (peek() == ',') throw ParseError(at_, "the function " + quoted(word) + " takes one argument");
         close(open);
@@ -213,8 +228,8 @@ class Parser {
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
         if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
             throw ParseError(
-                begin,
-                quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives");
+                begin, quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
+                bare);
         std::vector<std::string> known;
         for (const auto& [word, function] : functions) known.emplace_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
@@ -223,19 +238,22 @@ class Parser {
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
-        throw ParseError(begin, "unknown name " + quoted(full) + did_you_mean(full, known));
+        throw ParseError(begin, "unknown name " + quoted(full) + did_you_mean(full, known), full);
     }
 
     std::string_view text_;
     const Scope& scope_;
     Graph& graph_;
+    TextParts* parts_;
     std::size_t at_ = 0;
     int depth_ = 0;
 };
 
 }  // namespace
 
-Expression parse(std::string_view text, const Scope& scope, Graph& graph) { return Parser(text, scope, graph).whole(); }
+Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts) {
+    return Parser(text, scope, graph, parts).whole();
+}
 
 bool is_reserved(std::string_view name) {
     const auto is_name_of = [&](const auto& entry) { return entry.first == name; };

@@ -103,7 +103,8 @@ struct SystemDescription {
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
-// Reads a file. Throws InputError where there is nothing to read (no file, no TOML), else InputErrors: all mistakes.
+// Reads a file, and all its expressions to see whether they can be. Throws InputError where there is nothing to read
+// (no file, no TOML), else InputErrors: all mistakes.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.
 SystemDescription parse_system(std::string text, std::string name = "<text>");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "model/input_error.hpp"
+
 namespace achilles {
 
 namespace {
@@ -18,14 +20,15 @@ void Mistakes::add(Mistake mistake) {
 }
 
 void Mistakes::raise(const SystemDescription& system) const {
-    if (none()) return;
+    if (count_ == 0) return;
     std::vector<Mistake> sorted = kept_;
     const auto place = [](const Mistake& mistake) { return std::tuple(mistake.at.line, mistake.at.column); };
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](const Mistake& a, const Mistake& b) { return place(a) < place(b); });
     std::vector<InputError> told;
     for (std::size_t i = 0; i < std::min(sorted.size(), most_told); ++i)
-        told.push_back(system.error(sorted[i].at, sorted[i].message, sorted[i].hint));
+        told.emplace_back(system.file, sorted[i].at, sorted[i].message, sorted[i].hint,
+                          sorted[i].has_line ? line_of(system.source_text, sorted[i].at.line) : "");
     const std::size_t more = count_ - told.size();
     throw InputErrors(std::move(told), more);
 }

@@ -15,6 +15,7 @@ namespace achilles {
 struct Mistake {
     Location at;
     std::string message, hint;  // hint: what would be right; may be empty
+    bool has_line = true;       // false: no line can be blamed, something is missing
 };
 
 // Thrown where reading cannot go on because of a mistake that was added already.
@@ -35,7 +36,7 @@ class Mistakes {
         }
         return false;
     }
-    bool none() const { return count_ == 0; }
+    std::size_t count() const { return count_; }
     // Throws InputErrors if there are any: the first ten by position, and how many more.
     void raise(const SystemDescription& system) const;
 

@@ -25,7 +25,7 @@ namespace achilles {
 
 class Model {
  public:
-    // Derives everything. Throws InputError (the file's) for a text that is not what it should be.
+    // Derives everything. Throws InputErrors (the file's) for T, V, h or e that is not what it should be.
     explicit Model(SystemDescription description);
 
     const SystemDescription& description() const { return description_; }
@@ -59,7 +59,7 @@ class Model {
 
     // The run that the description asks for.
     Run default_run() const;
-    // Throws InputError if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
+    // Throws InputErrors if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
     // gap clearly negative, dh = 0 in contact, eps, tolerance or end time not positive.
     void check(const Run& run) const;
 
@@ -70,9 +70,11 @@ class Model {
 
  private:
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
-    void read_mass_matrix();
     void compile();
-    void check_start(const Run& run) const;
+    // Throw Mistake.
+    void check_restitution(const Run& run) const;
+    void check_gap(const Run& run) const;
+    void check_acceleration(const Run& run) const;
 
     SystemDescription description_;
     Layout layout_;

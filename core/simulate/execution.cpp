@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simulate/domain.hpp"
+
 namespace achilles {
 
 namespace {
@@ -16,6 +18,8 @@ std::string where(double t, const State& state) {
     for (Eigen::Index i = 0; i < state.v.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", state.v[i]);
     return text + ")";
 }
+
+constexpr int most_stalled = 100;
 
 double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
 
@@ -129,8 +133,7 @@ bool Execution::locate_impact(double theta) {
     }
     const auto landed = surface_.project(flow_.end(), true);
     if (!landed) {
-        stop(Outcome::Kind::left_the_domain,
-             "dh = 0 where contact happens: the normal is not defined at " + where(flow_.end_time(), flow_.end()));
+        leave_contact(flow_.end_time(), flow_.end());
         return true;
     }
     flow_.move_end(*landed);
@@ -266,8 +269,7 @@ bool Execution::stay(double until) {
         if (!advance(until - t_)) return false;
         const auto projected = surface_.project(flow_.end(), false);
         if (!projected) {
-            stop(Outcome::Kind::left_the_domain,
-                 "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
+            leave_contact(flow_.end_time(), flow_.end());
             return false;
         }
         flow_.move_end(*projected);
@@ -339,7 +341,8 @@ bool Execution::advance(double longest) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;
     }
-    const auto obstacle = flow_.step(longest);
+    // Where the time stands still between two representable numbers, so may the state, for ever.
+    const auto obstacle = stalled_ > most_stalled ? Flow::Obstacle::step_too_small : flow_.step(longest);
     if (obstacle != Flow::Obstacle::none) leave(obstacle);
     return obstacle == Flow::Obstacle::none;
 }
@@ -347,22 +350,27 @@ bool Execution::advance(double longest) {
 // Accepts the flow's last step.
 void Execution::take(double gap) {
     record_.step(flow_, gap);
+    stalled_ = flow_.end_time() > t_ ? 0 : stalled_ + 1;
     t_ = flow_.end_time();
     state_ = flow_.end();
 }
 
 void Execution::leave(Flow::Obstacle obstacle) {
     const std::string place = where(t_, state_);
-    switch (obstacle) {
-        case Flow::Obstacle::left_the_domain:
-            return stop(
-                Outcome::Kind::left_the_domain,
-                "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
-        case Flow::Obstacle::not_a_number:
-            return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
-        default:
-            return stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
-    }
+    if (obstacle == Flow::Obstacle::not_a_number)
+        return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
+    const std::string edge = edge_of_domain(*model_, run_, t_, state_);
+    if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, just after {}", edge, place));
+    if (obstacle == Flow::Obstacle::left_the_domain)
+        return stop(Outcome::Kind::left_the_domain,
+                    "M is not positive definite, or a function undefined, just after " + place);
+    stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
+}
+
+// A state that cannot be moved onto the surface.
+void Execution::leave_contact(double t, const State& state) {
+    stop(Outcome::Kind::left_the_domain,
+         fmt::format("{}, at {}", edge_of_contact(*model_, run_, state), where(t, state)));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }

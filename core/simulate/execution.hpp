@@ -50,6 +50,7 @@ class Execution {
     bool advance(double longest);
     void take(double gap);
     void leave(Flow::Obstacle obstacle);
+    void leave_contact(double t, const State& state);
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
@@ -60,6 +61,7 @@ class Execution {
     Recorder record_;
     double restitution_;
     double t_ = 0.0;
+    int stalled_ = 0;  // steps in a row that were shorter than the resolution of t
     State state_;
     Takeoff takeoff_;
     double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
