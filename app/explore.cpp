@@ -31,24 +31,32 @@ std::vector<SystemEntry> known_systems() {
     return entries;
 }
 
+// The system that is asked for; else the paper's first example, or whatever there is.
 std::string first_system(const ExploreOptions& options) {
     if (options.system) return *options.system;
     const std::vector<std::string> names = system_names();
     if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
-    return names.front();
+    const std::string usual = "ball_on_sine";
+    return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
 }
 
 std::vector<Command> journal_of(const ExploreOptions& options) {
     return options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
 }
 
+// What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
+// hand; the others are shown when they are there.
+constexpr double frame_patience = 1.0 / 40.0;
+
 // The session that the command line asks for.
-Session open_session(const ExploreOptions& options) {
+Session open_session(const ExploreOptions& options, Patience patience) {
     const std::string name = first_system(options);
-    const Opener opener = [overrides = options.overrides](const std::string& system) {
-        return open_system(find_system(system), {}, overrides);
+    const auto finish = [overrides = options.overrides](SystemDescription& description) {
+        apply(overrides, description.options);
+        refuse_unavailable(description, overrides);
     };
-    return {name, open_system(find_system(name), options.settings, options.overrides), opener};
+    return {name, open_system(find_system(name), options.settings, options.overrides),
+            Library{[](const std::string& system) { return find_system(system); }, finish}, patience};
 }
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
@@ -88,6 +96,25 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
+// What the files dropped on the window ask for: a journal is replayed; a system is opened, once changes of the text are
+// saved or given up.
+std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
+    std::vector<Command> commands;
+    for (const std::string& file : window.dropped()) {
+        try {
+            if (std::filesystem::path(file).extension() == ".journal") {
+                const std::vector<Command> journal = read_journal(file);
+                commands.insert(commands.end(), journal.begin(), journal.end());
+            } else {
+                request(session, state, command::Open{file}, commands);
+            }
+        } catch (const InputError& problem) {
+            session.refuse(problem);
+        }
+    }
+    return commands;
+}
+
 // Seconds since it was last asked, none the first time.
 class Clock {
  public:
@@ -107,7 +134,8 @@ class Clock {
 
 int explore(const ExploreOptions& options) {
     const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+    // A journal tells what was done after each run: then every run is waited for.
+    Session session = open_session(options, journal.empty() ? Patience(frame_patience) : Patience());
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
@@ -122,16 +150,21 @@ int explore(const ExploreOptions& options) {
     };
     for (const Command& command : opening(session, options)) keep(command);
     for (const Command& command : journal) apply(command);
+    session.set_patience(frame_patience);
+    session.on_ready(Window::wake);
+    window.on_close([&] { return request_close(session, state); });
     Clock clock;
     window.run([&] {
+        session.update();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (session.playing())
             play_on(session, clock.elapsed(), state.loop);
         else
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);
-        for (const std::string& file : window.dropped()) apply(command::Open{file});
-        window.keep_drawing(session.playing());
+        for (const Command& command : dropped(window, session, state)) apply(command);
+        if (state.editor.may_close) window.close();
+        window.keep_drawing(session.playing() || is_typing(state));
     });
     return reached_end;
 }
@@ -140,7 +173,7 @@ int screenshot(const ScreenshotOptions& options) {
     OutputFiles files;
     files.add(options.out);
     const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+    Session session = open_session(options, {});
     for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
     Offscreen surface(surface_options(options));

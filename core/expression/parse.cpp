@@ -23,22 +23,22 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 // One character as a person sees it: a whole UTF-8 sequence, or a code for what cannot be printed.
 std::string shown(std::string_view rest) {
     const auto byte = static_cast<unsigned char>(rest.front());
     if (byte < 0x20 || byte == 0x7f) return "a control character";
-    if (byte < 0x80) return quoted(rest.substr(0, 1));
+    if (byte < 0x80) return in_quotes(rest.substr(0, 1));
     std::size_t length = 1;
     while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0) == 0x80 && length < 4) ++length;
-    return quoted(rest.substr(0, length));
+    return in_quotes(rest.substr(0, length));
 }
 
 class Parser {
  public:
     Parser(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts)
         : text_(text), scope_(scope), graph_(graph), parts_(parts) {}
+
+    std::size_t at() const { return at_; }  // how far it was read
 
     Expression whole() {
         skip_space();
@@ -90,13 +90,18 @@ class Parser {
     Expression product() {
         const std::size_t begin = at_;
         const Expression term = factors();
-        if (parts_ != nullptr && depth_ == 0) parts_->terms.push_back({begin, term});
+        if (parts_ != nullptr && depth_ == 0) parts_->terms.push_back(part(begin, term));
         return noted(begin, term);
     }
 
-    Expression noted(std::size_t begin, Expression part) {
-        if (parts_ != nullptr) parts_->all.push_back({begin, part});
-        return part;
+    TextPart part(std::size_t begin, Expression value) const {
+        const std::size_t last = text_.find_last_not_of(" \t\r\n", at_ - 1);
+        return {begin, last + 1 - begin, value};
+    }
+
+    Expression noted(std::size_t begin, Expression value) {
+        if (parts_ != nullptr) parts_->all.push_back(part(begin, value));
+        return value;
     }
 
     Expression factors() {
@@ -206,7 +211,7 @@ class Parser {
         if (full == "pi") return graph_.pi();
         const auto found = scope_.allowed.find(full);
         if (found != scope_.allowed.end()) {
-            if (peek() == '(') throw ParseError(begin, quoted(full) + " is not a function; write '*' for a product");
+            if (peek() == '(') throw ParseError(begin, in_quotes(full) + " is not a function; write '*' for a product");
             return found->second;
         }
         const auto reason = scope_.forbidden.find(full);
@@ -218,9 +223,9 @@ class Parser {
         const std::size_t open = at_;
         if (!take('('))
             throw ParseError(
-                begin, "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)", word);
+                begin, "the function " + in_quotes(word) + " needs parentheses: " + std::string(word) + "(...)", word);
         const Expression argument = sum();
-        if (peek() == ',') throw ParseError(at_, "the function " + quoted(word) + " takes one argument");
+        if (peek() == ',') throw ParseError(at_, "the function " + in_quotes(word) + " takes one argument");
         close(open);
         return apply(function, argument);
     }
@@ -228,17 +233,18 @@ class Parser {
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
         if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
             throw ParseError(
-                begin, quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
+                begin,
+                in_quotes(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
                 bare);
         std::vector<std::string> known;
         for (const auto& [word, function] : functions) known.emplace_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
             const std::string hint = bare == "ln" ? "; did you mean 'log'?" : did_you_mean(bare, known);
-            throw ParseError(begin, "unknown function " + quoted(full) + hint);
+            throw ParseError(begin, "unknown function " + in_quotes(full) + hint);
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
-        throw ParseError(begin, "unknown name " + quoted(full) + did_you_mean(full, known), full);
+        throw ParseError(begin, "unknown name " + in_quotes(full) + did_you_mean(full, known), full);
     }
 
     std::string_view text_;
@@ -252,7 +258,12 @@ class Parser {
 }  // namespace
 
 Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts) {
-    return Parser(text, scope, graph, parts).whole();
+    Parser parser(text, scope, graph, parts);
+    try {
+        return parser.whole();
+    } catch (const TooLarge& problem) {
+        throw ParseError(parser.at(), std::string("this expression is too large: ") + problem.what());
+    }
 }
 
 bool is_reserved(std::string_view name) {

@@ -29,7 +29,7 @@ struct ParseError : std::runtime_error {
 
 // Where the parts of a text stand.
 struct TextPart {
-    std::size_t offset;
+    std::size_t offset, size;  // in bytes
     Expression value;
 };
 struct TextParts {

@@ -65,8 +65,8 @@ Text read_name(Names& names, const Fields& fields) {
     if (!is_name(name.text))
         throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
                       "a name is a letter, then letters, digits and underscores"};
-    names.complete = was_complete;
     if (is_reserved(name.text)) {
+        names.complete = was_complete;
         names.excused.insert(name.text);
         throw Mistake{name.at, fmt::format("the name '{}' is reserved", name.text),
                       "functions, t, pi, gap, lambda and energy keep their meaning: choose another name"};
@@ -75,6 +75,7 @@ Text read_name(Names& names, const Fields& fields) {
     if (!is_new)
         throw Mistake{name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
                       fmt::format("it is the name at line {} already", other->second.line)};
+    names.complete = was_complete;
     return name;
 }
 
@@ -254,6 +255,8 @@ InputError SystemDescription::error(Location at, const std::string& message, con
 }
 
 SystemDescription parse_system(std::string text, std::string name) {
+    if (text.size() > largest_file)
+        throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
     SystemDescription system;
     system.file = std::move(name);
     system.source_text = std::move(text);

@@ -129,7 +129,11 @@ std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistak
                           fmt::format("write {}, once for each", where)});
             continue;
         }
-        for (const TomlValue& item : entry.value.items) mistakes.attempt([&] { list.emplace_back(item, where); });
+        constexpr std::size_t most = 1000;
+        const std::vector<TomlValue>& items = entry.value.items;
+        if (items.size() > most) mistakes.add({items[most].at, fmt::format("more than {} {}", most, where), {}});
+        for (std::size_t i = 0; i < std::min(items.size(), most); ++i)
+            mistakes.attempt([&] { list.emplace_back(items[i], where); });
     }
     return list;
 }

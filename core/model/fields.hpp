@@ -51,7 +51,8 @@ class Fields {
     std::vector<std::string> misspelt_;  // keys that are there under another name
 };
 
-// The tables of an array of tables; none where the key is absent. What is something else is a mistake, and left out.
+// The tables of an array of tables, at most 1000; none where the key is absent. What is something else is a mistake,
+// and left out.
 std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes);
 
 // The names of these entries as a list for a person: "a, b, c".

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "model/mistakes.hpp"
 #include "model/read_expressions.hpp"
 
 namespace achilles {
-
-namespace {}  // namespace
 
 Model::Model(SystemDescription description) : description_(std::move(description)), graph_(std::make_unique<Graph>()) {
     layout_ = {static_cast<std::uint32_t>(description_.coordinates.size()),
@@ -19,8 +18,17 @@ Model::Model(SystemDescription description) : description_(std::move(description
     Names names;
     read_equations(description_, layout_, *graph_, names, equations_, mistakes);
     mistakes.raise(description_);
-    derive(equations_, layout_, *graph_);
-    compile();
+    try {
+        derive(equations_, layout_, *graph_);
+        compile();
+    } catch (const TooLarge& problem) {
+        throw description_.error(description_.kinetic.at,
+                                 fmt::format("the equations of motion are too large: {}", problem.what()));
+    } catch (const std::domain_error& problem) {
+        throw description_.error(description_.kinetic.at,
+                                 fmt::format("the mass matrix is positive definite nowhere: {}", problem.what()),
+                                 "every coordinate needs a positive inertia");
+    }
 }
 
 Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const {
@@ -51,8 +59,14 @@ void Model::compile() {
 }
 
 const Bouncing& Model::bouncing() const {
-    std::call_once(bouncing_once_,
-                   [&] { bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_)); });
+    std::call_once(bouncing_once_, [&] {
+        try {
+            bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_));
+        } catch (const TooLarge& problem) {
+            throw description_.error(description_.kinetic.at,
+                                     fmt::format("what proves a truncation is too large: {}", problem.what()));
+        }
+    });
     return *bouncing_;
 }
 

@@ -45,7 +45,8 @@ class Model {
     const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
 
-    // The programs of the sharp conditions, derived when they are first asked for.
+    // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
+    // too large.
     const Bouncing& bouncing() const;
 
     // An evaluator of one of the programs above with the parameters' values in place.

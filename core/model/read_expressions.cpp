@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "expression/graph.hpp"
 #include "expression/program.hpp"
+#include "model/input_error.hpp"
 #include "model/rate_polynomial.hpp"
 
 namespace achilles {
@@ -153,42 +155,46 @@ Expression term_of(const RatePolynomial::value_type& entry, const Layout& layout
 
 constexpr const char* quadratic = "kinetic energy must be quadratic in the rates, as in m/2*x'^2";
 
+std::string written(const Text& text, const TextPart& part) { return shown(text.text.substr(part.offset, part.size)); }
+
 // The part of T that is no polynomial in the rates.
 Mistake not_polynomial(const Text& kinetic, const TextParts& parts, Expression offender,
                        const std::vector<std::string>& names) {
-    std::size_t offset = 0;
-    for (const TextPart& part : parts.all)
-        if (part.value == offender) {
-            offset = part.offset;
-            break;
-        }
-    return {place_in(kinetic, offset),
-            fmt::format("the kinetic energy is no polynomial in the rates: {}", to_text(offender, names)), quadratic};
+    const Operation operation = Builder::node(offender).operation;
+    const bool is_power =
+        operation == Operation::multiply || (operation == Operation::power && Builder::node(offender).exponent > 0);
+    const char* what = is_power ? "the kinetic energy is of a degree above 8 in the rates: {}"
+                                : "the kinetic energy is no polynomial in the rates: {}";
+    const auto place =
+        std::find_if(parts.all.begin(), parts.all.end(), [&](const TextPart& part) { return part.value == offender; });
+    const bool is_written = place != parts.all.end();
+    return {place_in(kinetic, is_written ? place->offset : 0),
+            fmt::format(fmt::runtime(what), is_written ? written(kinetic, *place) : to_text(offender, names)),
+            quadratic};
 }
 
 // The first term of T, as written, that leaves a term of another degree than 2 in the whole.
 Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePolynomial& whole, const Layout& layout,
                       const std::vector<std::string>& names) {
     const auto is_wrong = [](const RatePolynomial::value_type& entry) { return degree(entry.first) != 2; };
-    auto wrong = std::find_if(whole.begin(), whole.end(), is_wrong);
-    std::size_t offset = 0;
-    bool is_found = false;
+    const auto told = [&](const RatePolynomial::key_type& exponents, const std::string& term, std::size_t offset) {
+        const int d = degree(exponents);
+        return Mistake{place_in(kinetic, offset),
+                       fmt::format("the term {} of the kinetic energy is of degree {} in the rates", term, d),
+                       d == 0 ? "what has no rate in it belongs to the potential, with the other sign" : quadratic};
+    };
     for (const TextPart& part : parts.terms) {
         Expression ignored;
-        const auto polynomial = expand_in_rates(part.value, rate_slots(layout), ignored);
-        for (const auto& entry : polynomial.value_or(RatePolynomial{})) {
-            const auto same = whole.find(entry.first);
-            if (is_found || !is_wrong(entry) || same == whole.end()) continue;
-            wrong = same;
-            offset = part.offset;
-            is_found = true;
+        const auto expanded = expand_in_rates(part.value, rate_slots(layout), ignored);
+        for (const auto& entry : expanded.value_or(RatePolynomial{})) {
+            if (!is_wrong(entry) || !whole.contains(entry.first)) continue;
+            const bool is_all = expanded->size() == 1;
+            return told(entry.first, is_all ? written(kinetic, part) : to_text(term_of(entry, layout), names),
+                        part.offset);
         }
     }
-    const int d = degree(wrong->first);
-    return {place_in(kinetic, offset),
-            fmt::format("the term {} of the kinetic energy is of degree {} in the rates",
-                        to_text(term_of(*wrong, layout), names), d),
-            d == 0 ? "what has no rate in it belongs to the potential, with the other sign" : quadratic};
+    const auto wrong = std::find_if(whole.begin(), whole.end(), is_wrong);
+    return told(wrong->first, to_text(term_of(*wrong, layout), names), 0);
 }
 
 // M from T = v'Mv/2, expanded in the rates. Throws Mistake.
@@ -215,6 +221,26 @@ void read_mass_matrix(const SystemDescription& system, const Layout& layout, con
                       fmt::format("the kinetic energy has no term in {}'^2", system.coordinates[i].name),
                       "every coordinate needs a positive inertia"};
     }
+}
+
+void check_gap(const Text& text, Expression gap, const Layout& layout) {
+    std::vector<std::uint32_t> q;
+    for (std::size_t i = 0; i < layout.n; ++i) q.push_back(layout.q(i));
+    const std::vector<Expression> slope = gradient(gap, q);
+    if (std::all_of(slope.begin(), slope.end(), [](Expression e) { return e.is_zero(); }))
+        throw Mistake{text.at, "dh = 0 everywhere: the gap does not change with any coordinate", {}};
+}
+
+// Runs what makes nodes, and tells what became too large at this text.
+template <class Make>
+void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& make) {
+    mistakes.attempt([&] {
+        try {
+            make();
+        } catch (const TooLarge& problem) {
+            throw Mistake{text.at, fmt::format("the equations of motion are too large: {}", problem.what()), {}};
+        }
+    });
 }
 
 // A restitution that no parameter changes. One that parameters change is looked at when a run starts.
@@ -291,18 +317,17 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
     equations.potential = potential.value_or(nothing);
     equations.gap = gap.value_or(nothing);
     equations.restitution = restitution.value_or(nothing);
-    if (kinetic && names.complete) mistakes.attempt([&] { read_mass_matrix(system, layout, parts, equations); });
+    if (kinetic && names.complete)
+        attempt_within_limits(mistakes, system.kinetic, [&] { read_mass_matrix(system, layout, parts, equations); });
+    if (gap && names.complete)
+        attempt_within_limits(mistakes, system.gap, [&] { check_gap(system.gap, *gap, layout); });
     if (restitution) mistakes.attempt([&] { check_restitution(system.restitution, *restitution); });
 }
 
-void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
-    const Layout layout{static_cast<std::uint32_t>(system.coordinates.size()),
-                        static_cast<std::uint32_t>(system.parameters.size())};
-    Graph graph;
-    Equations equations;
-    read_equations(system, layout, graph, names, equations, mistakes);
-    equations.hdot = equations.hddot = equations.lambda = equations.energy = graph.symbol(layout.t());  // any value
-    Reader reader(graph, names, mistakes);
+namespace {
+
+void read_pictures(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
+                   Reader& reader) {
     Scope in_drawings = drawing_scope(system, layout, graph);
     for (const DrawingDescription& drawing : system.drawings) {
         if (drawing.shape == DrawingDescription::Shape::curve && drawing.over.empty()) continue;  // its name is missing
@@ -315,6 +340,19 @@ void check_expressions(const SystemDescription& system, Names names, Mistakes& m
         reader.read(view.x, in_views);
         for (const Text& text : view.y) reader.read(text, in_views);
     }
+}
+
+}  // namespace
+
+void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
+    const Layout layout{static_cast<std::uint32_t>(system.coordinates.size()),
+                        static_cast<std::uint32_t>(system.parameters.size())};
+    Graph graph;
+    Equations equations;
+    read_equations(system, layout, graph, names, equations, mistakes);
+    equations.hdot = equations.hddot = equations.lambda = equations.energy = graph.symbol(layout.t());  // any value
+    Reader reader(graph, names, mistakes);
+    attempt_within_limits(mistakes, system.kinetic, [&] { read_pictures(system, layout, graph, equations, reader); });
 }
 
 }  // namespace achilles

@@ -25,9 +25,10 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 }  // namespace
 
-Execution::Execution(std::shared_ptr<const Model> model, const Run& run)
+Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch)
     : model_(std::move(model)),
       run_(run),
+      watch_(watch),
       flow_(*model_, run_),
       surface_(*model_, run_),
       conditions_(truncation_conditions(*model_, run_)),
@@ -335,13 +336,25 @@ void Execution::release() {
 
 // ---- steps and ends ----
 
+// Tells the watch how far the run is, and asks whether it shall go on. Once a step: every impact and every release lies
+// between two.
+bool Execution::is_cancelled() {
+    if (watch_ == nullptr) return false;
+    watch_->time.store(t_, std::memory_order_relaxed);
+    watch_->impacts.store(record_.impacts(), std::memory_order_relaxed);
+    if (!watch_->stop.stop_requested()) return false;
+    stop(Outcome::Kind::cancelled, fmt::format("cancelled at t = {:.9g}", t_));
+    return true;
+}
+
 // One step of the flow, not longer than `longest`. False if the run is over.
 bool Execution::advance(double longest) {
+    if (is_cancelled()) return false;
     if (longest <= 1e-15 * std::abs(flow_.end_time())) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;
     }
-    // Where the time stands still between two representable numbers, so may the state, for ever.
+    // Steps of the resolution of time, one after the other, round back to the same state for ever.
     const auto obstacle = stalled_ > most_stalled ? Flow::Obstacle::step_too_small : flow_.step(longest);
     if (obstacle != Flow::Obstacle::none) leave(obstacle);
     return obstacle == Flow::Obstacle::none;
@@ -350,7 +363,7 @@ bool Execution::advance(double longest) {
 // Accepts the flow's last step.
 void Execution::take(double gap) {
     record_.step(flow_, gap);
-    stalled_ = flow_.end_time() > t_ ? 0 : stalled_ + 1;
+    stalled_ = flow_.end_time() - t_ > 2.0 * ulp(t_) ? 0 : stalled_ + 1;
     t_ = flow_.end_time();
     state_ = flow_.end();
 }
