@@ -182,7 +182,7 @@ void Session::begin_document(Document document) {
         placed_.reset();
         change_system(system, Plots(system->model), system->model->default_run());
     } catch (const InputError& problem) {
-        document_.problems = {problem};
+        document_.problems = each_of(problem);
         scene_.perform(command::Show{"editor", true});
     }
 }
@@ -216,7 +216,7 @@ void Session::read_document() {
         placed_ = command::Seek{time_};
         change_system(system, plots_.carried_over(system->model), run);
     } catch (const InputError& problem) {
-        document_.problems = {problem};
+        document_.problems = each_of(problem);
     }
 }
 

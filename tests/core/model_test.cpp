@@ -236,7 +236,7 @@ TEST(BadSystems, AreToldWhatIsWrong) {
     EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"a\""),
               "the coordinate 'a' may not stand in the restitution: parameters alone");
     EXPECT_EQ(error_of(good, "(2 + sin(a))", "(sin(a) - 2)"),
-              "the mass matrix is not positive definite at the start (pivot 2 is -1.3534919379767696)");
+              "the mass matrix is not positive definite at the start (the pivot of 'b' is -1.3534919379767696)");
     EXPECT_EQ(error_of(good, "start = 0.5", "start = -0.5"), "the gap is negative at the start: h = -0.5");
     EXPECT_EQ(error_of(good, "c^4/4", "log(c)"),
               "the acceleration is not finite at the start: a function is outside its domain");
