@@ -12,7 +12,8 @@
 //
 // The engine's time is the whole of simulate(): checks, dense output, events, statistics. The certificates, which the
 // programs do not have, are measured beside it in the same round, by asking the same questions again, and subtracted;
-// both are printed. Ratios are medians of the rounds' ratios to Boost.Odeint: above 1 is faster.
+// both are printed. Times are those of the processor. Ratios are medians of the rounds' ratios to Boost.Odeint: above 1
+// is faster.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,8 +1,9 @@
 // Times and medians for the benchmark programs.
 #pragma once
 
+#include <time.h>
+
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
 namespace achilles::bench {
@@ -13,11 +14,18 @@ inline double median(std::vector<double> x) {
     return *middle;
 }
 
+// Of the processor, spent by this thread: others may be at work on the machine.
+inline double thread_seconds() {
+    timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 template <class Work>
 double seconds(const Work& work) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = thread_seconds();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return thread_seconds() - begin;
 }
 
 }  // namespace achilles::bench
