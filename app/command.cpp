@@ -187,7 +187,13 @@ Command read_pin(const Line& line) {
 template <bool shown>
 Command read_show(const Line& line) {
     line.expect_arguments(1, 1, fmt::format("write: {} editor", line.word(0).text));
-    return command::Show{line.word(1).text, shown};
+    const auto& things = command::shown_things;
+    const std::string& what = line.word(1).text;
+    if (std::find(things.begin(), things.end(), what) == things.end())
+        throw line.error(line.word(1).column,
+                         fmt::format("there is no '{}' to show{}", what, did_you_mean(what, things)),
+                         fmt::format("these can be shown: {}", fmt::join(things, ", ")));
+    return command::Show{what, shown};
 }
 
 Command read_start(const Line& line) {

@@ -83,6 +83,8 @@ struct Save {
     bool overwrite = false;  // whatever file may be there; else only the one that was opened or saved before
     friend bool operator==(const Save&, const Save&) = default;
 };
+inline const std::vector<std::string> shown_things{"controls", "editor", "events", "force",
+                                                   "lens",     "plots",  "trail",  "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force
     bool on = true;

@@ -14,8 +14,6 @@ namespace {
 
 InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
-const std::vector<std::string> things{"controls", "editor", "events", "force", "lens", "plots", "trail", "velocity"};
-
 }  // namespace
 
 void Scene::perform(const command::Look& command) {
@@ -28,6 +26,7 @@ void Scene::perform(const command::Look& command) {
 void Scene::perform(const command::LookAll&) { look_.reset(); }
 
 void Scene::perform(const command::Show& command) {
+    const auto& things = command::shown_things;
     if (std::find(things.begin(), things.end(), command.what) == things.end())
         throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
     if (command.on)
@@ -51,8 +50,9 @@ std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
-    for (const std::string& thing : things)
-        if (scene.shows(thing) != Scene().shows(thing))
+    // The editor stands in the session's text as what it does to it.
+    for (const std::string& thing : command::shown_things)
+        if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());

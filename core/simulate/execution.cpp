@@ -315,8 +315,9 @@ void Execution::leave(Obstacle obstacle) {
     stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
 }
 
-// A state that cannot be moved onto the surface.
+// A state that cannot be moved onto the surface. What led there is kept.
 void Execution::leave_contact(double t, const State& state) {
+    take(surface_.at(state));
     stop(Outcome::Kind::left_the_domain,
          fmt::format("{}, at {}", edge_of_contact(*model_, run_, state), where(t, state)));
 }

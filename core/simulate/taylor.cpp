@@ -39,7 +39,8 @@ Taylor::Taylor(const Model& model, const Run& run)
       contact_order_(best_order(model.contact_series(), tolerance_)),
       rows_((highest + 1) * width_, 0.0),
       scaled_(rows_.size(), 0.0),
-      units_(width_, 0.0) {}
+      units_(width_, 0.0),
+      end_(width_, 0.0) {}
 
 void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
     motion_ = motion;
@@ -159,7 +160,35 @@ Obstacle Taylor::do_step(double longest, double, double least) {
     const double step = std::min(longest, natural_step());
     if (!(step > least)) return Obstacle::step_too_small;
     evaluate(step);
+    stay_in_domain(step);
     return Obstacle::none;
+}
+
+// A term that hardly matters may end the domain inside a step that its series allows: sqrt(x) with a small factor. Then
+// the step goes as far as its end is defined; what ends there is found by the next one.
+void Taylor::stay_in_domain(double step) {
+    if (is_defined()) return;
+    double inside = 0.0, outside = step;
+    while (outside - inside > 1e-12 * step) {
+        const double middle = 0.5 * (inside + outside);
+        evaluate(middle);
+        (is_defined() ? inside : outside) = middle;
+    }
+    evaluate(inside);
+}
+
+// Whether the equations of motion have values where the step ends.
+bool Taylor::is_defined() {
+    SeriesEvaluator& series = motion_ == Motion::flight ? flight_ : contact_;
+    std::vector<double>& at = end_;
+    for (std::size_t i = 0; i < n_; ++i) {
+        at[i] = to_.q[static_cast<Eigen::Index>(i)];
+        at[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
+    }
+    series.begin(at.data());
+    for (std::size_t i = 0; i <= n_; ++i)
+        if (!std::isfinite(series.start(i))) return false;
+    return true;
 }
 
 Obstacle Taylor::redo_step(double duration, double least) {
@@ -187,7 +216,8 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 }
 
 // The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
-// than the last two together.
+// than the last two together. The steps before have made errors of the size of the tolerance as well, which is in units
+// of the flight's height: a dip within that can be neither claimed nor denied.
 double Taylor::remainder() const {
     double terms = 0.0, size = 0.0;
     for (int k = 0; k <= order_; ++k) {
@@ -195,7 +225,8 @@ double Taylor::remainder() const {
         size += term;
         if (k >= order_ - 1) terms += term;
     }
-    return terms + 4.0 * 0x1p-53 * size;
+    constexpr double earlier_steps = 4.0;
+    return std::max(terms + 4.0 * 0x1p-53 * size, earlier_steps / units_[2 * n_]);
 }
 
 std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {

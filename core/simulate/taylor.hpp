@@ -35,6 +35,8 @@ class Taylor : public Stepper {
     double parabola_root(double longest) const;
     double magnitude(int k) const;
     double natural_step() const;
+    void stay_in_domain(double step);
+    bool is_defined();
     void evaluate(double duration);
 
     std::size_t n_, width_;  // width: q, v, what is watched
@@ -47,6 +49,7 @@ class Taylor : public Stepper {
     std::vector<double> rows_;                                            // coefficients, order by order: q, v, watched
     std::vector<double> scaled_;                                          // the same times span^k
     std::vector<double> units_;                                           // 1/(tolerance of each component)
+    std::vector<double> end_;                                             // of the step, as the series take it
     std::array<double, SeriesEvaluator::highest_order + 1> magnitude_{};  // m_k
     int order_ = 0;                                                       // of the last expansion
     double span_ = 0.0;

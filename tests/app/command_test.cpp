@@ -83,7 +83,7 @@ struct Mistake {
 TEST(Journal, names_the_place_of_a_mistake) {
     const Mistake mistakes[] = {{"save", 5, "needs more"},
                                 {"save a b", 8, "save FILE overwrite"},
-                                {"show controls", 6, "there is no panel 'controls'"},
+                                {"show contrls", 6, "did you mean 'controls'"},
                                 {"text a b", 8, "'b' is too much"},
                                 {"new file", 5, "'file' is too much"},
                                 {"  seeek 3", 3, "did you mean 'seek'"},

@@ -99,10 +99,12 @@ TEST(Session, plays_to_the_end_or_round_and_round) {
     session.apply(command::Play{});
     play_on(session, 1.5);
     EXPECT_EQ(session.time(), 1.5);
+    session.apply(command::Loop{true});
     session.apply(command::Seek{19.5});
     play_on(session, 1.0);
     EXPECT_TRUE(session.playing());
     EXPECT_EQ(session.time(), 0.0);
+    session.apply(command::Loop{false});
     session.apply(command::Seek{19.5});
     play_on(session, 1.0);
     EXPECT_FALSE(session.playing());

@@ -249,7 +249,7 @@ TEST(Description, hostile_files_end_in_a_message) {
     }
     EXPECT_EQ(message_of(lines + "]\n" + title + least), "");
     EXPECT_EQ(message_of(one_line + "]\n" + title + least), "");
-    EXPECT_EQ(message_of(one_line + "]\ntitle = 1").substr(0, 10), "f.toml:2:9");
+    EXPECT_NE(message_of(one_line + "]\ntitle = 1").find("f.toml:2:9"), std::string::npos);
     EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: it is larger than 4 MB");
     // Every prefix of a good file is either good or a message.
     for (std::size_t size = 0; size < least.size(); ++size) message_of(least.substr(0, size));

@@ -67,8 +67,9 @@ const Edge edges[] = {
     // x = 1 - t^2/2 meets h = x^3 at its flat zero
     {"flat_contact", "1.0", "0.0", "x'^2/2", "x", "x^3", left,
      "dh = 0 where contact happens: the normal is not defined, at t = ", std::sqrt(2.0)},
-    {"touching_contact", "1.0", "0.0", "x'^2/2", "x", "x^2", left,
-     "dh = 0 where contact happens: the normal is not defined, at t = ", std::sqrt(2.0)},
+    // and h = x^2 only touches: no number of digits tells whether there is an impact
+    {"touching_contact", "1.0", "0.0", "x'^2/2", "x", "x^2", Outcome::Kind::undecided,
+     "the gap comes closer to zero than the integration knows it", std::sqrt(2.0)},
 };
 
 INSTANTIATE_TEST_SUITE_P(Domain, Edges, testing::ValuesIn(edges), [](const auto& edge) { return edge.param.name; });

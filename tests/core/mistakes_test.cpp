@@ -190,7 +190,8 @@ const Change in_values[] = {
      "f.toml:21:15: 'max_impacts' in [run] must be a whole number up to 2147483647\n    max_impacts = 1.5\n            "
      "      ^"},
     {"end_time = 5", "max_steps = 9999999999",
-     "f.toml:21:13: 'max_steps' in [run] must be a whole number up to 2147483647\n    max_steps = 9999999999\n            "
+     "f.toml:21:13: 'max_steps' in [run] must be a whole number up to 2147483647\n    max_steps = 9999999999\n         "
+     "   "
      "    ^"},
     {"end_time = 5", "max_impacts = 0",
      "f.toml:21:15: 'max_impacts' in [run] must be positive, not 0\n    max_impacts = 0\n                  ^"},
@@ -483,7 +484,8 @@ TEST(OneMistake, DoesNotBringOthers) {
     only("name = \"theta\"", "name = \"thteta\"", "unknown name theta'; did you mean thteta'?");
     only("name = \"theta\"", "naem = \"theta\"", "unknown key 'naem' in [[coordinate]]; did you mean 'name'?");
     only("name = \"m\"", "name = \"1m\"", "'1m' is not a name");
-    only("[[parameter]]\nname = \"m\"", "[[constant]]\nname = \"m\"", "unknown key 'constant' in a system file");
+    only("[[parameter]]\nname = \"m\"", "[[constant]]\nname = \"m\"",
+         "unknown key 'constant' in a system file; did you mean 'constraint'?");
     only("[lagrangian]", "[Lagrangian]", "unknown key 'Lagrangian' in a system file; did you mean 'lagrangian'?");
     only("over = ", "ovr = ", "unknown key 'ovr' in [[drawing]] of shape curve; did you mean 'over'?");
     only("(x'^2 + ", "(xx^x + ", "unknown name 'xx'; did you mean 'x'?");  // no word of the exponent

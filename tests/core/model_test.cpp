@@ -248,7 +248,7 @@ TEST(BadSystems, AreToldWhatIsWrong) {
     EXPECT_EQ(error_of(good, "b + a^2*c/3 + 1/4*sin(c)", "1 + sin(a)^2 + cos(a)^2"),
               "dh = 0 everywhere: the gap does not change with any coordinate");
     EXPECT_EQ(error_of(good, " + exp(b)*c'^2", " - (3 + c^2)*(c' - k*a')*(c' - k*a')/2"),
-              "the mass matrix is positive definite nowhere: pivot 3 is 0");
+              "the kinetic energy has no term in c'^2");
     EXPECT_EQ(error_of(good, "value = 0.7", "value = 0.5"), "no error");
 }
 
@@ -258,7 +258,7 @@ TEST(BadSystems, IndefiniteMassesAreToldEvenWhereTheyCancel) {
                        "- k*a')/2 + exp(b)*c'^2\"",
                        "kinetic = \"a'^2 - b'^2 + c'^2\"")
                   .substr(0, 60),
-              "the mass matrix is not positive definite at the start (pivot");
+              "the mass matrix is not positive definite at the start (the p");
     std::string text = odd_system;
     const std::size_t gap = text.find("b + a^2*c/3 + 1/4*sin(c)");
     text.replace(gap, 24, "a + b + 1");

@@ -18,7 +18,8 @@ Event& first(Trajectory& trajectory, Event::Kind kind) {
     throw std::logic_error("no such event");
 }
 
-// The constant coefficient of coordinate or rate i in the piece after the first impact.
+// Coefficient number i of the piece after the first impact: of x, y, x', y' first the constant ones, then the linear
+// ones.
 double& coefficient(Trajectory& trajectory, std::size_t i) {
     const double t = trajectory.events.front().t;
     for (const Piece& piece : trajectory.pieces)
@@ -33,7 +34,7 @@ TEST(Lies, TheTruthViolatesNothing) {
 
 TEST(Lies, Energy) {
     Trajectory fast = truth();
-    coefficient(fast, 2) += 1e-6;
+    coefficient(fast, 4 + 2) += 1e-6;  // a rate that grows
     EXPECT_FALSE(energy(fast).empty());
     Trajectory lively = truth();
     first(lively, Event::Kind::impact).v_after[1] += 1e-12;
