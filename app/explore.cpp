@@ -157,7 +157,7 @@ int explore(const ExploreOptions& options) {
         session.update();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (session.playing())
-            play_on(session, clock.elapsed(), state.loop);
+            play_on(session, clock.elapsed());
         else
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);

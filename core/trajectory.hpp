@@ -96,6 +96,7 @@ struct Outcome {
     enum class Kind {
         end_time,
         too_many_impacts,
+        too_many_steps,
         not_a_number,
         left_the_domain,
         step_too_small,

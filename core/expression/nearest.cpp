@@ -23,26 +23,46 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return d[a.size()][b.size()];
 }
 
+std::string lower(std::string_view word) {
+    std::string result(word);
+    for (char& c : result)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return result;
+}
+
 }  // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    if (word.size() > 100) return {};  // nobody's misspelling
+    constexpr std::size_t longest = 100;  // nobody's misspelling
+    constexpr std::size_t least_beginning = 3;
+    if (word.size() > longest) return {};
+    const std::string small = lower(word);
     std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-    std::string best;
+    std::string best, begun;
+    int beginnings = 0;
     for (const std::string& candidate : candidates) {
-        if (candidate.size() > 100) continue;
-        const std::size_t edits = distance(word, candidate);
-        if (edits < least && edits < std::max(word.size(), candidate.size())) {
+        if (candidate.size() > longest || candidate == word) continue;
+        const std::string other = lower(candidate);
+        const std::size_t edits = distance(small, other);
+        if (edits < least && edits < std::max(small.size(), other.size())) {
             least = edits;
             best = candidate;
         }
+        if (small.size() >= least_beginning && other.starts_with(small)) {
+            begun = candidate;
+            ++beginnings;
+        }
     }
-    return best;
+    return best.empty() && beginnings == 1 ? begun : best;
+}
+
+std::string in_quotes(std::string_view name) {
+    return name.ends_with('\'') ? std::string(name) : "'" + std::string(name) + "'";
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
     const std::string best = nearest(word, candidates);
-    return best.empty() ? "" : "; did you mean '" + best + "'?";
+    return best.empty() ? "" : "; did you mean " + in_quotes(best) + "?";
 }
 
 }  // namespace achilles

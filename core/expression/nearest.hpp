@@ -8,8 +8,12 @@
 namespace achilles {
 
 // The candidate nearest to `word` in edit distance (insert, delete, replace, swap of neighbours), or "" if none is near
-// enough to be a likely misspelling: at most one edit for words up to 3 letters, a third of the length beyond.
+// enough to be a likely misspelling: at most one edit for words up to 3 letters, a third of the length beyond. Capital
+// letters count as small ones. Where no candidate is near, the only one that begins with the word (3 letters or more).
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
+
+// A name as messages show it: 'x', but x' without quotes, which look like primes.
+std::string in_quotes(std::string_view name);
 
 // "; did you mean 'x'?" or "".
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);

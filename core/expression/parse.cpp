@@ -23,21 +23,20 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 // One character as a person sees it: a whole UTF-8 sequence, or a code for what cannot be printed.
 std::string shown(std::string_view rest) {
     const auto byte = static_cast<unsigned char>(rest.front());
     if (byte < 0x20 || byte == 0x7f) return "a control character";
-    if (byte < 0x80) return quoted(rest.substr(0, 1));
+    if (byte < 0x80) return in_quotes(rest.substr(0, 1));
     std::size_t length = 1;
     while (length < rest.size() && (static_cast<unsigned char>(rest[length]) & 0xC0) == 0x80 && length < 4) ++length;
-    return quoted(rest.substr(0, length));
+    return in_quotes(rest.substr(0, length));
 }
 
 class Parser {
  public:
-    Parser(std::string_view text, const Scope& scope, Graph& graph) : text_(text), scope_(scope), graph_(graph) {}
+    Parser(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts)
+        : text_(text), scope_(scope), graph_(graph), parts_(parts) {}
 
     std::size_t at() const { return at_; }  // how far it was read
 
@@ -87,7 +86,25 @@ class Parser {
         }
     }
 
+    // One term of a sum.
     Expression product() {
+        const std::size_t begin = at_;
+        const Expression term = factors();
+        if (parts_ != nullptr && depth_ == 0) parts_->terms.push_back(part(begin, term));
+        return noted(begin, term);
+    }
+
+    TextPart part(std::size_t begin, Expression value) const {
+        const std::size_t last = text_.find_last_not_of(" \t\r\n", at_ - 1);
+        return {begin, last + 1 - begin, value};
+    }
+
+    Expression noted(std::size_t begin, Expression value) {
+        if (parts_ != nullptr) parts_->all.push_back(part(begin, value));
+        return value;
+    }
+
+    Expression factors() {
         Expression left = signed_factor();
         for (;;) {
             const std::size_t where = at_;
@@ -109,10 +126,11 @@ class Parser {
         const Level level(*this);
         if (take('-')) return -signed_factor();
         if (take('+')) return signed_factor();
-        const Expression base = atom();
+        const std::size_t begin = at_;
+        const Expression base = noted(begin, atom());
         const std::size_t where = at_;
         if (!take('^')) return base;
-        return raise(base, signed_factor(), where);  // 2^3^2 = 2^(3^2)
+        return noted(begin, raise(base, signed_factor(), where));  // 2^3^2 = 2^(3^2)
     }
 
     Expression raise(Expression base, Expression exponent, std::size_t where) {
@@ -193,21 +211,21 @@ class Parser {
         if (full == "pi") return graph_.pi();
         const auto found = scope_.allowed.find(full);
         if (found != scope_.allowed.end()) {
-            if (peek() == '(') throw ParseError(begin, quoted(full) + " is not a function; write '*' for a product");
+            if (peek() == '(') throw ParseError(begin, in_quotes(full) + " is not a function; write '*' for a product");
             return found->second;
         }
         const auto reason = scope_.forbidden.find(full);
-        if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second);
+        if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second, full);
         fail_at_unknown(begin, bare, full);
     }
 
     Expression call(std::string_view word, Operation function, std::size_t begin) {
         const std::size_t open = at_;
         if (!take('('))
-            throw ParseError(begin,
-                             "the function " + quoted(word) + " needs parentheses: " + std::string(word) + "(...)");
+            throw ParseError(
+                begin, "the function " + in_quotes(word) + " needs parentheses: " + std::string(word) + "(...)", word);
         const Expression argument = sum();
-        if (peek() == ',') throw ParseError(at_, "the function " + quoted(word) + " takes one argument");
+        if (peek() == ',') throw ParseError(at_, "the function " + in_quotes(word) + " takes one argument");
         close(open);
         return apply(function, argument);
     }
@@ -216,29 +234,31 @@ class Parser {
         if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
             throw ParseError(
                 begin,
-                quoted(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives");
+                in_quotes(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
+                bare);
         std::vector<std::string> known;
         for (const auto& [word, function] : functions) known.emplace_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
             const std::string hint = bare == "ln" ? "; did you mean 'log'?" : did_you_mean(bare, known);
-            throw ParseError(begin, "unknown function " + quoted(full) + hint);
+            throw ParseError(begin, "unknown function " + in_quotes(full) + hint);
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
-        throw ParseError(begin, "unknown name " + quoted(full) + did_you_mean(full, known));
+        throw ParseError(begin, "unknown name " + in_quotes(full) + did_you_mean(full, known), full);
     }
 
     std::string_view text_;
     const Scope& scope_;
     Graph& graph_;
+    TextParts* parts_;
     std::size_t at_ = 0;
     int depth_ = 0;
 };
 
 }  // namespace
 
-Expression parse(std::string_view text, const Scope& scope, Graph& graph) {
-    Parser parser(text, scope, graph);
+Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts) {
+    Parser parser(text, scope, graph, parts);
     try {
         return parser.whole();
     } catch (const TooLarge& problem) {

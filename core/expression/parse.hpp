@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "expression/expression.hpp"
 
@@ -20,12 +21,25 @@ struct Scope {
 
 // What is wrong, and where: `offset` counts bytes from the start of the text.
 struct ParseError : std::runtime_error {
-    ParseError(std::size_t where, const std::string& message) : std::runtime_error(message), offset(where) {}
+    ParseError(std::size_t where, const std::string& message, std::string_view the_name = {})
+        : std::runtime_error(message), offset(where), name(the_name) {}
     std::size_t offset;
+    std::string name;  // primes included, where a name is unknown or may not stand here; else empty
 };
 
-// Reads one expression. Throws ParseError with a message that names the offender and the nearest allowed name.
-Expression parse(std::string_view text, const Scope& scope, Graph& graph);
+// Where the parts of a text stand.
+struct TextPart {
+    std::size_t offset, size;  // in bytes
+    Expression value;
+};
+struct TextParts {
+    std::vector<TextPart> terms;  // of the outermost sum or difference, without their signs
+    std::vector<TextPart> all;    // every term, factor, base and exponent, in the order in which they end
+};
+
+// Reads one expression, and where its parts stand if `parts` is given. Throws ParseError with a message that names the
+// offender and the nearest allowed name.
+Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts = nullptr);
 
 // Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy.
 bool is_reserved(std::string_view name);

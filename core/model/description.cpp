@@ -7,11 +7,13 @@
 #include <climits>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "model/fields.hpp"
 #include "model/input_error.hpp"
+#include "model/read_expressions.hpp"
 
 namespace achilles {
 
@@ -33,156 +35,218 @@ std::optional<double> plain_number(std::string_view text) {
     return value;
 }
 
+// Of what no line can be blamed for.
+Mistake missing(const std::string& part) {
+    return {{1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples", false};
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 // The slider's default: 0 to twice the value, -1 to 1 at 0 (INTERFACE section 5).
 std::array<double, 2> range_around(double value) {
     if (value == 0.0) return {-1.0, 1.0};
     return {std::min(0.0, 2.0 * value), std::max(0.0, 2.0 * value)};
 }
 
-// A name that nothing else has. Throws InputError.
-Text read_name(const SystemDescription& system, const Fields& fields) {
+// A file while it is read.
+struct Reading {
+    SystemDescription& system;
+    const TomlValue& root;
+    Mistakes& mistakes;
+    Names names;  // of the coordinates and parameters, whatever else is wrong with these
+};
+
+// A name that nothing else has. Throws Mistake.
+Text read_name(Names& names, const Fields& fields) {
+    const bool was_complete = std::exchange(names.complete, false);  // until this one is known
     const Text name = fields.string("name");
-    if (!is_name(name.text)) {
-        throw fields.error(name.at, fmt::format("'{}' is not a name", shown(name.text)),
-                           "a name is a letter, then letters, digits and underscores");
-    }
+    if (!is_name(name.text))
+        throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
+                      "a name is a letter, then letters, digits and underscores"};
     if (is_reserved(name.text)) {
-        throw fields.error(name.at, fmt::format("the name '{}' is reserved", name.text),
-                           "functions, t, pi, gap, lambda and energy keep their meaning: choose another name");
+        names.complete = was_complete;
+        names.excused.insert(name.text);
+        throw Mistake{name.at, fmt::format("the name '{}' is reserved", name.text),
+                      "functions, t, pi, gap, lambda and energy keep their meaning: choose another name"};
     }
-    const auto refuse_twice = [&](const auto& others) {
-        for (const auto& other : others) {
-            if (other.name != name.text) continue;
-            throw fields.error(name.at, fmt::format("the name '{}' is used twice", shown(name.text)));
-        }
-    };
-    refuse_twice(system.coordinates);
-    refuse_twice(system.parameters);
+    const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
+    if (!is_new)
+        throw Mistake{name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
+                      fmt::format("it is the name at line {} already", other->second.line)};
+    names.complete = was_complete;
     return name;
 }
 
-void read_coordinates(SystemDescription& system, const TomlValue& root) {
-    for (const Fields& fields : tables(system, root, "coordinate")) {
-        fields.allow({"name", "start", "rate", "unit", "range", "rate_range"});
-        const Text name = read_name(system, fields);
-        if (system.coordinates.size() == max_coordinates) {
-            throw fields.error(name.at, fmt::format("more than {} coordinates", max_coordinates));
-        }
+// The tables of coordinates or parameters: where they cannot be had, neither can their names.
+std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
+    const std::size_t before = reading.mistakes.count();
+    std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
+    if (reading.mistakes.count() > before) reading.names.complete = false;
+    return list;
+}
+
+void read_coordinates(Reading& reading, const Fields& root) {
+    root.need("coordinate", missing("[[coordinate]]: a system needs at least one"));
+    const std::size_t before = reading.mistakes.count();
+    for (Fields& fields : named_tables(reading, "coordinate")) {
+        Mistakes& mistakes = reading.mistakes;
+        fields.allow({"name", "start", "rate", "unit", "range", "rate_range"}, mistakes);
         CoordinateDescription coordinate;
-        coordinate.name = name.text;
-        coordinate.at = name.at;
-        const auto place = [&](const char* key) { return fields.find(key) ? fields.need(key).at : name.at; };
-        coordinate.start = fields.number_or("start", 0.0);
+        const bool is_named = mistakes.attempt([&] {
+            const Text name = read_name(reading.names, fields);
+            coordinate.name = name.text;
+            coordinate.at = name.at;
+        });
+        const auto place = [&](const char* key) { return fields.find(key) ? fields.find(key)->at : coordinate.at; };
         coordinate.start_at = place("start");
-        coordinate.rate = fields.number_or("rate", 0.0);
         coordinate.rate_at = place("rate");
-        coordinate.unit = fields.string_or("unit", "");
-        coordinate.range = fields.range_or("range", range_around(coordinate.start));
-        coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate));
-        system.coordinates.push_back(coordinate);
-    }
-}
-
-void read_parameters(SystemDescription& system, const TomlValue& root) {
-    for (const Fields& fields : tables(system, root, "parameter")) {
-        fields.allow({"name", "value", "unit", "about", "range"});
-        const Text name = read_name(system, fields);
-        ParameterDescription parameter;
-        parameter.name = name.text;
-        parameter.value = fields.number("value");
-        parameter.at = fields.need("value").at;
-        parameter.unit = fields.string_or("unit", "");
-        parameter.about = fields.string_or("about", "");
-        const bool restitution = system.restitution.text == name.text;
-        parameter.range = fields.range_or("range", restitution ? std::array{0.0, 1.0} : range_around(parameter.value));
-        system.parameters.push_back(parameter);
-    }
-}
-
-void read_constraint(SystemDescription& system, const std::vector<Fields>& constraints) {
-    if (constraints.size() > 1) {
-        throw constraints[1].error(constraints[1].table().at, "more than one [[constraint]]",
-                                   "Achilles simulates systems with exactly one unilateral constraint");
-    }
-    const Fields& fields = constraints[0];
-    fields.allow({"gap", "restitution"});
-    system.gap = fields.expression("gap");
-    system.restitution = fields.expression("restitution");
-    const std::optional<double> e = plain_number(system.restitution.text);
-    if (e && !(*e >= 0.0 && *e <= 1.0)) {
-        throw fields.error(system.restitution.at,
-                           fmt::format("restitution must be in [0, 1], not {}", shown(system.restitution.text)),
-                           "0 is plastic, 1 is elastic");
-    }
-}
-
-void read_run(Options& options, const Fields& fields) {
-    fields.allow({"end_time", "tolerance", "method", "max_impacts"});
-    if (fields.find("end_time")) options.end_time = fields.positive("end_time");
-    if (fields.find("tolerance")) options.tolerance = fields.positive("tolerance");
-    if (const TomlValue* most = fields.find("max_impacts")) {
-        const double impacts = fields.positive("max_impacts");
-        if (!most->integer || impacts > INT_MAX) {
-            throw fields.error(most->at,
-                               fmt::format("'max_impacts' in [run] must be a whole number up to {}", INT_MAX));
+        mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0); });
+        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0); });
+        mistakes.attempt([&] { coordinate.unit = fields.string_or("unit", ""); });
+        mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start)); });
+        mistakes.attempt([&] { coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate)); });
+        if (!is_named) continue;
+        if (reading.system.coordinates.size() == max_coordinates) {
+            mistakes.add({coordinate.at, fmt::format("more than {} coordinates", max_coordinates), {}});
+            reading.names.complete = false;
+            return;
         }
-        options.max_impacts = static_cast<int>(impacts);
+        reading.system.coordinates.push_back(coordinate);
+    }
+    if (reading.system.coordinates.empty() && reading.mistakes.count() == before)  // coordinate = []
+        throw missing("[[coordinate]]: a system needs at least one");
+}
+
+void read_parameters(Reading& reading) {
+    for (Fields& fields : named_tables(reading, "parameter")) {
+        Mistakes& mistakes = reading.mistakes;
+        fields.allow({"name", "value", "unit", "about", "range"}, mistakes);
+        ParameterDescription parameter;
+        const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
+        mistakes.attempt([&] {
+            parameter.value = fields.number("value");
+            parameter.at = fields.need("value").at;
+        });
+        mistakes.attempt([&] { parameter.unit = fields.string_or("unit", ""); });
+        mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
+        const bool is_restitution = reading.system.restitution.text == parameter.name;
+        const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
+        mistakes.attempt([&] { parameter.range = fields.range_or("range", usual); });
+        if (is_named) reading.system.parameters.push_back(parameter);
     }
 }
 
-// Reads one of a few names. Throws InputError with the nearest.
+void read_lagrangian(Reading& reading, const Fields& root) {
+    root.need("lagrangian", missing("[lagrangian]"));
+    Fields fields(*root.find("lagrangian"), "[lagrangian]");
+    fields.allow({"kinetic", "potential"}, reading.mistakes);
+    reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
+    reading.mistakes.attempt([&] { reading.system.potential = fields.expression("potential"); });
+}
+
+void read_constraint(Reading& reading, const Fields& root) {
+    root.need("constraint", missing("[[constraint]]"));
+    const std::size_t before = reading.mistakes.count();
+    std::vector<Fields> constraints = tables(reading.root, "constraint", reading.mistakes);
+    if (constraints.empty() && reading.mistakes.count() == before) throw missing("[[constraint]]");  // constraint = []
+    if (constraints.empty()) return;
+    if (constraints.size() > 1)
+        reading.mistakes.add({constraints[1].table().at, "more than one [[constraint]]",
+                              "Achilles simulates systems with exactly one unilateral constraint"});
+    Fields& fields = constraints[0];
+    fields.allow({"gap", "restitution"}, reading.mistakes);
+    reading.mistakes.attempt([&] { reading.system.gap = fields.expression("gap"); });
+    reading.mistakes.attempt([&] { reading.system.restitution = fields.expression("restitution"); });
+}
+
+int read_count(const Fields& fields, const std::string& key) {
+    const double count = fields.positive(key);
+    const TomlValue& most = fields.need(key);
+    if (!most.integer || count > INT_MAX)
+        throw Mistake{most.at, fmt::format("'{}' in [run] must be a whole number up to {}", key, INT_MAX), {}};
+    return static_cast<int>(count);
+}
+
+// Reads one of a few names. Throws Mistake with the nearest.
 template <class Value>
 void read_choice(Value& value, const Fields& fields, const std::string& key, const std::vector<std::string>& names,
                  std::optional<Value> (*from)(std::string_view)) {
-    if (!fields.find(key)) return;
     const Text text = fields.string(key);
     const std::optional<Value> found = from(text.text);
     if (!found) {
-        throw fields.error(text.at,
-                           fmt::format("unknown {} '{}'{}", key, shown(text.text), did_you_mean(text.text, names)),
-                           fmt::format("known: {}", listed(names)));
+        throw Mistake{text.at, fmt::format("unknown {} '{}'{}", key, shown(text.text), did_you_mean(text.text, names)),
+                      fmt::format("known: {}", listed(names))};
     }
     value = *found;
 }
 
-void read_options(SystemDescription& system, const Fields& root) {
-    Options& options = system.options;
-    if (const TomlValue* run = root.find("run")) {
-        const Fields fields(system, *run, "[run]");
-        read_run(options, fields);
+// [run] or [truncation]: every key has a default.
+class OptionalFields {
+ public:
+    OptionalFields(const TomlValue& table, const std::string& where, const std::vector<std::string>& keys,
+                   Mistakes& mistakes)
+        : fields_(table, where), mistakes_(mistakes) {
+        fields_.allow(keys, mistakes_);
+    }
+    // Where the key is there: read(fields), which may throw Mistake.
+    template <class Read>
+    void at(const char* key, const Read& read) {
+        if (fields_.find(key)) mistakes_.attempt([&] { read(fields_); });
+    }
+    void positive(const char* key, double& value) {
+        at(key, [&](const Fields& fields) { value = fields.positive(key); });
+    }
+
+ private:
+    Fields fields_;
+    Mistakes& mistakes_;
+};
+
+void read_run(const TomlValue& table, Options& options, Mistakes& mistakes) {
+    OptionalFields run(table, "[run]", {"end_time", "tolerance", "method", "max_impacts", "max_steps"}, mistakes);
+    run.positive("end_time", options.end_time);
+    run.positive("tolerance", options.tolerance);
+    run.at("method", [&](const Fields& fields) {
         read_choice(options.method, fields, "method", {"taylor", "dopri5"}, method_from);
-    }
-    if (const TomlValue* truncation = root.find("truncation")) {
-        const Fields fields(system, *truncation, "[truncation]");
-        fields.allow({"eps_q", "eps_v", "eps_t", "conditions", "reinitialization"});
-        if (fields.find("eps_q")) options.truncation.eps_q = fields.positive("eps_q");
-        if (fields.find("eps_v")) options.truncation.eps_v = fields.positive("eps_v");
-        if (fields.find("eps_t")) options.truncation.eps_t = fields.positive("eps_t");
-        read_choice(options.truncation.conditions, fields, "conditions", {"sharp", "paper"}, conditions_from);
-        read_choice(options.truncation.reinitialization, fields, "reinitialization", {"kinetic", "euclidean"},
-                    reinitialization_from);
-    }
+    });
+    run.at("max_impacts", [&](const Fields& fields) { options.max_impacts = read_count(fields, "max_impacts"); });
+    run.at("max_steps", [&](const Fields& fields) { options.max_steps = read_count(fields, "max_steps"); });
 }
 
-void read_pictures(SystemDescription& system, const TomlValue& root) {
-    for (const Fields& fields : tables(system, root, "drawing")) {
-        system.drawings.push_back(read_drawing(system, fields));
-    }
+void read_truncation(const TomlValue& table, Truncation& truncation, Mistakes& mistakes) {
+    OptionalFields fields(table, "[truncation]", {"eps_q", "eps_v", "eps_t", "conditions", "reinitialization"},
+                          mistakes);
+    fields.positive("eps_q", truncation.eps_q);
+    fields.positive("eps_v", truncation.eps_v);
+    fields.positive("eps_t", truncation.eps_t);
+    fields.at("conditions", [&](const Fields& text) {
+        read_choice(truncation.conditions, text, "conditions", {"sharp", "paper"}, conditions_from);
+    });
+    fields.at("reinitialization", [&](const Fields& text) {
+        read_choice(truncation.reinitialization, text, "reinitialization", {"kinetic", "euclidean"},
+                    reinitialization_from);
+    });
+}
+
+void read_pictures(Reading& reading) {
+    SystemDescription& system = reading.system;
+    Mistakes& mistakes = reading.mistakes;
+    for (const Fields& fields : tables(reading.root, "drawing", mistakes))
+        mistakes.attempt([&] { system.drawings.push_back(read_drawing(system, fields, mistakes)); });
     std::set<std::string> names;
-    for (const Fields& fields : tables(system, root, "view")) {
-        system.views.push_back(read_view(fields));
-        if (!names.insert(system.views.back().name).second) {
-            const Text name = fields.string("name");
-            throw fields.error(name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
-                               "each [[view]] needs a name of its own");
-        }
+    for (Fields& fields : tables(reading.root, "view", mistakes)) {
+        mistakes.attempt([&] {
+            const ViewDescription view = read_view(fields, mistakes);
+            system.views.push_back(view);
+            if (view.name.empty() || names.insert(view.name).second) return;
+            const Location at = fields.find("name") ? fields.string("name").at : fields.table().at;
+            throw Mistake{at, fmt::format("the name '{}' is used twice", shown(view.name)),
+                          "each [[view]] needs a name of its own"};
+        });
     }
     if (system.views.empty()) system.views = default_views(system);
-}
-
-// A part that no place in the file can be blamed for.
-InputError missing(const SystemDescription& system, const std::string& part) {
-    return {system.file, {1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples"};
 }
 
 }  // namespace
@@ -198,27 +262,30 @@ SystemDescription parse_system(std::string text, std::string name) {
     system.file = std::move(name);
     system.source_text = std::move(text);
     const TomlValue root = read_toml(system.source_text, system.file);
-    const Fields fields(system, root, "a system file");
-    fields.allow({"title", "source", "coordinate", "parameter", "lagrangian", "constraint", "run", "truncation",
-                  "drawing", "view", "extra"});
-    system.source = fields.string_or("source", "");
-    if (fields.find("title")) system.title = fields.string("title").text;
-
-    read_coordinates(system, root);
-    if (system.coordinates.empty()) throw missing(system, "[[coordinate]]: a system needs at least one");
-    const TomlValue* lagrangian = fields.find("lagrangian");
-    if (!lagrangian) throw missing(system, "[lagrangian]");
-    const Fields energies(system, *lagrangian, "[lagrangian]");
-    energies.allow({"kinetic", "potential"});
-    system.kinetic = energies.expression("kinetic");
-    system.potential = energies.expression("potential");
-    const std::vector<Fields> constraints = tables(system, root, "constraint");
-    if (constraints.empty()) throw missing(system, "[[constraint]]");
-    read_constraint(system, constraints);
-    read_parameters(system, root);  // after the constraint: the restitution's slider has a range of its own
-    read_options(system, fields);
-    read_pictures(system, root);
-    if (!fields.find("title")) throw missing(system, "title");
+    Mistakes mistakes;
+    Reading reading{system, root, mistakes, {}};
+    Fields fields(root, "a system file");
+    const std::vector<std::string> keys{"title", "source", "coordinate", "parameter",  "lagrangian", "constraint",
+                                        "run",   "view",   "drawing",    "truncation", "extra"};
+    fields.allow(keys, mistakes);
+    for (const TomlEntry& entry : root.entries)  // an unknown table may hold names
+        if (entry.value.kind == TomlValue::Kind::array || entry.value.kind == TomlValue::Kind::table)
+            reading.names.complete = reading.names.complete && contains(keys, entry.key);
+    mistakes.attempt([&] {
+        fields.need("title", missing("title"));
+        system.title = fields.string("title").text;
+    });
+    mistakes.attempt([&] { system.source = fields.string_or("source", ""); });
+    mistakes.attempt([&] { read_coordinates(reading, fields); });
+    mistakes.attempt([&] { read_lagrangian(reading, fields); });
+    mistakes.attempt([&] { read_constraint(reading, fields); });
+    read_parameters(reading);  // after the constraint: the restitution's slider has a range of its own
+    if (const TomlValue* run = fields.find("run")) mistakes.attempt([&] { read_run(*run, system.options, mistakes); });
+    if (const TomlValue* truncation = fields.find("truncation"))
+        mistakes.attempt([&] { read_truncation(*truncation, system.options.truncation, mistakes); });
+    read_pictures(reading);
+    check_expressions(system, reading.names, mistakes);
+    mistakes.raise(system);
     return system;
 }
 

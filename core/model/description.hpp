@@ -26,7 +26,23 @@ struct InputError : std::runtime_error {
     InputError(std::string file, Location at, std::string message, std::string hint = {}, const std::string& line = {});
     std::string file, message, hint;  // hint: what would be right; may be empty
     Location at;
+
+ protected:
+    // One that stands for several: the first of them, but for what() a text of its own.
+    InputError(const InputError& first, const std::string& told);
 };
+
+// The mistakes of one file, in order of position. Caught as an InputError it is the first of them; what() tells all,
+// each as it would be told alone, with an empty line between them and a last line "and N more" where there are more.
+struct InputErrors : InputError {
+    // `all`: at least one, in order; `more`: how many others there are.
+    explicit InputErrors(std::vector<InputError> all, std::size_t more = 0);
+    std::vector<InputError> all;  // at most ten, each with its line and column
+    std::size_t more;
+};
+
+// What an error consists of: the mistakes of an InputErrors, or itself.
+std::vector<InputError> each_of(const InputError& error);
 
 // An expression (or a number) as written. `at` is the place of its first character.
 struct Text {
@@ -93,7 +109,8 @@ inline constexpr std::size_t largest_file = std::size_t{4} << 20;
 // The text of a system file. Throws InputError if there is none to read. Of a file that is too large it is only so much
 // that parse_system will say so.
 std::string read_text(const std::filesystem::path& file);
-// Reads a file. Throws InputError.
+// Reads a file, and all its expressions to see whether they can be. Throws InputError where there is nothing to read
+// (no file, no TOML), else InputErrors: all mistakes.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.
 SystemDescription parse_system(std::string text, std::string name = "<text>");

@@ -10,19 +10,18 @@
 
 namespace achilles {
 
-Fields::Fields(const SystemDescription& system, const TomlValue& table, std::string where)
-    : system_(system), table_(table), where_(std::move(where)) {
-    if (table.kind != TomlValue::Kind::table) {
-        throw error(table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)));
-    }
+Fields::Fields(const TomlValue& table, std::string where) : table_(table), where_(std::move(where)) {
+    if (table.kind != TomlValue::Kind::table)
+        throw Mistake{table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)), {}};
 }
 
-void Fields::allow(const std::vector<std::string>& keys) const {
+void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
     for (const TomlEntry& entry : table_.entries) {
         if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
-        throw error(entry.at,
-                    fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, did_you_mean(entry.key, keys)),
-                    fmt::format("known here: {}", listed(keys)));
+        misspelt_.push_back(nearest(entry.key, keys));
+        mistakes.add({entry.at,
+                      fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, did_you_mean(entry.key, keys)),
+                      fmt::format("known here: {}", listed(keys))});
     }
 }
 
@@ -34,8 +33,14 @@ const TomlValue* Fields::find(std::string_view key) const {
 }
 
 const TomlValue& Fields::need(std::string_view key) const {
-    if (const TomlValue* value = find(key)) return *value;
-    throw error(table_.at, fmt::format("missing key '{}' in {}", key, where_));
+    need(key, {table_.at, fmt::format("missing key '{}' in {}", key, where_), {}});
+    return *find(key);
+}
+
+void Fields::need(std::string_view key, const Mistake& otherwise) const {
+    if (find(key)) return;
+    if (std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end()) throw AlreadyTold{};
+    throw otherwise;
 }
 
 Text Fields::string(std::string_view key) const {
@@ -48,7 +53,7 @@ double Fields::number(std::string_view key) const {
     const TomlValue& value = need(key);
     if (value.kind != TomlValue::Kind::number) throw wrong_type(key, value, "a number");
     if (!std::isfinite(value.number)) {
-        throw error(value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text));
+        throw Mistake{value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text), {}};
     }
     return value.number;
 }
@@ -57,7 +62,7 @@ double Fields::positive(std::string_view key) const {
     const double x = number(key);
     if (x > 0.0) return x;
     const TomlValue& value = need(key);
-    throw error(value.at, fmt::format("'{}' in {} must be positive, not {}", key, where_, value.text.text));
+    throw Mistake{value.at, fmt::format("'{}' in {} must be positive, not {}", key, where_, value.text.text), {}};
 }
 
 Text Fields::expression(std::string_view key) const { return expression(key, need(key)); }
@@ -68,10 +73,10 @@ Text Fields::expression(std::string_view key, const TomlValue& value) const {
         throw wrong_type(key, value, "an expression (a string or a number)");
     }
     if (number && !std::isfinite(value.number)) {
-        throw error(value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text));
+        throw Mistake{value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text), {}};
     }
     if (value.text.text.find_first_not_of(" \t\r\n") == std::string::npos) {
-        throw error(value.text.at, fmt::format("'{}' in {} is empty", key, where_), "an expression is expected");
+        throw Mistake{value.text.at, fmt::format("'{}' in {} is empty", key, where_), "an expression is expected"};
     }
     return value.text;
 }
@@ -81,8 +86,9 @@ std::array<Text, 2> Fields::point(std::string_view key) const { return point(key
 std::array<Text, 2> Fields::point(std::string_view key, const TomlValue& value) const {
     if (value.kind != TomlValue::Kind::array) throw wrong_type(key, value, "a point [x, y]");
     if (value.items.size() != 2) {
-        throw error(value.at,
-                    fmt::format("a point of '{}' in {} has two coordinates, not {}", key, where_, value.items.size()));
+        throw Mistake{value.at,
+                      fmt::format("a point of '{}' in {} has two coordinates, not {}", key, where_, value.items.size()),
+                      {}};
     }
     return {expression(key, value.items[0]), expression(key, value.items[1])};
 }
@@ -99,37 +105,35 @@ std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 
     const auto is_number = [](const TomlValue& item) { return item.kind == TomlValue::Kind::number; };
     if (value->kind != TomlValue::Kind::array || value->items.size() != 2 || !is_number(value->items[0]) ||
         !is_number(value->items[1])) {
-        throw error(value->at, fmt::format("'{}' in {} must be two numbers, [low, high]", key, where_));
+        throw Mistake{value->at, fmt::format("'{}' in {} must be two numbers, [low, high]", key, where_), {}};
     }
     const std::array<double, 2> range{value->items[0].number, value->items[1].number};
     if (!std::isfinite(range[0]) || !std::isfinite(range[1]) || !(range[0] < range[1])) {
-        throw error(value->at, fmt::format("'{}' in {} must be finite with low < high", key, where_));
+        throw Mistake{value->at, fmt::format("'{}' in {} must be finite with low < high", key, where_), {}};
     }
     return range;
 }
 
-InputError Fields::wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const {
-    return error(value.at, fmt::format("'{}' in {} must be {}, not {}", key, where_, expected, kind_name(value.kind)));
+Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const {
+    return {value.at, fmt::format("'{}' in {} must be {}, not {}", key, where_, expected, kind_name(value.kind)), {}};
 }
 
-InputError Fields::error(Location at, const std::string& message, const std::string& hint) const {
-    return system_.error(at, message, hint);
-}
-
-std::vector<Fields> tables(const SystemDescription& system, const TomlValue& root, const std::string& key) {
+std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes) {
     std::vector<Fields> list;
     const std::string where = fmt::format("[[{}]]", key);
     for (const TomlEntry& entry : root.entries) {
         if (entry.key != key) continue;
         if (entry.value.kind != TomlValue::Kind::array) {
-            throw system.error(entry.at,
-                               fmt::format("'{}' must be an array of tables, not {}", key, kind_name(entry.value.kind)),
-                               fmt::format("write {}, once for each", where));
+            mistakes.add({entry.at,
+                          fmt::format("'{}' must be an array of tables, not {}", key, kind_name(entry.value.kind)),
+                          fmt::format("write {}, once for each", where)});
+            continue;
         }
         constexpr std::size_t most = 1000;
-        if (entry.value.items.size() > most)
-            throw system.error(entry.value.items[most].at, fmt::format("more than {} {}", most, where));
-        for (const TomlValue& item : entry.value.items) list.emplace_back(system, item, where);
+        const std::vector<TomlValue>& items = entry.value.items;
+        if (items.size() > most) mistakes.add({items[most].at, fmt::format("more than {} {}", most, where), {}});
+        for (std::size_t i = 0; i < std::min(items.size(), most); ++i)
+            mistakes.attempt([&] { list.emplace_back(items[i], where); });
     }
     return list;
 }

@@ -1,4 +1,5 @@
-// One table of a system file, read key by key; every complaint names the key, the table and the place.
+// One table of a system file, read key by key; every complaint names the key, the table and the place. What is wrong is
+// thrown as a Mistake: who reads several independent keys attempts each (model/mistakes.hpp).
 #pragma once
 
 #include <array>
@@ -6,20 +7,23 @@
 #include <vector>
 
 #include "model/description.hpp"
+#include "model/mistakes.hpp"
 #include "model/toml_tree.hpp"
 
 namespace achilles {
 
 class Fields {
  public:
-    // `where` is how messages call the table: "[[coordinate]]". Throws InputError if the value is no table.
-    Fields(const SystemDescription& system, const TomlValue& table, std::string where);
+    // `where` is how messages call the table: "[[coordinate]]". Throws if the value is no table.
+    Fields(const TomlValue& table, std::string where);
 
-    // Throws for the first key that is none of these, with the nearest of them.
-    void allow(const std::vector<std::string>& keys) const;
+    // Adds a mistake for every key that is none of these, with the nearest of them.
+    void allow(const std::vector<std::string>& keys, Mistakes& mistakes);
 
     const TomlValue* find(std::string_view key) const;  // null where absent
-    const TomlValue& need(std::string_view key) const;  // throws where absent
+    // Throws where absent: AlreadyTold if allow() took another key for a misspelling of this one.
+    const TomlValue& need(std::string_view key) const;
+    void need(std::string_view key, const Mistake& otherwise) const;  // the same with a message of one's own
 
     // The value of a key, checked. Throw where it is absent or of another type.
     Text string(std::string_view key) const;
@@ -36,28 +40,28 @@ class Fields {
     Text expression(std::string_view key, const TomlValue& value) const;
     std::array<Text, 2> point(std::string_view key, const TomlValue& value) const;
 
-    InputError wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const;
-    InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
+    Mistake wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const;
 
     const TomlValue& table() const { return table_; }
     const std::string& where() const { return where_; }
 
  private:
-    const SystemDescription& system_;
     const TomlValue& table_;
     std::string where_;
+    std::vector<std::string> misspelt_;  // keys that are there under another name
 };
 
-// The tables of an array of tables; none where the key is absent. Throws InputError if it is something else, or has
-// more than 1000.
-std::vector<Fields> tables(const SystemDescription& system, const TomlValue& root, const std::string& key);
+// The tables of an array of tables, at most 1000; none where the key is absent. What is something else is a mistake,
+// and left out.
+std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes);
 
 // The names of these entries as a list for a person: "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 
 // [[drawing]] and [[view]] (INTERFACE section 3), and the views of a system that brings none (section 5).
-DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields);
-ViewDescription read_view(const Fields& fields);
+// Parts with a mistake are left empty; the first two throw where the rest cannot be read.
+DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes);
+ViewDescription read_view(Fields& fields, Mistakes& mistakes);
 std::vector<ViewDescription> default_views(const SystemDescription& system);
 
 }  // namespace achilles

@@ -74,6 +74,12 @@ std::string full_message(const std::string& file, Location at, const std::string
     return full;
 }
 
+std::string told(const std::vector<InputError>& all, std::size_t more) {
+    std::string text;
+    for (const InputError& error : all) text += fmt::format("{}{}", text.empty() ? "" : "\n\n", error.what());
+    return more == 0 ? text : fmt::format("{}\n\nand {} more", text, more);
+}
+
 }  // namespace
 
 InputError::InputError(std::string file_, Location at_, std::string message_, std::string hint_,
@@ -83,6 +89,17 @@ InputError::InputError(std::string file_, Location at_, std::string message_, st
       message(std::move(message_)),
       hint(std::move(hint_)),
       at(at_) {}
+
+InputError::InputError(const InputError& first, const std::string& told)
+    : std::runtime_error(told), file(first.file), message(first.message), hint(first.hint), at(first.at) {}
+
+InputErrors::InputErrors(std::vector<InputError> all_, std::size_t more_)
+    : InputError(all_.front(), told(all_, more_)), all(std::move(all_)), more(more_) {}
+
+std::vector<InputError> each_of(const InputError& error) {
+    const auto* several = dynamic_cast<const InputErrors*>(&error);
+    return several == nullptr ? std::vector<InputError>{error} : several->all;
+}
 
 std::string line_of(std::string_view text, int line) {
     std::size_t begin = 0;

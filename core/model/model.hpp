@@ -26,7 +26,7 @@ namespace achilles {
 
 class Model {
  public:
-    // Derives everything. Throws InputError (the file's) for a text that is not what it should be.
+    // Derives everything. Throws InputErrors (the file's) for T, V, h or e that is not what it should be.
     explicit Model(SystemDescription description);
 
     const SystemDescription& description() const { return description_; }
@@ -66,7 +66,7 @@ class Model {
 
     // The run that the description asks for.
     Run default_run() const;
-    // Throws InputError if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
+    // Throws InputErrors if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
     // gap clearly negative, dh = 0 in contact, eps, tolerance or end time not positive.
     void check(const Run& run) const;
 
@@ -77,13 +77,11 @@ class Model {
 
  private:
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
-    void read_mass_matrix();
-    void derive_equations();
     void compile();
-    void read_pictures() const;
-    Scope view_scope(Graph& graph) const;
-    Scope drawing_scope(Graph& graph) const;
-    void check_start(const Run& run) const;
+    // Throw Mistake.
+    void check_restitution(const Run& run) const;
+    void check_gap(const Run& run) const;
+    void check_acceleration(const Run& run) const;
 
     SystemDescription description_;
     Layout layout_;

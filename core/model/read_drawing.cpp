@@ -36,24 +36,24 @@ const ShapeKeys& shape_of(const Fields& fields) {
         if (shape.name == name.text) return shape;
         names.push_back(shape.name);
     }
-    throw fields.error(name.at, fmt::format("unknown shape '{}'{}", shown(name.text), did_you_mean(name.text, names)),
-                       fmt::format("shapes are: {}", listed(names)));
+    throw Mistake{name.at, fmt::format("unknown shape '{}'{}", shown(name.text), did_you_mean(name.text, names)),
+                  fmt::format("shapes are: {}", listed(names))};
 }
 
 void read_over(const SystemDescription& system, const Fields& fields, DrawingDescription& drawing) {
     const TomlValue& over = fields.need("over");
     if (over.kind != TomlValue::Kind::array || over.items.size() != 3 ||
         over.items[0].kind != TomlValue::Kind::string) {
-        throw fields.error(over.at, R"('over' in [[drawing]] must be ["name", low, high])");
+        throw Mistake{over.at, R"('over' in [[drawing]] must be ["name", low, high])", {}};
     }
     const Text& own = over.items[0].text;
-    if (!is_name(own.text)) throw fields.error(own.at, fmt::format("'{}' is not a name", shown(own.text)));
-    if (is_reserved(own.text)) throw fields.error(own.at, fmt::format("the name '{}' is reserved", own.text));
+    if (!is_name(own.text)) throw Mistake{own.at, fmt::format("'{}' is not a name", shown(own.text)), {}};
+    if (is_reserved(own.text)) throw Mistake{own.at, fmt::format("the name '{}' is reserved", own.text), {}};
     const auto same = [&](const auto& other) { return other.name == own.text; };
     if (std::any_of(system.coordinates.begin(), system.coordinates.end(), same) ||
         std::any_of(system.parameters.begin(), system.parameters.end(), same)) {
-        throw fields.error(own.at, fmt::format("the name '{}' is used twice", own.text),
-                           "a curve's own parameter needs a name of its own");
+        throw Mistake{own.at, fmt::format("the name '{}' is used twice", own.text),
+                      "a curve's own parameter needs a name of its own"};
     }
     drawing.over = own.text;
     drawing.over_limits = {fields.expression("over", over.items[1]), fields.expression("over", over.items[2])};
@@ -62,7 +62,7 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
 void read_points(const Fields& fields, DrawingDescription& drawing) {
     const TomlValue& points = fields.need("points");
     if (points.kind != TomlValue::Kind::array) throw fields.wrong_type("points", points, "an array of points");
-    if (points.items.size() < 2) throw fields.error(points.at, "a polyline needs at least two points");
+    if (points.items.size() < 2) throw Mistake{points.at, "a polyline needs at least two points", {}};
     for (const TomlValue& item : points.items) drawing.points.push_back(fields.point("points", item));
 }
 
@@ -71,53 +71,60 @@ std::string read_color(const Fields& fields) {
     const Text color = fields.string("color");
     const bool hexadecimal = color.text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
     if (color.text.size() == 7 && color.text[0] == '#' && hexadecimal) return color.text;
-    throw fields.error(color.at, fmt::format("'{}' is not a colour", shown(color.text)), "a colour is \"#rrggbb\"");
+    throw Mistake{color.at, fmt::format("'{}' is not a colour", shown(color.text)), "a colour is \"#rrggbb\""};
 }
 
 }  // namespace
 
-DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields) {
+DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes) {
     const ShapeKeys& shape = shape_of(fields);
     std::vector<std::string> keys{"shape", "color", "width", "fill"};
     keys.insert(keys.end(), shape.own.begin(), shape.own.end());
-    const Fields of_shape(system, fields.table(), fmt::format("[[drawing]] of shape {}", shape.name));
-    of_shape.allow(keys);
+    Fields of_shape(fields.table(), fmt::format("[[drawing]] of shape {}", shape.name));
+    of_shape.allow(keys, mistakes);
 
     DrawingDescription drawing;
     drawing.shape = shape.shape;
     drawing.at = fields.table().at;
     drawing.fill = shape.shape == Shape::disc;
-    drawing.color = read_color(of_shape);
-    if (fields.find("width")) drawing.width = of_shape.expression("width");
-    if (const TomlValue* fill = fields.find("fill")) {
-        if (fill->kind != TomlValue::Kind::boolean) throw of_shape.wrong_type("fill", *fill, "true or false");
-        drawing.fill = fill->boolean;
-    }
+    const auto point = [&](const char* key) {
+        mistakes.attempt([&] { drawing.points.push_back(of_shape.point(key)); });
+    };
     if (shape.shape == Shape::polyline) {
-        read_points(of_shape, drawing);
+        mistakes.attempt([&] { read_points(of_shape, drawing); });
     } else if (shape.shape == Shape::segment) {
-        drawing.points = {of_shape.point("from"), of_shape.point("to")};
+        point("from");
+        point("to");
     } else {
-        drawing.points = {of_shape.point("at")};
+        point("at");
     }
-    if (shape.shape == Shape::disc) drawing.radius = of_shape.expression("radius");
-    if (shape.shape == Shape::curve) read_over(system, of_shape, drawing);
-    if (shape.shape == Shape::text) drawing.text = of_shape.string("text").text;
+    if (shape.shape == Shape::disc) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
+    if (shape.shape == Shape::curve) mistakes.attempt([&] { read_over(system, of_shape, drawing); });
+    if (shape.shape == Shape::text) mistakes.attempt([&] { drawing.text = of_shape.string("text").text; });
+    mistakes.attempt([&] { drawing.color = read_color(of_shape); });
+    mistakes.attempt([&] {
+        if (fields.find("width")) drawing.width = of_shape.expression("width");
+    });
+    mistakes.attempt([&] {
+        const TomlValue* fill = fields.find("fill");
+        if (fill && fill->kind != TomlValue::Kind::boolean) throw of_shape.wrong_type("fill", *fill, "true or false");
+        if (fill) drawing.fill = fill->boolean;
+    });
     return drawing;
 }
 
-ViewDescription read_view(const Fields& fields) {
-    fields.allow({"name", "x", "y"});
+ViewDescription read_view(Fields& fields, Mistakes& mistakes) {
+    fields.allow({"name", "x", "y"}, mistakes);
     ViewDescription view;
-    view.x = fields.expression("x");
+    mistakes.attempt([&] { view.x = fields.expression("x"); });
     const TomlValue& y = fields.need("y");
     if (y.kind != TomlValue::Kind::array) {
         view.y = {fields.expression("y")};
     } else {
-        if (y.items.empty()) throw fields.error(y.at, "'y' in [[view]] is empty", "one expression for each curve");
-        for (const TomlValue& item : y.items) view.y.push_back(fields.expression("y", item));
+        if (y.items.empty()) throw Mistake{y.at, "'y' in [[view]] is empty", "one expression for each curve"};
+        for (const TomlValue& item : y.items) mistakes.attempt([&] { view.y.push_back(fields.expression("y", item)); });
     }
-    view.name = fields.string_or("name", view.y[0].text);
+    mistakes.attempt([&] { view.name = fields.string_or("name", view.y.empty() ? "" : view.y[0].text); });
     return view;
 }
 

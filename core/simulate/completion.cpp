@@ -47,8 +47,7 @@ bool Execution::stay(double until) {
         if (!advance(until - t_)) return false;
         const auto projected = surface_.project(flow_.end(), false);
         if (!projected) {
-            stop(Outcome::Kind::left_the_domain,
-                 "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
+            leave_contact(flow_.end_time(), flow_.end());
             return false;
         }
         flow_.move_end(projected->state);

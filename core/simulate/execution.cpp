@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simulate/domain.hpp"
+
 namespace achilles {
 
 std::string where(double t, const State& state) {
@@ -17,6 +19,8 @@ std::string where(double t, const State& state) {
 }
 
 namespace {
+
+constexpr int most_stalled = 100;
 
 double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
 
@@ -149,8 +153,7 @@ bool Execution::locate_impact(double theta) {
     }
     const auto landed = surface_.project(flow_.end(), true);
     if (!landed) {
-        stop(Outcome::Kind::left_the_domain,
-             "dh = 0 where contact happens: the normal is not defined at " + where(flow_.end_time(), flow_.end()));
+        leave_contact(flow_.end_time(), flow_.end());
         return true;
     }
     flow_.move_end(landed->state);
@@ -279,7 +282,14 @@ bool Execution::advance(double longest) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;
     }
-    const auto obstacle = flow_.step(longest);
+    if (record_.steps() >= run_.options.max_steps) {
+        stop(Outcome::Kind::too_many_steps,
+             fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time",
+                         record_.steps(), t_));
+        return false;
+    }
+    // Steps of the resolution of time, one after the other, round back to the same state for ever.
+    const auto obstacle = stalled_ > most_stalled ? Obstacle::step_too_small : flow_.step(longest);
     if (obstacle != Obstacle::none) leave(obstacle);
     return obstacle == Obstacle::none;
 }
@@ -288,22 +298,27 @@ bool Execution::advance(double longest) {
 void Execution::take(const Contact& contact) {
     contact_ = contact;
     record_.step(flow_, contact.h);
+    stalled_ = flow_.end_time() - t_ > 2.0 * ulp(t_) ? 0 : stalled_ + 1;
     t_ = flow_.end_time();
     state_ = flow_.end();
 }
 
 void Execution::leave(Obstacle obstacle) {
     const std::string place = where(t_, state_);
-    switch (obstacle) {
-        case Obstacle::left_the_domain:
-            return stop(
-                Outcome::Kind::left_the_domain,
-                "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
-        case Obstacle::not_a_number:
-            return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
-        default:
-            return stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
-    }
+    if (obstacle == Obstacle::not_a_number)
+        return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
+    const std::string edge = edge_of_domain(*model_, run_, t_, state_);
+    if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, just after {}", edge, place));
+    if (obstacle == Obstacle::left_the_domain)
+        return stop(Outcome::Kind::left_the_domain,
+                    "M is not positive definite, or a function undefined, just after " + place);
+    stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
+}
+
+// A state that cannot be moved onto the surface.
+void Execution::leave_contact(double t, const State& state) {
+    stop(Outcome::Kind::left_the_domain,
+         fmt::format("{}, at {}", edge_of_contact(*model_, run_, state), where(t, state)));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }

@@ -60,6 +60,7 @@ class Execution {
     bool advance(double longest);
     void take(const Contact& contact);
     void leave(Obstacle obstacle);
+    void leave_contact(double t, const State& state);
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
@@ -71,6 +72,7 @@ class Execution {
     Recorder record_;
     double restitution_;
     double t_ = 0.0;
+    int stalled_ = 0;  // steps in a row that were as short as the resolution of t
     State state_;
     Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;

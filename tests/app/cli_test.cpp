@@ -113,6 +113,61 @@ TEST(Cli, BadTomlIsShownWithItsPlace) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.toml"});
 }
 
+TEST(Cli, EveryMistakeIsShownAndNothingWritten) {
+    const Folder folder;
+    std::string bad = drop;
+    bad.replace(bad.find("start = 1.0"), 11, "start = inf");
+    bad.replace(bad.find("9.81*y"), 6, "9.81*z");
+    folder.put("bad.toml", bad);
+    const Answer answer = folder.run("simulate bad.toml --json a.json");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.out, "");
+    EXPECT_EQ(answer.err,
+              "bad.toml:4:9: 'start' in [[coordinate]] must be finite, not inf\n    start = inf\n            ^\n\n"
+              "bad.toml:7:19: unknown name 'z'\n    potential = \"9.81*z\"\n                      ^\n");
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"bad.toml"});
+}
+
+TEST(Cli, WhatTheCommandLineSetsIsCheckedAtTheStart) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    const Answer answer = folder.run("simulate drop.toml --set y=-1 --json a.json");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err,
+              "drop.toml:9:8: the gap is negative at the start: h = -1\n    gap = \"y\"\n           ^\n"
+              "choose a start with h(q) >= 0\n");
+    EXPECT_EQ(folder.run("simulate drop.toml --set y=1e999").err, "--set y=1e999: '1e999' is not a finite number\n");
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"drop.toml"});
+}
+
+// Errors that appear only while running: status 3, the reason, and what was computed until then.
+TEST(Cli, ARunThatLeavesTheDomainSaysWhenWhereAndWhy) {
+    const Folder folder;
+    const struct {
+        std::string kinetic, potential, gap, beginning;
+    } runs[] = {
+        {"y'^2/2", "log(y)", "y + 1", "log(y) in the potential ceases to be defined, with y = "},
+        {"y'^2/2", "-1/y", "y + 1", "(-1)/y in the potential ceases to be defined, with y = "},
+        {"y*y'^2/2", "y", "y + 1", "the mass matrix ceases to be positive definite, with the pivot of 'y' at "},
+        {"y'^2/2", "9.81*y", "y^3", "dh = 0 where contact happens: the normal is not defined, at t = 0.45"},
+    };
+    for (const auto& run : runs) {
+        folder.put("edge.toml",
+                   "title = \"edge\"\n[[coordinate]]\nname = \"y\"\nstart = 1.0\n[lagrangian]\nkinetic = \"" +
+                       run.kinetic + "\"\npotential = \"" + run.potential + "\"\n[[constraint]]\ngap = \"" + run.gap +
+                       "\"\nrestitution = 0.5\n");
+        const Answer answer = folder.run("simulate edge.toml --json edge.json");
+        EXPECT_EQ(answer.status, 3) << run.beginning;
+        const std::string start = "achilles: the run stopped early: " + run.beginning;
+        EXPECT_EQ(answer.err.substr(0, start.size()), start);
+        EXPECT_NE(answer.err.find(", q = ("), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("), v = ("), std::string::npos) << answer.err;
+        const json root = json::parse(content(folder.path() / "edge.json"));
+        EXPECT_EQ(root["outcome"]["kind"], "left the domain");
+        EXPECT_GT(root["end"]["t"].get<double>(), 0.1);
+    }
+}
+
 TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
     const Folder folder;
     folder.put("tour.journal", "play\n  seeek 3\n");

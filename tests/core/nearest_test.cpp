@@ -16,6 +16,25 @@ TEST(Nearest, recognises_misspellings) {
     EXPECT_EQ(nearest("mm", names), "m");
 }
 
+TEST(Nearest, knows_capitals_and_beginnings) {
+    const std::vector<std::string> keys{"coordinate", "parameter", "restitution", "eps_q", "eps_v"};
+    EXPECT_EQ(nearest("THETA1", names), "theta1");
+    EXPECT_EQ(nearest("M", names), "m");
+    EXPECT_EQ(nearest("param", keys), "parameter");
+    EXPECT_EQ(nearest("Coord", keys), "coordinate");
+    EXPECT_EQ(nearest("pa", keys), "");   // could be anything
+    EXPECT_EQ(nearest("eps", keys), "");  // two begin so
+    EXPECT_EQ(nearest("epsq", keys), "eps_q");
+}
+
+TEST(Nearest, takes_the_nearest_of_several) {
+    const std::vector<std::string> keys{"range", "rate", "rate_range", "start"};
+    EXPECT_EQ(nearest("rate_rnage", keys), "rate_range");  // a swap is one edit
+    EXPECT_EQ(nearest("rnage", keys), "range");
+    EXPECT_EQ(nearest("raet", keys), "rate");
+    EXPECT_EQ(nearest("strt", keys), "start");
+}
+
 TEST(Nearest, offers_nothing_far_away) {
     EXPECT_EQ(nearest("q", names), "");  // as far from "m" as from anything
     EXPECT_EQ(nearest("velocity", names), "");

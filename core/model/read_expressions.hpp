@@ -1,0 +1,43 @@
+// What the expressions of a system file mean: its names as symbols, which of them may stand where, and the equations'
+// ingredients T, V, h, e and M (THEORY section 1).
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "expression/parse.hpp"
+#include "model/derive.hpp"
+#include "model/description.hpp"
+#include "model/mistakes.hpp"
+
+namespace achilles {
+
+// The names of the coordinates and parameters of a file that may have mistakes.
+struct Names {
+    std::map<std::string, Location> places;
+    bool complete = true;           // false: there may be names that could not be read, so none can be called unknown
+    std::set<std::string> excused;  // refused or unknown, and told once: they may stand for anything
+};
+
+// The place of a byte inside a text that starts at `text.at`.
+Location place_in(const Text& text, std::size_t offset);
+
+// Which names may stand in a view (t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy: with values
+// from the equations), and in a drawing (coordinates and parameters; a drawn curve's own is for the caller to add).
+Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
+Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+
+// The names of the inputs, by slot: what to_text() prints.
+std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout);
+
+// Sets kinetic, potential, gap, restitution and M of the equations, whose graph this is, and adds what is wrong with
+// them: among it a T that is not quadratic and homogeneous in the rates after expansion. What is missing is passed
+// over. An unknown name is told where it stands first, once in the file, and what depends on it is not looked into.
+void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
+                    Equations& equations, Mistakes& mistakes);
+
+// Adds what is wrong with any expression of the file: the above, drawings and views.
+void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
+
+}  // namespace achilles

@@ -1,0 +1,31 @@
+// Times and medians for the benchmark programs.
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace achilles::bench {
+
+inline double median(std::vector<double> x) {
+    const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+    std::nth_element(x.begin(), middle, x.end());
+    return *middle;
+}
+
+// Of the processor, spent by this thread: others may be at work on the machine.
+inline double thread_seconds() {
+    timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <class Work>
+double seconds(const Work& work) {
+    const double begin = thread_seconds();
+    work();
+    return thread_seconds() - begin;
+}
+
+}  // namespace achilles::bench
