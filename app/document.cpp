@@ -147,6 +147,7 @@ Run carried_over(const SystemDescription& before, const Run& run, const Model& a
     keep(&Options::tolerance);
     keep(&Options::method);
     keep(&Options::max_impacts);
+    keep(&Options::max_steps);
     const auto keep_truncation = [&](auto member) {
         if (now.options.truncation.*member == before.options.truncation.*member)
             result.options.truncation.*member = run.options.truncation.*member;

@@ -117,17 +117,19 @@ void read_constraint(SystemDescription& system, const std::vector<Fields>& const
 }
 
 void read_run(Options& options, const Fields& fields) {
-    fields.allow({"end_time", "tolerance", "method", "max_impacts"});
+    fields.allow({"end_time", "tolerance", "method", "max_impacts", "max_steps"});
     if (fields.find("end_time")) options.end_time = fields.positive("end_time");
     if (fields.find("tolerance")) options.tolerance = fields.positive("tolerance");
-    if (const TomlValue* most = fields.find("max_impacts")) {
-        const double impacts = fields.positive("max_impacts");
-        if (!most->integer || impacts > INT_MAX) {
-            throw fields.error(most->at,
-                               fmt::format("'max_impacts' in [run] must be a whole number up to {}", INT_MAX));
-        }
-        options.max_impacts = static_cast<int>(impacts);
-    }
+    const auto count = [&](const char* key, int& most) {
+        const TomlValue* value = fields.find(key);
+        if (!value) return;
+        const double number = fields.positive(key);
+        if (!value->integer || number > INT_MAX)
+            throw fields.error(value->at, fmt::format("'{}' in [run] must be a whole number up to {}", key, INT_MAX));
+        most = static_cast<int>(number);
+    };
+    count("max_impacts", options.max_impacts);
+    count("max_steps", options.max_steps);
 }
 
 // Reads one of a few names. Throws InputError with the nearest.

@@ -66,23 +66,62 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
     }
 }
 
-// Where the characters of a string start: behind its quotes, and behind a first line break that TOML drops.
-Location inside(const std::string& text, Location at) {
-    const std::string line = line_of(text, at.line);
-    const std::size_t begin = byte_of_column(line, at.column);
-    for (const std::string_view quotes : {"\"\"\"", "'''"}) {
-        if (line.compare(begin, 3, quotes) != 0) continue;
-        return begin + 3 >= line.size() ? Location{at.line + 1, 1} : Location{at.line, at.column + 3};
+// The rest of a text from a line and column on, found without reading it from its start: a file may hold a million
+// strings, all of them in one line.
+class Places {
+ public:
+    explicit Places(std::string_view text) : text_(text) {
+        lines_.push_back(0);
+        marks_.push_back(0);
+        int characters = 0;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '\n') {
+                lines_.push_back(marks_.size());
+                marks_.push_back(i + 1);
+                characters = 0;
+            } else if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++characters > stride) {
+                marks_.push_back(i);
+                characters = 1;
+            }
+        }
+        lines_.push_back(marks_.size());
     }
-    return {at.line, at.column + 1};
-}
+
+    std::string_view from(Location at) const {
+        const auto line = static_cast<std::size_t>(at.line - 1),
+                   skipped = static_cast<std::size_t>(at.column - 1) / stride;
+        if (at.line < 1 || at.column < 1 || line + 1 >= lines_.size() || lines_[line] + skipped >= lines_[line + 1])
+            return {};
+        const std::string_view rest = text_.substr(marks_[lines_[line] + skipped]);
+        return rest.substr(byte_of_column(rest, 1 + (at.column - 1) % stride));
+    }
+
+ private:
+    static constexpr int stride = 64;
+    std::string_view text_;
+    std::vector<std::size_t> marks_;  // the bytes where every 64th character of each line starts
+    std::vector<std::size_t> lines_;  // the first mark of each line, and the end
+};
 
 // What a conversion needs to know of its surroundings.
 struct Source {
     const std::string& text;
     const std::string& name;
+    const Places& places;
     int depth = 0;
 };
+
+// Where the characters of a string start: behind its quotes, and behind a first line break that TOML drops.
+Location inside(const Places& places, Location at) {
+    std::string_view rest = places.from(at);
+    for (const std::string_view quotes : {"\"\"\"", "'''"}) {
+        if (!rest.starts_with(quotes)) continue;
+        rest.remove_prefix(3);
+        const bool line_ends = rest.empty() || rest.starts_with("\n") || rest.starts_with("\r\n");
+        return line_ends ? Location{at.line + 1, 1} : Location{at.line, at.column + 3};
+    }
+    return {at.line, at.column + 1};
+}
 
 TomlValue convert(const toml::node& node, Source source);
 
@@ -110,7 +149,7 @@ TomlValue convert(const toml::node& node, Source source) {
     value.text.at = at;
     if (const auto* string = node.as_string()) {
         value.kind = TomlValue::Kind::string;
-        value.text = {string->get(), inside(source.text, at)};
+        value.text = {string->get(), inside(source.places, at)};
     } else if (const auto* integer = node.as_integer()) {
         value.kind = TomlValue::Kind::number;
         value.integer = true;
@@ -156,7 +195,9 @@ std::string_view kind_name(TomlValue::Kind kind) {
 TomlValue read_toml(const std::string& text, const std::string& name) {
     refuse_deep_keys(text, name);
     try {
-        return convert(toml::parse(text), Source{text, name});
+        const toml::table table = toml::parse(text);
+        const Places places(text);
+        return convert(table, Source{text, name, places});
     } catch (const toml::parse_error& error) {
         std::string_view message = error.description();
         const std::string_view preamble = "Error while parsing ";  // "... key-value pair: expected '='"

@@ -35,6 +35,7 @@ Json options_of(const Options& options) {
             {"tolerance", number(options.tolerance)},
             {"end_time", number(options.end_time)},
             {"max_impacts", options.max_impacts},
+            {"max_steps", options.max_steps},
             {"conditions", to_text(t.conditions)},
             {"reinitialization", to_text(t.reinitialization)},
             {"eps_q", number(t.eps_q)},

@@ -24,6 +24,8 @@ std::string_view to_text(Outcome::Kind kind) {
             return "end time";
         case Outcome::Kind::too_many_impacts:
             return "too many impacts";
+        case Outcome::Kind::too_many_steps:
+            return "too many steps";
         case Outcome::Kind::not_a_number:
             return "not a number";
         case Outcome::Kind::left_the_domain:

@@ -21,6 +21,7 @@ class Recorder {
     void step(const Flow& flow, double gap);
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
+    long steps() const { return trajectory_.statistics.steps; }
 
     // Ends the run. The recorder is empty afterwards.
     Trajectory finish(double t, const State& state, Outcome outcome, long evaluations);

@@ -63,6 +63,7 @@ end_time  = 20
 tolerance = 1e-9
 method = "taylor"
 max_impacts = 7
+max_steps = 8
 [truncation]
 eps_q = 1e-5
 eps_v = 1e-4
@@ -130,6 +131,7 @@ anything = { goes = [1, "here"] }
     EXPECT_EQ(system.options.tolerance, 1e-9);
     EXPECT_EQ(system.options.method, Method::taylor);
     EXPECT_EQ(system.options.max_impacts, 7);
+    EXPECT_EQ(system.options.max_steps, 8);
     EXPECT_EQ(system.options.truncation.eps_q, 1e-5);
     EXPECT_EQ(system.options.truncation.eps_v, 1e-4);
     EXPECT_EQ(system.options.truncation.eps_t, 1e-3);
@@ -215,6 +217,10 @@ TEST(Description, tells_what_is_wrong_and_where) {
          "f.toml:12:12: 'end_time' in [run] must be positive, not 0\n    end_time = 0\n               ^"},
         {least + "[run]\ntolerance = -1e-3\n",
          "f.toml:12:13: 'tolerance' in [run] must be positive, not -0.001\n    tolerance = -1e-3\n                ^"},
+        {least + "[run]\nmax_steps = 9999999999\n",
+         "f.toml:12:13: 'max_steps' in [run] must be a whole number up to 2147483647\n    max_steps = 9999999999\n     "
+         "  "
+         "         ^"},
         {least + "[run]\nmax_impacts = 1.5\n",
          "f.toml:12:15: 'max_impacts' in [run] must be a whole number up to 2147483647\n    max_impacts = 1.5\n        "
          "          ^"},
@@ -306,6 +312,20 @@ TEST(Description, hostile_files_end_in_a_message) {
                                     std::string("\xef\xbb\xbf"), std::string("\n\n\n["), std::string(1, '\0')}) {
         EXPECT_NE(message_of(text), "") << text;
     }
+    std::string parameters;
+    for (int i = 0; i <= 1000; ++i) parameters += "[[parameter]]\nname = \"p" + std::to_string(i) + "\"\nvalue = 1\n";
+    EXPECT_EQ(message_of(title + least + parameters),
+              "f.toml:3012:1: more than 1000 [[parameter]]\n    [[parameter]]\n    ^");
+    // A million strings, each of which knows its place: in lines of their own, and all in one.
+    std::string lines = "extra = [", one_line = lines;
+    for (int i = 0; i < 300000; ++i) {
+        lines += "\"a\",\n";
+        one_line += "\"\xCE\xB8\",";
+    }
+    EXPECT_EQ(message_of(lines + "]\n" + title + least), "");
+    EXPECT_EQ(message_of(one_line + "]\n" + title + least), "");
+    EXPECT_EQ(message_of(one_line + "]\ntitle = 1").substr(0, 10), "f.toml:2:9");
+    EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: it is larger than 4 MB");
     // Every prefix of a good file is either good or a message.
     for (std::size_t size = 0; size < least.size(); ++size) message_of(least.substr(0, size));
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <random>
 
@@ -74,6 +75,22 @@ TEST_F(Expressions, ConstantsAreExactUntilEvaluation) {
     EXPECT_EQ(half.low, half.high);
 }
 
+// Numerators and denominators on both sides of 2^53, where another way to divide takes over.
+TEST_F(Expressions, AConstantIsEnclosedByNeighbours) {
+    std::mt19937_64 random(11);
+    for (int trial = 0; trial < 2000; ++trial) {
+        const auto draw = [&] { return static_cast<long>(random() >> (1 + random() % 62)); };
+        const long p = trial % 2 == 0 ? draw() : -draw(), q = draw() + 1;
+        const Constant c = graph.constant(graph.number(p, q).id());
+        using Number = boost::multiprecision::cpp_bin_float_100;  // exact where the quotient is a double
+        const Number exact = Number(p) / q, low = c.low, high = c.high, nearest = c.nearest;
+        EXPECT_TRUE(low <= exact && exact <= high) << p << "/" << q;
+        EXPECT_EQ(c.high, low == exact ? c.low : std::nextafter(c.low, 1e300)) << p << "/" << q;
+        EXPECT_TRUE(c.nearest == c.low || c.nearest == c.high);
+        EXPECT_TRUE(2 * Number(abs(exact - nearest)) <= high - low) << p << "/" << q;
+    }
+}
+
 TEST_F(Expressions, EqualExpressionsAreOneNode) {
     EXPECT_EQ(read("x*y + sin(x)"), read("sin(x) + y*x"));
     EXPECT_EQ(read("x - x"), read("0"));
@@ -124,6 +141,35 @@ TEST_F(Expressions, TowersOfPowersEndAtOnce) {
     EXPECT_EQ(value("(2^10)^3"), 1073741824.0);
     EXPECT_TRUE(std::isinf(value("((((2^64)^64)^64)^64)")));
     EXPECT_EQ(value("((((0.5^64)^64)^64)^64)"), 0.0);
+}
+
+TEST_F(Expressions, HugeNumbersEndAtOnce) {
+    EXPECT_EQ(error("1 + 1e999999"), "4: this number is out of range: it has an exponent beyond 400");
+    EXPECT_EQ(error("1e" + std::string(1000000, '9')),
+              "0: this number is out of range: it has a number of more than 400 characters");
+    EXPECT_EQ(error(std::string(1000000, '7')),
+              "0: this number is out of range: it has a number of more than 400 characters");
+    EXPECT_TRUE(std::isinf(value("10^10^10")));
+    EXPECT_EQ(value("(1/10)^10^10"), 0.0);
+    EXPECT_EQ(value("x^10^10", 0.5), 0.0);
+    EXPECT_EQ(value("x^999999999999999999999", 0.5), 0.0);
+    EXPECT_EQ(value("x^-2147483648", 1.0), 1.0);
+}
+
+// Exact arithmetic on fractions without common factors doubles their length: it must not go on for ever.
+TEST_F(Expressions, SizesHaveStatedLimits) {
+    std::string fractions = "1/3";
+    for (int i = 2; i < 20000; ++i) fractions += " + 1/" + std::to_string(2 * i + 1);
+    EXPECT_EQ(error(fractions).substr(error(fractions).find(':')),
+              ": this expression is too large: an exact number in it takes more than 16384 bits");
+    std::string sum = "x";
+    for (int i = 0; i < 100000; ++i) sum += " + sin(x + " + std::to_string(i) + ")";
+    EXPECT_EQ(error(sum).substr(error(sum).find(':')),
+              ": this expression is too large: it takes more than 200000 operations");
+    std::string digits = "0";  // each within the limits: 1300 bits
+    for (int i = 0; i < 60000; ++i) digits += " + " + std::string(i % 2 == 0 ? "1e400" : "1/3e400");
+    Graph fresh;
+    EXPECT_THROW(parse(digits, Scope{}, fresh), ParseError);
 }
 
 TEST_F(Expressions, LongSumsNeedNoDeepStack) {

@@ -243,7 +243,37 @@ TEST(BadSystems, AreToldWhatIsWrong) {
     EXPECT_EQ(error_of(good, "[lagrangian]",
                        "[[drawing]]\nshape = \"disc\"\nat = [\"a\", \"bb\"]\nradius = 0.1\n[lagrangian]"),
               "unknown name 'bb'; did you mean 'b'?");
+    EXPECT_EQ(error_of(good, "b + a^2*c/3 + 1/4*sin(c)", "4"),
+              "dh = 0 everywhere: the gap does not change with any coordinate");
+    EXPECT_EQ(error_of(good, "b + a^2*c/3 + 1/4*sin(c)", "1 + sin(a)^2 + cos(a)^2"),
+              "dh = 0 everywhere: the gap does not change with any coordinate");
+    EXPECT_EQ(error_of(good, " + exp(b)*c'^2", " - (3 + c^2)*(c' - k*a')*(c' - k*a')/2"),
+              "the mass matrix is positive definite nowhere: pivot 3 is 0");
     EXPECT_EQ(error_of(good, "value = 0.7", "value = 0.5"), "no error");
+}
+
+TEST(BadSystems, IndefiniteMassesAreToldEvenWhereTheyCancel) {
+    EXPECT_EQ(error_of(odd_system,
+                       "kinetic = \"(2 + sin(a))*a'^2/2 + (a'*cos(b) + b')^2*k + (3 + c^2)*(c' - k*a')*(c' "
+                       "- k*a')/2 + exp(b)*c'^2\"",
+                       "kinetic = \"a'^2 - b'^2 + c'^2\"")
+                  .substr(0, 60),
+              "the mass matrix is not positive definite at the start (pivot");
+    std::string text = odd_system;
+    const std::size_t gap = text.find("b + a^2*c/3 + 1/4*sin(c)");
+    text.replace(gap, 24, "a + b + 1");
+    EXPECT_EQ(error_of(text,
+                       "(2 + sin(a))*a'^2/2 + (a'*cos(b) + b')^2*k + (3 + c^2)*(c' - k*a')*(c' - k*a')/2 + "
+                       "exp(b)*c'^2",
+                       "a'^2 - b'^2 + c'^2"),
+              "the mass matrix is positive definite nowhere: dh M^-1 dh' is 0");
+}
+
+TEST(BadSystems, EquationsHaveAStatedLimit) {
+    std::string potential = "c";
+    for (int i = 1; i < 30000; ++i) potential += " + " + std::to_string(i) + "*sin(a + " + std::to_string(i) + "*b)";
+    EXPECT_EQ(error_of(odd_system, "c^4/4", potential),
+              "the equations of motion are too large: it takes more than 200000 operations");
 }
 
 }  // namespace

@@ -332,6 +332,21 @@ TEST(Repeatability, TheSameRunGivesTheSameBits) {
     EXPECT_EQ(a.end.q, b.end.q);
 }
 
+TEST(Simulate, AMotionTooFastForItsEndTimeEnds) {
+    const auto model = test::typed(
+        "title = \"a floor that trembles\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n"
+        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x\"\n"
+        "[[constraint]]\ngap = \"1.0001 + sin(1e9*x)\"\nrestitution = 0.5\n");
+    auto run = model->default_run();
+    run.options.max_steps = 1000;
+    const Trajectory trajectory = simulate(model, run);
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::too_many_steps);
+    EXPECT_EQ(trajectory.outcome.message.rfind("1000 steps by t = ", 0), 0u) << trajectory.outcome.message;
+    EXPECT_EQ(trajectory.statistics.steps, 1000);
+    run.options.max_steps = 0;
+    EXPECT_THROW(simulate(model, run), InputError);
+}
+
 // A run that would take hours: with restitution 1 every impact is followed by another.
 Run endless(const Model& model) {
     Run run = model.default_run();

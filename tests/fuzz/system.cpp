@@ -26,26 +26,12 @@ namespace {
 using namespace achilles;
 using fuzz::require;
 
-// The time in which the motion changes as much as it is large, seen from its start.
-double own_time(const Model& model, const Run& run) {
-    auto flight = model.evaluator(model.flight(), run.parameters);
-    put(flight, State{run.q, run.v});
-    flight.run();
-    double size = 1e-3, rate = 1e-3;
-    for (Eigen::Index i = 0; i < run.q.size(); ++i) {
-        size = std::max({size, std::abs(run.q[i]), std::abs(run.v[i])});
-        rate = std::max({rate, std::abs(run.v[i]), std::abs(flight.output(static_cast<std::size_t>(i)))});
-    }
-    return size / rate;
-}
-
-// Short: a few impacts, and a time in which a motion cannot do much.
+// Short, however fast the motion is.
 Run short_run(const Model& model) {
     Run run = model.default_run();
     run.options.tolerance = std::max(run.options.tolerance, 1e-8);
-    run.options.max_impacts = std::min(run.options.max_impacts, 8);
-    const double time = own_time(model, run);
-    if (std::isfinite(time) && time > 0.0) run.options.end_time = std::min(run.options.end_time, 3.0 * time);
+    run.options.max_impacts = std::min(run.options.max_impacts, 20);
+    run.options.max_steps = std::min(run.options.max_steps, 200);
     return run;
 }
 

@@ -1,0 +1,126 @@
+// The part of an execution on the surface: completion of a bouncing, contact, release.
+#include <cmath>
+
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+// ---- completion ----
+
+// The bouncing is replaced by the constrained motion from the collision on; the phase changes at the best estimate of
+// the Zeno time, the middle of its interval.
+void Execution::complete(const Collision& collision, Certificate certificate) {
+    const double zeno_time = 0.5 * (certificate.zeno_low + certificate.zeno_high);
+    state_ = {collision.before.q, collision.restart};
+    record_.stretch(state_);
+    flow_.stay(t_, state_);
+    if (stay(std::min(zeno_time, run_.options.end_time))) {
+        stop(Outcome::Kind::undecided, "the contact force vanishes before the Zeno time at " + where(t_, state_));
+        return;
+    }
+    if (outcome_ || zeno_time > run_.options.end_time) return;
+    Event event;
+    event.kind = Event::Kind::zeno;
+    event.t = t_ = zeno_time;
+    event.q = state_.q;
+    event.v_before = event.v_after = state_.v;
+    event.truncation =
+        Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
+    event.certificate = std::move(certificate);
+    record_.event(std::move(event));
+    record_.close(t_);
+    record_.open(Phase::Kind::constrained, t_);
+    constrained_ = true;
+}
+
+// ---- contact ----
+
+void Execution::stay_until_release() {
+    flow_.stay(t_, state_);
+    record_.stretch(state_);
+    if (stay(run_.options.end_time)) release();
+}
+
+// Moves on the surface until a time (false) or until the contact force vanishes (true).
+bool Execution::stay(double until) {
+    while (!outcome_ && until - t_ > 1e-15 * std::abs(t_)) {
+        if (!advance(until - t_)) return false;
+        const auto projected = surface_.project(flow_.end(), false);
+        if (!projected) {
+            stop(Outcome::Kind::left_the_domain,
+                 "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
+            return false;
+        }
+        flow_.move_end(projected->state);
+        Polynomial force = flow_.watched();
+        for (double& c : force.c) c = -c;  // -hddot = W lambda
+        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(projected->state) - force(1.0);
+        if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
+        const Descent descent = first_descent(force, 0, flow_.remainder());
+        if (descent.kind == Descent::Kind::undecided) {
+            stop(Outcome::Kind::undecided,
+                 "the contact force comes closer to zero than the integration knows it just after " +
+                     where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
+            return false;
+        }
+        if (descent.kind == Descent::Kind::root) {
+            if (locate_release(descent.theta)) return !outcome_;
+            take(surface_.at(flow_.end()));  // the step became shorter
+        } else {
+            take(projected->contact);
+        }
+    }
+    if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
+    return false;
+}
+
+// The same as locate_impact, for hddot = 0 along the constrained motion.
+bool Execution::locate_release(double theta) {
+    double duration = theta * flow_.duration();
+    for (int round = 0; round < 8; ++round) {
+        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
+            leave(obstacle);
+            return true;
+        }
+        const auto projected = surface_.project(flow_.end(), false);
+        if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) {
+            if (projected) flow_.move_end(projected->state);
+            return false;
+        }
+        const State& end = projected->state;
+        flow_.move_end(end);
+        const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
+        const bool close = std::abs(correction) < 1e-7;
+        if (close) {
+            flow_.shift_end(correction);
+            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(again->state);
+            break;
+        }
+        if (!std::isfinite(correction)) break;  // a touch: the release decides
+        duration = std::max(duration + correction, 0.5 * duration);
+    }
+    take(surface_.at(flow_.end()));
+    return true;
+}
+
+// lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
+void Execution::release() {
+    if (!certainly_positive(surface_.normal(state_).jerk)) {
+        stop(Outcome::Kind::undecided,
+             "the contact force touches zero and h''' > 0 is not proved at " + where(t_, state_));
+        return;
+    }
+    Event event;
+    event.kind = Event::Kind::release;
+    event.t = t_;
+    event.q = state_.q;
+    event.v_before = event.v_after = state_.v;
+    record_.event(std::move(event));
+    record_.close(t_);
+    record_.open(Phase::Kind::hybrid, t_);
+    constrained_ = false;
+    takeoff_ = {{0.0, 0.0}, 3};
+    first_step_ = 0.0;
+}
+
+}  // namespace achilles
