@@ -72,7 +72,7 @@ void ask_for_a_long_run(Session& session) {
 
 TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patient_one) {
     Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
-    for (Session* session : {&patient, &live}) session->apply(command::End{20000.0});
+    for (Session* session : {&patient, &live}) session->apply(command::End{200000.0});
     live.set_patience(0.0);
     const std::string before = to_text(live.trajectory());
     for (Session* session : {&patient, &live}) {
