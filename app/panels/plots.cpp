@@ -1,7 +1,7 @@
 // The right side: the system's views, with the present in each.
 #include <cmath>
 
-#include "paint/axes.hpp"
+#include "figure/axes.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

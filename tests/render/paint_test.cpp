@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "paint/axes.hpp"
+#include "figure/axes.hpp"
 #include "paint/label.hpp"
 #include "paint/mechanism.hpp"
 #include "render/samples.hpp"

@@ -1,33 +1,28 @@
-#include "paint/axes.hpp"
-
-#include <imgui.h>
+#include "figure/axes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "paint/label.hpp"
-
 namespace achilles {
 
 namespace {
 
-ImU32 packed(Color c) { return IM_COL32(c.r, c.g, c.b, c.a); }
-
 // A rectangle on whole pixels: sharp, where a smoothed line would be grey.
-void bar(ImDrawList* list, float x, float y, float width, float height, Color color) {
-    list->AddRectFilled({x, y}, {x + width, y + height}, packed(color));
+void bar(Sheet& sheet, float x, float y, float width, float height, Color color) {
+    sheet.push_back(Fill{{x, y, width, height}, color});
 }
 
-float widest_label(const Axis& axis, float text) {
+float widest_label(const Axis& axis, const Metrics& m) {
     float width = 0.0F;
-    for (const Tick& tick : axis.ticks) width = std::max(width, label_width(tick.label, text));
+    for (const Tick& tick : axis.ticks) width = std::max(width, m.width(tick.label, m.text));
     return width;
 }
 
 bool has_tick_labels(const Axis& axis) {
-    return std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
+    return axis.labelled &&
+           std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
 }
 
 // A tick with its place on the screen.
@@ -70,7 +65,7 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
 
 std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
     return placed(panel.x, PanelMap(panel, plot).x, plot.x, plot.x + plot.width, m.line,
-                  widest_label(panel.x, m.text) + m.text * 0.7F);
+                  widest_label(panel.x, m) + m.text * 0.7F);
 }
 
 std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
@@ -78,56 +73,56 @@ std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m
 }
 
 // The size at which a label is at most `room` long.
-float fitting(const std::string& label, float text, float room) {
-    const float width = label_width(label, text);
-    return width > room ? std::max(text * room / width, text * 0.5F) : text;
+float fitting(const std::string& label, const Metrics& m, float room) {
+    const float width = m.width(label, m.text);
+    return width > room ? std::max(m.text * room / width, m.text * 0.5F) : m.text;
 }
 
-void paint_x(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,
-             const Metrics& m) {
+void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+           const Metrics& m) {
     const float bottom = plot.y + plot.height + m.line;
     const float below = bottom + m.tick + m.gap;
     for (const Placed& p : ticks_x(panel, plot, m)) {
-        bar(list, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
-        if (!p.labelled) continue;
-        const float width = label_width(p.tick->label, m.text);
-        paint_label(list, p.at + (m.line - width) / 2.0F, below, p.tick->label, style.ink, m.text);
+        bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
+        if (p.labelled && panel.x.labelled)
+            sheet.push_back(Words{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
     }
-    if (panel.x.label.empty()) return;
-    const float size = fitting(panel.x.label, m.text, plot.width + room.left + room.right);
-    const float width = label_width(panel.x.label, size);
+    if (panel.x.label.empty() || !panel.x.labelled) return;
+    const float size = fitting(panel.x.label, m, plot.width + room.left + room.right);
+    const float half = m.width(panel.x.label, size) / 2.0F;
     // Centred below the plot, but never beyond the panel.
-    const float at = std::clamp(plot.x + (plot.width - width) / 2.0F, plot.x - room.left,
-                                std::max(plot.x + plot.width + room.right - width, plot.x - room.left));
-    paint_label(list, at, plot.y + plot.height + room.bottom - m.text * 1.1F, panel.x.label, style.ink, size);
+    const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
+    const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
+    sheet.push_back(
+        Words{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, panel.x.label, style.ink, size});
 }
 
-void paint_y(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,
-             const Metrics& m) {
+void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+           const Metrics& m) {
     const float left = plot.x - m.line;
     for (const Placed& p : ticks_y(panel, plot, m)) {
         const float length = p.labelled ? m.tick : m.minor_tick;
-        bar(list, left - length, p.at, length, m.line, style.ink);
-        if (!p.labelled) continue;
-        const float width = label_width(p.tick->label, m.text);
+        bar(sheet, left - length, p.at, length, m.line, style.ink);
         // Digits have no descenders: their middle is a little above the middle of the line.
-        paint_label(list, left - m.tick - m.gap - width, p.at - m.text * 0.52F + m.line / 2.0F, p.tick->label,
-                    style.ink, m.text);
+        if (p.labelled && panel.y.labelled)
+            sheet.push_back(Words{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F, p.tick->label,
+                                  style.ink, m.text});
     }
-    if (panel.y.label.empty()) return;
-    const float size = fitting(panel.y.label, m.text, plot.height + room.top);
-    const float width = label_width(panel.y.label, size);
+    if (panel.y.label.empty() || !panel.y.labelled) return;
+    const float size = fitting(panel.y.label, m, plot.height + room.top);
+    const float half = m.width(panel.y.label, size) / 2.0F;
     // It ends above the line of the x axis' label.
-    const float lowest = plot.y + plot.height + room.bottom - (panel.x.label.empty() ? 0.0F : m.text * 1.3F);
-    const float start =
-        std::clamp(plot.y + (plot.height + width) / 2.0F, std::min(plot.y - room.top + width, lowest), lowest);
-    paint_label(list, plot.x - room.left, start, panel.y.label, style.ink, size, 90);
+    const bool above = panel.x.label.empty() || !panel.x.labelled;
+    const float lowest = plot.y + plot.height + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
+    const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
+    sheet.push_back(Words{plot.x - room.left, at, 0.5F, panel.y.label, style.ink, size, true});
 }
 
 }  // namespace
 
-Metrics::Metrics(const Figure& style, double scale_)
-    : text(static_cast<float>(std::round(style.text_size * scale_))),
+Metrics::Metrics(const Figure& style, const Measure& measure, double scale_)
+    : width(measure),
+      text(static_cast<float>(std::round(style.text_size * scale_))),
       tick(static_cast<float>(std::round(5.0 * scale_))),
       minor_tick(static_cast<float>(std::round(3.0 * scale_))),
       gap(static_cast<float>(std::round(3.0 * scale_))),
@@ -137,13 +132,13 @@ Metrics::Metrics(const Figure& style, double scale_)
 Margins margins(const Panel& panel, const Metrics& m) {
     Margins room;
     room.left = m.line + m.tick;
-    if (has_tick_labels(panel.y)) room.left += m.gap + widest_label(panel.y, m.text);
-    if (!panel.y.label.empty()) room.left += m.text * 1.1F + 2.0F * m.gap;
+    if (has_tick_labels(panel.y)) room.left += m.gap + widest_label(panel.y, m);
+    if (!panel.y.label.empty() && panel.y.labelled) room.left += m.text * 1.1F + 2.0F * m.gap;
     room.bottom = m.line + m.tick;
     if (has_tick_labels(panel.x)) room.bottom += m.gap + m.text;
-    if (!panel.x.label.empty()) room.bottom += m.text * 1.1F + m.gap;
+    if (!panel.x.label.empty() && panel.x.labelled) room.bottom += m.text * 1.1F + m.gap;
     // The outermost labels stand out by half their size.
-    room.right = std::max(widest_label(panel.x, m.text) / 2.0F, m.line);
+    room.right = std::max(widest_label(panel.x, m) / 2.0F, m.line);
     room.left = std::max(room.left, room.right);
     room.top = panel.title.empty() ? m.text * 0.55F : m.text * 1.45F;
     room.bottom = std::max(room.bottom, m.text * 0.55F);
@@ -171,28 +166,29 @@ double AxisMap::value(double pixel) const {
 PanelMap::PanelMap(const Panel& panel, Rectangle plot)
     : x(panel.x, plot.x, double{plot.x} + plot.width), y(panel.y, double{plot.y} + plot.height, plot.y) {}
 
-void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& m) {
+void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    if (style.grid.a == 0) return;
     // Not beside the box, which has lines of its own.
     for (const Placed& p : ticks_x(panel, plot, m))
         if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
-            bar(list, p.at, plot.y, m.line, plot.height, style.grid);
+            bar(sheet, p.at, plot.y, m.line, plot.height, style.grid);
     for (const Placed& p : ticks_y(panel, plot, m))
         if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
-            bar(list, plot.x, p.at, plot.width, m.line, style.grid);
+            bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
 }
 
-void paint_axes(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& room,
-                const Metrics& m) {
+void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+              const Metrics& m) {
     const float width = plot.width + 2.0F * m.line;
-    bar(list, plot.x - m.line, plot.y - m.line, width, m.line, style.ink);
-    bar(list, plot.x - m.line, plot.y + plot.height, width, m.line, style.ink);
-    bar(list, plot.x - m.line, plot.y, m.line, plot.height, style.ink);
-    bar(list, plot.x + plot.width, plot.y, m.line, plot.height, style.ink);
-    paint_x(panel, style, list, plot, room, m);
-    paint_y(panel, style, list, plot, room, m);
+    bar(sheet, plot.x - m.line, plot.y - m.line, width, m.line, style.ink);
+    bar(sheet, plot.x - m.line, plot.y + plot.height, width, m.line, style.ink);
+    bar(sheet, plot.x - m.line, plot.y, m.line, plot.height, style.ink);
+    bar(sheet, plot.x + plot.width, plot.y, m.line, plot.height, style.ink);
+    lay_x(panel, style, sheet, plot, room, m);
+    lay_y(panel, style, sheet, plot, room, m);
     if (panel.title.empty()) return;
-    const float size = fitting(panel.title, m.text, plot.width + room.right);
-    paint_label(list, plot.x - m.line, plot.y - m.line - m.gap - m.text, panel.title, style.ink, size);
+    const float size = fitting(panel.title, m, plot.width + room.right);
+    sheet.push_back(Words{plot.x - m.line, plot.y - m.line - m.gap - m.text, 0.0F, panel.title, style.ink, size});
 }
 
 }  // namespace achilles
