@@ -7,11 +7,11 @@
 
 #include "assets.hpp"
 #include "commands/commands.hpp"
+#include "image/png_notes.hpp"
 #include "journal.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
-#include "write_files.hpp"
 
 namespace achilles {
 
@@ -31,24 +31,18 @@ std::vector<SystemEntry> known_systems() {
     return entries;
 }
 
-std::string first_system(const ExploreOptions& options) {
-    if (options.system) return *options.system;
+std::string first_of_list() {
     const std::vector<std::string> names = system_names();
     if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
     return names.front();
 }
 
-std::vector<Command> journal_of(const ExploreOptions& options) {
-    return options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
-}
-
-// The session that the command line asks for.
-Session open_session(const ExploreOptions& options) {
-    const std::string name = first_system(options);
-    const Opener opener = [overrides = options.overrides](const std::string& system) {
-        return open_system(find_system(system), {}, overrides);
+// The session that the command line asks for, with systems from where `read` finds them.
+Session open_session(const std::string& name, const ExploreOptions& options, const Opener& read) {
+    const Opener opener = [overrides = options.overrides, read](const std::string& system) {
+        return adjusted(read(system), {}, overrides);
     };
-    return {name, open_system(find_system(name), options.settings, options.overrides), opener};
+    return {name, adjusted(read(name), options.settings, options.overrides), opener};
 }
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
@@ -106,8 +100,10 @@ class Clock {
 }  // namespace
 
 int explore(const ExploreOptions& options) {
-    const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = read_journal(options.journal);
+    Session session = open_session(options.system ? *options.system : first_of_list(), options,
+                                   [](const std::string& name) { return read_system(find_system(name)); });
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
@@ -136,17 +132,23 @@ int explore(const ExploreOptions& options) {
     return reached_end;
 }
 
-int screenshot(const ScreenshotOptions& options) {
-    OutputFiles files;
-    files.add(options.out);
-    const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options);
+int screenshot(const ScreenshotOptions& options, Studio& studio) {
+    studio.add(options.out);
+    Inputs& inputs = studio.inputs();
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
+    const std::string first = options.system        ? *options.system
+                              : studio.reproduces() ? inputs.first_system()
+                                                    : first_of_list();
+    Session session = open_session(first, options, [&inputs](const std::string& name) { return inputs.system(name); });
     for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
-    Offscreen surface(surface_options(options));
-    const Image image = surface.frame([&] { explorer(session, state); }, 3);
-    files.put(options.out, png_bytes(image));
-    files.commit();
+    studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
+        Offscreen surface(surface_options(options));
+        const Image image = surface.frame([&] { explorer(session, state); }, 3);
+        return with_notes(png_bytes(image), notes);
+    });
+    studio.commit();
     return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
 }
 

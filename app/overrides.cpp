@@ -42,13 +42,17 @@ void refuse_unavailable(const SystemDescription& description, const OptionOverri
                          "the Taylor method is not available yet; use --method dopri5");
 }
 
-SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                              const OptionOverrides& overrides) {
-    SystemDescription description = read_system(file);
+SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
+                           const OptionOverrides& overrides) {
     for (const std::string& setting : settings) assign(description, setting);
     apply(overrides, description.options);
     refuse_unavailable(description, overrides);
     return description;
+}
+
+SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                              const OptionOverrides& overrides) {
+    return adjusted(read_system(file), settings, overrides);
 }
 
 }  // namespace achilles

@@ -27,7 +27,9 @@ void apply(const OptionOverrides& overrides, Options& options);
 // Throws InputError where the options ask for what is not built yet; names the file if the file asked.
 void refuse_unavailable(const SystemDescription& description, const OptionOverrides& overrides);
 
-// A system file with --set and the options over it, ready for Model.
+// A system with --set and the options over it, ready for Model; from its description, or its file.
+SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
+                           const OptionOverrides& overrides);
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides);
 

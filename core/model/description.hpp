@@ -87,6 +87,9 @@ struct SystemDescription {
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
+// The whole of a file, as it is. Throws InputError: there is none, a directory, larger than so many bytes (/dev/zero
+// has no end).
+std::string read_file(const std::filesystem::path& file, std::size_t largest = std::size_t{64} << 20);
 // Reads a file. Throws InputError.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.

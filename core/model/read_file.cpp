@@ -1,4 +1,4 @@
-// Reading a system file from disk.
+// Reading from disk.
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -8,8 +8,7 @@
 
 namespace achilles {
 
-SystemDescription read_system(const std::filesystem::path& file) {
-    constexpr std::size_t largest = std::size_t{64} << 20;  // bytes; /dev/zero has no end
+std::string read_file(const std::filesystem::path& file, std::size_t largest) {
     const std::string name = file.string();
     const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
     const auto reason = [] { return std::generic_category().message(errno); };
@@ -26,10 +25,14 @@ SystemDescription read_system(const std::filesystem::path& file) {
     char block[1 << 16];
     while (const std::size_t count = std::fread(block, 1, sizeof block, open.get())) {
         text.append(block, count);
-        if (text.size() > largest) throw refuse("it is larger than 64 MB");
+        if (text.size() > largest) throw refuse("it is larger than " + std::to_string(largest >> 20) + " MB");
     }
     if (std::ferror(open.get()) != 0) throw refuse(reason());
-    return parse_system(std::move(text), name);
+    return text;
+}
+
+SystemDescription read_system(const std::filesystem::path& file) {
+    return parse_system(read_file(file), file.string());
 }
 
 }  // namespace achilles

@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "figure/label.hpp"
+
 namespace achilles {
 
 namespace {
@@ -140,11 +142,11 @@ void Interface::build_fonts(double scale) {
     const std::string file = (options_.fonts / "DejaVuSans.ttf").string();
     // The first is the interface's own.
     std::vector<double> sizes;
-    for (const double size : {options_.text_size, options_.figure_text_size}) {
+    for (const double size :
+         {options_.text_size, options_.figure_text_size, options_.figure_text_size * double{script_size}}) {
         const double pixels = std::max(std::round(size * scale), 4.0);
-        if (std::find(sizes.begin(), sizes.end(), pixels) == sizes.end()) sizes.push_back(pixels);
-    }
-    for (const double pixels : sizes) {
+        if (std::find(sizes.begin(), sizes.end(), pixels) != sizes.end()) continue;
+        sizes.push_back(pixels);
         ImFontConfig config;
         config.OversampleH = config.OversampleV = 1;  // letters stand on whole pixels
         config.PixelSnapH = true;

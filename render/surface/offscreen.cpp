@@ -126,8 +126,13 @@ Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input
     const Interface::Active active(implementation_->interface);
     const ImDrawData& data = implementation_->advance(draw, held);
     const Implementation::Current current(*implementation_);
-    implementation_->canvas->draw(data, implementation_->interface.background());
-    return implementation_->canvas->read();
+    Canvas& canvas = *implementation_->canvas;
+    const bool transparent = implementation_->options.transparent;
+    if (transparent)
+        canvas.draw_over_nothing(data);
+    else
+        canvas.draw(data, implementation_->interface.background());
+    return canvas.read(transparent);
 }
 
 void Offscreen::step(const FrameFunction& draw, const Input& input) {

@@ -1,0 +1,40 @@
+// What a picture is made from: system files and journals, by the names they were asked for. From the disk, and then
+// they are remembered; or from a picture that remembers them, and then from nowhere else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/description.hpp"
+
+namespace achilles {
+
+struct Source {
+    enum class Kind { system, journal, refusal };  // refusal: what was said instead of a system that could not be read
+    Kind kind = Kind::system;
+    std::string name, text;
+    friend bool operator==(const Source&, const Source&) = default;
+};
+
+class Inputs {
+ public:
+    Inputs() = default;
+    explicit Inputs(std::vector<Source> kept) : kept_(std::move(kept)), from_picture_(true) {}
+
+    // A system by path or name. Throws InputError.
+    SystemDescription system(const std::string& name);
+    std::string journal(const std::string& path);
+    // The first that was asked for: where a command line names none, a picture tells.
+    std::string first_system() const;
+    bool from_picture() const { return from_picture_; }
+    const std::vector<Source>& kept() const { return kept_; }
+
+ private:
+    const Source* find(Source::Kind kind, const std::string& name) const;
+    void keep(Source input);
+
+    std::vector<Source> kept_;
+    bool from_picture_ = false;
+};
+
+}  // namespace achilles
