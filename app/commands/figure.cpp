@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "commands/commands.hpp"
@@ -33,10 +34,15 @@ bool wants_svg(const Arguments& arguments) {
                      "end it in .png or .svg, or add --format png or --format svg");
 }
 
-// The views of these names, in this order; all if none is named.
+// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
 std::vector<ViewDescription> chosen(const SystemDescription& description, const std::vector<std::string>& names) {
-    if (names.empty()) return description.views;
     std::vector<ViewDescription> views;
+    if (names.empty()) {
+        views = description.views;
+        std::stable_partition(views.begin(), views.end(),
+                              [](const ViewDescription& view) { return view.x.text == "t"; });
+        return views;
+    }
     std::vector<std::string> known;
     for (const ViewDescription& view : description.views) known.push_back(view.name);
     for (const std::string& name : names) {

@@ -25,6 +25,9 @@ bool has_tick_labels(const Axis& axis) {
            std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
 }
 
+// How near ticks may stand, as a share of the text.
+constexpr float closest_ticks = 0.38F;
+
 // A tick with its place on the screen.
 struct Placed {
     const Tick* tick;
@@ -48,8 +51,19 @@ void drop_labels(std::vector<Placed>& ticks, float length) {
     for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == zero % every;
 }
 
+// Ticks without labels go where they would be a comb.
+void drop_minor(std::vector<Placed>& ticks, float closest) {
+    bool crowded = false;
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+        crowded = crowded || (ticks[i].at - ticks[i - 1].at < closest && ticks[i - 1].at - ticks[i].at < closest);
+    if (!crowded) return;
+    std::erase_if(ticks, [](const Placed& p) { return p.tick->label.empty(); });
+}
+
 // The ticks within the plot's side, which runs from `from` to `to` in pixels.
-std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length) {
+// `length`: of the labels along the axis. `closest`: how near ticks may be.
+std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
+                           float closest) {
     std::vector<Placed> result;
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
@@ -60,16 +74,18 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
         result.push_back({&tick, snapped, !tick.label.empty()});
     }
     drop_labels(result, length);
+    drop_minor(result, closest);
     return result;
 }
 
 std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
     return placed(panel.x, PanelMap(panel, plot).x, plot.x, plot.x + plot.width, m.line,
-                  widest_label(panel.x, m) + m.text * 0.7F);
+                  widest_label(panel.x, m) + m.text * 0.7F, m.text * closest_ticks);
 }
 
 std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
-    return placed(panel.y, PanelMap(panel, plot).y, plot.y, plot.y + plot.height, m.line, m.text * 1.2F);
+    return placed(panel.y, PanelMap(panel, plot).y, plot.y, plot.y + plot.height, m.line, m.text * 1.2F,
+                  m.text * closest_ticks);
 }
 
 // The size at which a label is at most `room` long.

@@ -131,7 +131,7 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
 struct KeyLines {
     KeyLines(const std::vector<Key>& wanted, float room, const Metrics& m) : keys(wanted) {
         for (const Key& key : keys) {
-            const float length = sample(m) + m.width(key.label, m.text);
+            const float length = sample(key, m) + m.width(key.label, m.text);
             if (lines.empty() || lines.back().length + between(m) + length > room) lines.push_back({0, 0.0F});
             Line& line = lines.back();
             line.length += length + (line.count > 0 ? between(m) : 0.0F);
@@ -150,10 +150,10 @@ struct KeyLines {
         for (const Line& line : lines) {
             float at = std::round(x - anchor * line.length);
             for (std::size_t i = 0; i < line.count; ++i, ++next) {
-                lay_sign(keys[next], sheet, at, std::round(y + row(m) / 2.0F), sign(m), m);
-                sheet.push_back(
-                    Words{at + sample(m), y + (row(m) - m.text) / 2.0F, 0.0F, keys[next].label, style.ink, m.text});
-                at += sample(m) + m.width(keys[next].label, m.text) + between(m);
+                lay_sign(keys[next], sheet, at, std::round(y + row(m) / 2.0F), sign(keys[next], m), m);
+                sheet.push_back(Words{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F, keys[next].label,
+                                      style.ink, m.text});
+                at += sample(keys[next], m) + m.width(keys[next].label, m.text) + between(m);
             }
             y += row(m);
         }
@@ -164,8 +164,10 @@ struct KeyLines {
         std::size_t count;
         float length;
     };
-    static float sign(const Metrics& m) { return std::round(2.2F * m.text); }
-    static float sample(const Metrics& m) { return sign(m) + std::round(0.45F * m.text); }
+    static float sign(const Key& key, const Metrics& m) {
+        return std::round((std::holds_alternative<Stroke>(key.sign) ? 2.2F : 0.8F) * m.text);
+    }
+    static float sample(const Key& key, const Metrics& m) { return sign(key, m) + std::round(0.4F * m.text); }
     static float between(const Metrics& m) { return std::round(1.4F * m.text); }
     static float row(const Metrics& m) { return std::round(1.35F * m.text); }
 

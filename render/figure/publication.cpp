@@ -1,6 +1,7 @@
 #include "figure/publication.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace achilles {
 
@@ -21,7 +22,14 @@ int columns_for(const std::vector<Panel>& panels) {
 std::string lettered(std::size_t i, const std::string& name) {
     std::string letter;
     for (++i; i > 0; i = (i - 1) / 26) letter.insert(letter.begin(), static_cast<char>('a' + (i - 1) % 26));
-    return "(" + letter + ")" + (name.empty() ? "" : "\u2002" + name);
+    return "(" + letter + ")" + (name.empty() ? "" : "\u00A0\u00A0" + name);
+}
+
+// Smaller than on a screen. Impacts crowd: rims would leave odd shapes of those that others cover.
+Markers for_print(Markers markers, Event::Kind kind) {
+    markers.size = kind == Event::Kind::impact ? 5.5 : 9.0;
+    if (kind == Event::Kind::impact) markers.edge.a = 0;
+    return markers;
 }
 
 // Markers and dashes mean the same in every panel, so one legend tells them all; what does not occur is not in it.
@@ -41,7 +49,7 @@ std::vector<Key> keys_of(const Trajectory& trajectory, const std::vector<Panel>&
         if (std::none_of(trajectory.events.begin(), trajectory.events.end(),
                          [&](const Event& event) { return event.kind == kind; }))
             continue;
-        const Markers markers = event_markers(theme, kind);
+        const Markers markers = for_print(event_markers(theme, kind), kind);
         keys.push_back({markers.label + (kind == Event::Kind::zeno ? ", \U0001D70F_{\u221E}" : ""), markers});
     }
     return keys;
@@ -51,8 +59,15 @@ std::vector<Key> keys_of(const Trajectory& trajectory, const std::vector<Panel>&
 
 void share_axes(Figure& figure) {
     const auto columns = static_cast<std::size_t>(std::max(figure.columns, 1));
-    for (std::size_t i = 0; i + columns < figure.panels.size(); ++i)
-        figure.panels[i].x.labelled = !same_axis(figure.panels[i].x, figure.panels[i + columns].x);
+    const std::vector<Panel>& panels = figure.panels;
+    for (std::size_t row = 0; row < panels.size(); row += columns) {
+        // A row with room for one panel's labels has it for all: then they stay, and the grid looks even.
+        bool shared = true;
+        for (std::size_t i = row; i < std::min(row + columns, panels.size()); ++i)
+            shared = shared && i + columns < panels.size() && same_axis(panels[i].x, panels[i + columns].x);
+        for (std::size_t i = row; i < std::min(row + columns, panels.size()); ++i)
+            figure.panels[i].x.labelled = !shared;
+    }
 }
 
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
@@ -64,7 +79,11 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
     figure.keys = keys_of(trajectory, figure.panels, theme);
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;
-        for (Markers& markers : panel.markers) markers.label.clear();
+        constexpr std::array kinds{Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
+        for (std::size_t i = 0; i < panel.markers.size(); ++i) {
+            panel.markers[i] = for_print(panel.markers[i], kinds[i]);
+            panel.markers[i].label.clear();
+        }
     }
     const bool lone = figure.panels.size() == 1;
     for (std::size_t i = 0; i < figure.panels.size(); ++i)

@@ -14,7 +14,7 @@ struct PublicationStyle {
 // Throws InputError for a view that cannot be evaluated.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
 
-// Takes the labels off every x axis that the next panel of its column shows too.
+// Takes the labels off the x axes of every row whose panels all stand on others with the same axes.
 void share_axes(Figure& figure);
 
 // Text and strokes of a figure are made for a page about as wide as this many pixels; --scale 1 is that size.

@@ -185,7 +185,7 @@ class Writer {
         }
     }
 
-    static constexpr double dot_gap = 0.06;  // between a letter and its dots, of the em
+    static constexpr double dot_gap = 0.08;  // between a letter and its dots, of the em
 
     const FontFile& font_;
     std::string body_;
