@@ -18,12 +18,12 @@ InputError not_carried(const std::string& name) {
 
 const Source* Inputs::find(Source::Kind kind, const std::string& name) const {
     const auto found = std::find_if(kept_.begin(), kept_.end(),
-                                    [&](const Source& input) { return input.kind == kind && input.name == name; });
+                                    [&](const Source& source) { return source.kind == kind && source.name == name; });
     return found == kept_.end() ? nullptr : &*found;
 }
 
-void Inputs::keep(Source input) {
-    if (find(input.kind, input.name) == nullptr) kept_.push_back(std::move(input));
+void Inputs::keep(Source source) {
+    if (find(source.kind, source.name) == nullptr) kept_.push_back(std::move(source));
 }
 
 SystemDescription Inputs::system(const std::string& name) {
@@ -49,8 +49,8 @@ std::string Inputs::journal(const std::string& path) {
 }
 
 std::string Inputs::first_system() const {
-    const auto first =
-        std::find_if(kept_.begin(), kept_.end(), [](const Source& input) { return input.kind == Source::Kind::system; });
+    const auto first = std::find_if(kept_.begin(), kept_.end(),
+                                    [](const Source& source) { return source.kind == Source::Kind::system; });
     if (first == kept_.end()) throw not_carried("SYSTEM");
     return first->name;
 }

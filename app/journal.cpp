@@ -1,7 +1,5 @@
 #include "journal.hpp"
 
-#include <sstream>
-
 namespace achilles {
 
 std::vector<Command> parse_journal(std::string_view text, const std::string& name) {
@@ -18,16 +16,7 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
 }
 
 std::vector<Command> read_journal(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    // A directory opens, but does not read.
-    if (!stream || !(text << stream.rdbuf())) {
-        std::error_code ignored;
-        const bool is_empty =
-            std::filesystem::is_regular_file(file, ignored) && std::filesystem::is_empty(file, ignored);
-        if (!is_empty) throw InputError(file.string(), {}, "the journal cannot be read");
-    }
-    return parse_journal(text.str(), file.string());
+    return parse_journal(read_file(file), file.string());
 }
 
 std::string journal_text(const std::vector<Command>& commands) {

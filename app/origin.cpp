@@ -136,7 +136,7 @@ Notes notes(const Origin& origin, const std::vector<Shown>& runs) {
         add("Achilles Options", name + options_text(run.trajectory->run.options));
         add("Achilles Certificates", name + certificates_text(*run.trajectory));
     }
-    for (const Source& input : origin.inputs) add(key_of(input.kind), quoted(input.name) + "\n" + input.text);
+    for (const Source& source : origin.sources) add(key_of(source.kind), quoted(source.name) + "\n" + source.text);
     return result;
 }
 
@@ -155,8 +155,8 @@ Origin origin_of(std::string_view file) {
             if (note.keyword != key_of(kind)) continue;
             std::string_view text = note.text;
             const std::string name = take_word(text);
-            if (text.substr(0, 1) != "\n") throw std::runtime_error("its origin is damaged: an input without a name");
-            origin.inputs.push_back({kind, name, std::string(text.substr(1))});
+            if (text.substr(0, 1) != "\n") throw std::runtime_error("its origin is damaged: a file without a name");
+            origin.sources.push_back({kind, name, std::string(text.substr(1))});
         }
     }
     if (origin.command.empty()) throw std::runtime_error("this picture does not tell where it comes from");

@@ -15,7 +15,7 @@ struct Origin {
     std::string software;  // "Achilles 0.1.0"
     std::string command;   // as a shell reads it, without --out
     std::string picture;   // which of the command's; "" where it makes one
-    std::vector<Source> inputs;
+    std::vector<Source> sources;
 };
 
 // "achilles" and the words, without --out and what follows it; quoted for a shell where need be.

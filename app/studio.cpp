@@ -14,7 +14,7 @@ namespace achilles {
 Studio::Studio(const std::vector<std::string>& words) : command_(command_line(words)) {}
 
 Studio::Studio(const Origin& origin)
-    : inputs_(origin.inputs), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
+    : inputs_(origin.sources), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
 void Studio::add(const std::string& path) {
     if (!reproduces_) files_.add(path);

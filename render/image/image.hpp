@@ -11,8 +11,8 @@ namespace achilles {
 
 struct Image {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> rgb;    // top row first, 3 bytes a pixel
-    std::vector<std::uint8_t> alpha;  // a byte a pixel, 255 is opaque; empty: all are
+    std::vector<std::uint8_t> rgb;      // top row first, 3 bytes a pixel
+    std::vector<std::uint8_t> alpha{};  // a byte a pixel, 255 is opaque; empty: all are
     friend bool operator==(const Image&, const Image&) = default;
 };
 
