@@ -1,10 +1,13 @@
 #include "command.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "expression/nearest.hpp"
@@ -14,6 +17,15 @@ namespace achilles {
 namespace {
 
 constexpr std::string_view spaces = " \t\r";
+
+// What would end the line or the word, and how it is written: \n.
+constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
+
+char meant_by(char letter) {
+    for (const auto& [written, meant] : escapes)
+        if (written == letter) return meant;
+    return letter;
+}
 
 struct Word {
     std::string text;
@@ -67,8 +79,9 @@ class Line {
         const int column = static_cast<int>(at) + 1;
         std::string result;
         for (++at; at < text_.size() && text_[at] != '"'; ++at) {
-            if (text_[at] == '\\' && at + 1 < text_.size()) ++at;
-            result += text_[at];
+            const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
+            if (escaped) ++at;
+            result += escaped ? meant_by(text_[at]) : text_[at];
         }
         if (at == text_.size()) throw error(column, "the quotes are not closed");
         ++at;
@@ -81,14 +94,20 @@ class Line {
     std::vector<Word> words_;
 };
 
-std::string quoted_where_needed(const std::string& word) {
-    if (!word.empty() && word[0] != '#' && word.find_first_of(" \t\r\"\\") == std::string::npos) return word;
+std::string quoted(const std::string& word) {
     std::string text = "\"";
     for (const char c : word) {
-        if (c == '"' || c == '\\') text += '\\';
-        text += c;
+        const auto* special =
+            std::find_if(escapes.begin(), escapes.end(), [c](const auto& e) { return e.second == c; });
+        if (special != escapes.end() || c == '"' || c == '\\') text += '\\';
+        text += special != escapes.end() ? special->first : c;
     }
     return text + '"';
+}
+
+std::string quoted_where_needed(const std::string& word) {
+    const bool is_plain = !word.empty() && word[0] != '#' && word.find_first_of(" \t\r\n\"\\") == std::string::npos;
+    return is_plain ? word : quoted(word);
 }
 
 Command read_eps(const Line& line) {
@@ -146,7 +165,83 @@ Command read_select(const Line& line) {
     return command::Select{line.whole_number(1)};
 }
 
-constexpr std::array<Verb, 11> verbs{{{"open", read_open},
+Command read_text_of_system(const Line& line) {
+    line.expect_arguments(1, 1, "write: text \"the whole file\", with \\n for every new line");
+    return command::Text{line.word(1).text};
+}
+
+Command read_save(const Line& line) {
+    line.expect_arguments(1, 2, "write: save FILE, or: save FILE overwrite");
+    if (line.count() == 3 && line.word(2).text != "overwrite")
+        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text),
+                         "write: save FILE, or: save FILE overwrite");
+    return command::Save{line.word(1).text, line.count() == 3};
+}
+
+template <bool shown>
+Command read_show(const Line& line) {
+    const std::string usage = fmt::format("write: {} editor", line.word(0).text);
+    line.expect_arguments(1, 1, usage);
+    if (line.word(1).text != "editor")
+        throw line.error(line.word(1).column, fmt::format("there is no panel '{}'", line.word(1).text), usage);
+    return command::Show{shown};
+}
+
+// The words from number `first` on.
+std::vector<std::string> words_from(const Line& line, std::size_t first) {
+    std::vector<std::string> result;
+    for (std::size_t i = first; i < line.count(); ++i) result.push_back(line.word(i).text);
+    return result;
+}
+
+bool read_switch(const Line& line, std::size_t i, const std::string& usage) {
+    const std::string& text = line.word(i).text;
+    if (text != "on" && text != "off")
+        throw line.error(line.word(i).column, fmt::format("'{}' is neither on nor off", text), usage);
+    return text == "on";
+}
+
+Command read_grid(const Line& line) {
+    line.expect_arguments(2, 2, "write: grid COLUMNS ROWS");
+    return command::Grid{line.whole_number(1), line.whole_number(2)};
+}
+
+Command read_plot(const Line& line) {
+    line.expect_arguments(3, 12, "write: plot NUMBER X Y..., expressions with spaces in double quotes");
+    return command::PlotView{line.whole_number(1), line.word(2).text, words_from(line, 3)};
+}
+
+Command read_zoom(const Line& line) {
+    line.expect_arguments(5, 5, "write: zoom NUMBER X_LOW X_HIGH Y_LOW Y_HIGH");
+    return command::Zoom{line.whole_number(1), line.number(2), line.number(3), line.number(4), line.number(5)};
+}
+
+Command read_fit(const Line& line) {
+    line.expect_arguments(1, 1, "write: fit NUMBER");
+    return command::Fit{line.whole_number(1)};
+}
+
+Command read_log(const Line& line) {
+    const std::string usage = "write: log NUMBER x on, or: log NUMBER y off";
+    line.expect_arguments(3, 3, usage);
+    const std::string& axis = line.word(2).text;
+    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
+    return command::AxisScale{line.whole_number(1), axis == "x", read_switch(line, 3, usage)};
+}
+
+Command read_curve(const Line& line) {
+    const std::string usage = "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off";
+    line.expect_arguments(3, 3, usage);
+    return command::ShowCurve{line.whole_number(1), line.whole_number(2), read_switch(line, 3, usage)};
+}
+
+Command read_link(const Line& line) {
+    const std::string usage = "write: link on, or: link off";
+    line.expect_arguments(1, 1, usage);
+    return command::Link{read_switch(line, 1, usage)};
+}
+
+constexpr std::array<Verb, 23> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -156,7 +251,21 @@ constexpr std::array<Verb, 11> verbs{{{"open", read_open},
                                       {"seek", read_number<command::Seek>},
                                       {"play", read_alone<command::Play>},
                                       {"pause", read_alone<command::Pause>},
-                                      {"select", read_select}}};
+                                      {"select", read_select},
+                                      {"new", read_alone<command::New>},
+                                      {"text", read_text_of_system},
+                                      {"save", read_save},
+                                      {"show", read_show<true>},
+                                      {"hide", read_show<false>},
+                                      {"grid", read_grid},
+                                      {"plot", read_plot},
+                                      {"zoom", read_zoom},
+                                      {"fit", read_fit},
+                                      {"log", read_log},
+                                      {"curve", read_curve},
+                                      {"link", read_link}}};
+
+const char* on_off(bool on) { return on ? "on" : "off"; }
 
 struct Print {
     std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
@@ -178,6 +287,29 @@ struct Print {
     std::string operator()(const command::Play&) const { return "play"; }
     std::string operator()(const command::Pause&) const { return "pause"; }
     std::string operator()(const command::Select& c) const { return fmt::format("select {}", c.event); }
+    std::string operator()(const command::New&) const { return "new"; }
+    std::string operator()(const command::Text& c) const { return "text " + quoted(c.text); }
+    std::string operator()(const command::Save& c) const {
+        return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
+    }
+    std::string operator()(const command::Show& c) const { return c.editor ? "show editor" : "hide editor"; }
+    std::string operator()(const command::Grid& c) const { return fmt::format("grid {} {}", c.columns, c.rows); }
+    std::string operator()(const command::PlotView& c) const {
+        std::string text = fmt::format("plot {} {}", c.plot, quoted_where_needed(c.x));
+        for (const std::string& y : c.y) text += " " + quoted_where_needed(y);
+        return text;
+    }
+    std::string operator()(const command::Zoom& c) const {
+        return fmt::format("zoom {} {} {} {} {}", c.plot, c.x_low, c.x_high, c.y_low, c.y_high);
+    }
+    std::string operator()(const command::Fit& c) const { return fmt::format("fit {}", c.plot); }
+    std::string operator()(const command::AxisScale& c) const {
+        return fmt::format("log {} {} {}", c.plot, c.is_x ? "x" : "y", on_off(c.logarithmic));
+    }
+    std::string operator()(const command::ShowCurve& c) const {
+        return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
+    }
+    std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
 };
 
 }  // namespace
@@ -200,8 +332,7 @@ Command parse_command(std::string_view text, const std::string& file, int line_n
     throw line.error(
         line.word(0).column,
         fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
-        "the commands are: open, set, end, tolerance, eps, conditions, reinitialization, seek, play, pause, "
-        "select");
+        fmt::format("the commands are: {}", fmt::join(names, ", ")));
 }
 
 }  // namespace achilles

@@ -4,13 +4,19 @@
 //     eps 1e-6                 eps 1e-6 1e-6 1e-7 (position, velocity, time)
 //     conditions paper         reinitialization kinetic
 //     seek 3.2                 play               pause              select 25
+//     new                      text "title = \"A ball\"\n..."          show editor        hide editor
+//     save mine.toml           save mine.toml overwrite
+//     grid 3 2 (columns, rows) plot 1 t y gap     plot 2 x "x'^2 + y'^2"      link off
+//     zoom 1 0 5 -1 2.5        fit 1              log 1 y on         curve 1 2 off
 //
-// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes".
+// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes",
+// where \n is a new line, \t a tab, \r a carriage return and \ before anything else that itself.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "model/description.hpp"
 
@@ -62,11 +68,65 @@ struct Select {
     friend bool operator==(const Select&, const Select&) = default;
 };
 
+struct New {  // a system to start from
+    friend bool operator==(const New&, const New&) = default;
+};
+struct Text {
+    std::string text;  // of the whole system file, as the editor holds it
+    friend bool operator==(const Text&, const Text&) = default;
+};
+struct Save {
+    std::string file;        // what the editor holds goes there
+    bool overwrite = false;  // whatever file may be there; else only the one that was opened or saved before
+    friend bool operator==(const Save&, const Save&) = default;
+};
+struct Show {
+    bool editor = true;  // in place of the sliders
+    friend bool operator==(const Show&, const Show&) = default;
+};
+
+// The plots count from 1, row by row.
+struct Grid {
+    int columns = 1, rows = 1;
+    friend bool operator==(const Grid&, const Grid&) = default;
+};
+struct PlotView {
+    int plot = 1;
+    std::string x;  // expressions, as in a view
+    std::vector<std::string> y;
+    friend bool operator==(const PlotView&, const PlotView&) = default;
+};
+struct Zoom {
+    int plot = 1;
+    double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;  // in the units that are shown
+    friend bool operator==(const Zoom&, const Zoom&) = default;
+};
+struct Fit {
+    int plot = 1;
+    friend bool operator==(const Fit&, const Fit&) = default;
+};
+struct AxisScale {
+    int plot = 1;
+    bool is_x = true, logarithmic = false;
+    friend bool operator==(const AxisScale&, const AxisScale&) = default;
+};
+struct ShowCurve {
+    int plot = 1, curve = 1;
+    bool shown = true;
+    friend bool operator==(const ShowCurve&, const ShowCurve&) = default;
+};
+struct Link {
+    bool on = true;  // all plots over time show the same time
+    friend bool operator==(const Link&, const Link&) = default;
+};
+
 }  // namespace command
 
 using Command =
     std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
-                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select>;
+                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select,
+                 command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
+                 command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

@@ -31,18 +31,40 @@ std::vector<SystemEntry> known_systems() {
     return entries;
 }
 
-std::string first_of_list() {
+// Where none is asked for: the paper's first example, or whatever there is.
+std::string first_system() {
     const std::vector<std::string> names = system_names();
     if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
-    return names.front();
+    const std::string usual = "ball_on_sine";
+    return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
 }
 
-// The session that the command line asks for, with systems from where `read` finds them.
-Session open_session(const std::string& name, const ExploreOptions& options, const Opener& read) {
-    const Opener opener = [overrides = options.overrides, read](const std::string& system) {
-        return adjusted(read(system), {}, overrides);
+// What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
+// hand; the others are shown when they are there.
+constexpr double frame_patience = 1.0 / 40.0;
+
+// The session that the command line asks for, with systems from where the library finds them.
+Session open_session(const std::string& name, SystemDescription first, const ExploreOptions& options, Library library,
+                     Patience patience) {
+    library.finish = [overrides = options.overrides](SystemDescription& description) {
+        apply(overrides, description.options);
+        refuse_unavailable(description, overrides);
     };
-    return {name, adjusted(read(name), options.settings, options.overrides), opener};
+    return {name, adjusted(std::move(first), options.settings, options.overrides), std::move(library), patience};
+}
+
+// A picture's systems. What its journal saves is written only when it is made for the first time.
+Library library_of(Studio& studio) {
+    Library library;
+    library.open = [&studio](const std::string& name) {
+        const std::filesystem::path path(name);
+        const bool is_path = path.has_parent_path() || path.extension() == ".toml";
+        const std::string text = studio.inputs().text(name);
+        return Document{name, is_path ? name : "", name, text, text, {}};
+    };
+    if (studio.reproduces())
+        library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
+    return library;
 }
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
@@ -82,6 +104,25 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
+// What the files dropped on the window ask for: a journal is replayed; a system is opened, once changes of the text are
+// saved or given up.
+std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
+    std::vector<Command> commands;
+    for (const std::string& file : window.dropped()) {
+        try {
+            if (std::filesystem::path(file).extension() == ".journal") {
+                const std::vector<Command> journal = read_journal(file);
+                commands.insert(commands.end(), journal.begin(), journal.end());
+            } else {
+                request(session, state, command::Open{file}, commands);
+            }
+        } catch (const InputError& problem) {
+            session.refuse(problem);
+        }
+    }
+    return commands;
+}
+
 // Seconds since it was last asked, none the first time.
 class Clock {
  public:
@@ -102,8 +143,12 @@ class Clock {
 int explore(const ExploreOptions& options) {
     std::vector<Command> journal;
     if (!options.journal.empty()) journal = read_journal(options.journal);
-    Session session = open_session(options.system ? *options.system : first_of_list(), options,
-                                   [](const std::string& name) { return read_system(find_system(name)); });
+    const std::string name = options.system ? *options.system : first_system();
+    Library library;
+    library.find = find_system;
+    // A journal tells what was done after each run: then every run is waited for.
+    Session session = open_session(name, read_system(find_system(name)), options, std::move(library),
+                                   journal.empty() ? Patience(frame_patience) : Patience());
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
@@ -118,16 +163,21 @@ int explore(const ExploreOptions& options) {
     };
     for (const Command& command : opening(session, options)) keep(command);
     for (const Command& command : journal) apply(command);
+    session.set_patience(frame_patience);
+    session.on_ready(Window::wake);
+    window.on_close([&] { return request_close(session, state); });
     Clock clock;
     window.run([&] {
+        session.update();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (session.playing())
             play_on(session, clock.elapsed(), state.loop);
         else
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);
-        for (const std::string& file : window.dropped()) apply(command::Open{file});
-        window.keep_drawing(session.playing());
+        for (const Command& command : dropped(window, session, state)) apply(command);
+        if (state.editor.may_close) window.close();
+        window.keep_drawing(session.playing() || is_typing(state));
     });
     return reached_end;
 }
@@ -137,10 +187,10 @@ int screenshot(const ScreenshotOptions& options, Studio& studio) {
     Inputs& inputs = studio.inputs();
     std::vector<Command> journal;
     if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
-    const std::string first = options.system        ? *options.system
-                              : studio.reproduces() ? inputs.first_system()
-                                                    : first_of_list();
-    Session session = open_session(first, options, [&inputs](const std::string& name) { return inputs.system(name); });
+    const std::string name = options.system        ? *options.system
+                             : studio.reproduces() ? inputs.first_system()
+                                                   : first_system();
+    Session session = open_session(name, inputs.system(name), options, library_of(studio), {});
     for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
     studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {

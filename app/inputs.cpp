@@ -1,10 +1,9 @@
 #include "inputs.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "assets.hpp"
+#include "journal.hpp"
 
 namespace achilles {
 
@@ -16,35 +15,40 @@ InputError not_carried(const std::string& name) {
 
 }  // namespace
 
-const Source* Inputs::find(Source::Kind kind, const std::string& name) const {
-    const auto found = std::find_if(kept_.begin(), kept_.end(),
-                                    [&](const Source& source) { return source.kind == kind && source.name == name; });
-    return found == kept_.end() ? nullptr : &*found;
+// Of a picture: what this name stood for when it was asked for so often; what came last stays.
+const Source& Inputs::next(const std::string& name, bool is_journal) {
+    const std::size_t wanted = asked_[{name, is_journal}]++;
+    const Source* found = nullptr;
+    std::size_t count = 0;
+    for (const Source& source : kept_)
+        if (source.name == name && (source.kind == Source::Kind::journal) == is_journal && count++ <= wanted)
+            found = &source;
+    if (found == nullptr) throw not_carried(name);
+    return *found;
 }
 
-void Inputs::keep(Source source) {
-    if (find(source.kind, source.name) == nullptr) kept_.push_back(std::move(source));
-}
-
-SystemDescription Inputs::system(const std::string& name) {
-    // Asked for again it is the same, whatever became of the file. Messages call it what it was called here: an
-    // explorer that shows one is a picture too, and must not depend on where the assets are.
-    if (const Source* refusal = find(Source::Kind::refusal, name)) throw InputError({}, {}, refusal->text);
-    if (const Source* known = find(Source::Kind::system, name)) return parse_system(known->text, name);
-    if (from_picture_) throw not_carried(name);
+std::string Inputs::text(const std::string& name) {
+    if (from_picture_) {
+        const Source& source = next(name, false);
+        if (source.kind == Source::Kind::refusal) throw InputError({}, {}, source.text);
+        return source.text;
+    }
     try {
-        keep({Source::Kind::system, name, read_file(find_system(name))});
+        kept_.push_back({Source::Kind::system, name, read_text(find_system(name))});
     } catch (const InputError& error) {
-        keep({Source::Kind::refusal, name, error.what()});
+        kept_.push_back({Source::Kind::refusal, name, error.what()});
         throw;
     }
-    return parse_system(kept_.back().text, name);
+    return kept_.back().text;
 }
 
+// Messages call a system what it was called here: an explorer that shows one is a picture too, and must not depend on
+// where the assets are.
+SystemDescription Inputs::system(const std::string& name) { return parse_system(text(name), name); }
+
 std::string Inputs::journal(const std::string& path) {
-    if (const Source* known = find(Source::Kind::journal, path)) return known->text;
-    if (from_picture_) throw not_carried(path);
-    keep({Source::Kind::journal, path, read_file(path)});
+    if (from_picture_) return next(path, true).text;
+    kept_.push_back({Source::Kind::journal, path, journal_file(path)});
     return kept_.back().text;
 }
 

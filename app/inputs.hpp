@@ -2,7 +2,9 @@
 // they are remembered; or from a picture that remembers them, and then from nowhere else.
 #pragma once
 
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/description.hpp"
@@ -21,20 +23,21 @@ class Inputs {
     Inputs() = default;
     explicit Inputs(std::vector<Source> kept) : kept_(std::move(kept)), from_picture_(true) {}
 
-    // A system by path or name. Throws InputError.
+    // The text of a system by path or name, and read. What a name stands for may change while a journal saves files:
+    // every time it is asked for counts. Throw InputError.
+    std::string text(const std::string& name);
     SystemDescription system(const std::string& name);
     std::string journal(const std::string& path);
     // The first that was asked for: where a command line names none, a picture tells.
     std::string first_system() const;
-    bool from_picture() const { return from_picture_; }
     const std::vector<Source>& kept() const { return kept_; }
 
  private:
-    const Source* find(Source::Kind kind, const std::string& name) const;
-    void keep(Source input);
+    const Source& next(const std::string& name, bool is_journal);
 
     std::vector<Source> kept_;
     bool from_picture_ = false;
+    std::map<std::pair<std::string, bool>, std::size_t> asked_;  // how often, of a picture
 };
 
 }  // namespace achilles

@@ -15,8 +15,14 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
+std::string journal_file(const std::filesystem::path& file) {
+    std::string text = read_text(file);
+    if (text.size() > largest_file) throw InputError(file.string(), {}, "this is too large for a journal");
+    return text;
+}
+
 std::vector<Command> read_journal(const std::filesystem::path& file) {
-    return parse_journal(read_file(file), file.string());
+    return parse_journal(journal_file(file), file.string());
 }
 
 std::string journal_text(const std::vector<Command>& commands) {

@@ -8,13 +8,11 @@
 
 #include "expression/nearest.hpp"
 #include "model/model.hpp"
-#include "simulate/simulate.hpp"
+#include "overrides.hpp"
 
 namespace achilles {
 
 namespace {
-
-constexpr std::size_t most_plots = 4;
 
 // A refusal that names no file: the user's hand made the mistake.
 InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
@@ -46,26 +44,27 @@ InputError no_such_name(const SystemDescription& description, const std::string&
 }  // namespace
 
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
-    : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {
-    const auto& all = model->description().views;
-    for (std::size_t i = 0; i < std::min(all.size(), most_plots); ++i) views.emplace_back(*model, all[i]);
-}
+    : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {}
 
-Session::Motion::Motion(const System& system, const Run& run, const Theme& theme)
-    : trajectory(simulate(system.model, run)), sampler(trajectory) {
-    without_events.model = trajectory.model;
-    without_events.run = run;
-    const std::vector<Sample> samples = plot_samples(trajectory);
-    limits = system.mechanism.limits(trajectory, samples);
-    for (const PreparedView& view : system.views) plots.push_back(compose(trajectory, samples, view, theme));
-}
+Session::Motion::Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch)
+    : trajectory(simulate(system.model, run, watch)),
+      sampler(trajectory),
+      samples(plot_samples(trajectory)),
+      limits(system.mechanism.limits(trajectory, samples)),
+      revision(plotted.revision()),
+      plots(plotted.compose(trajectory, samples, theme)) {}
 
-Session::Session(const std::string& name, const SystemDescription& first, Opener opener) : opener_(std::move(opener)) {
-    system_ = std::make_shared<const System>(name, first);
-    rerun(system_->model->default_run());
+Session::Session(const std::string& name, const SystemDescription& first, Library library, Patience patience)
+    : library_(std::move(library)),
+      patience_(patience),
+      document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
+      system_(std::make_shared<const System>(name, first)),
+      plots_(system_->model) {
+    change_system(system_, plots_, system_->model->default_run());
 }
 
 void Session::apply(const Command& command) {
+    if (!patience_) receive(patience_);
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on must not wipe away what the last change of the run complained about.
@@ -79,12 +78,81 @@ void Session::apply(const Command& command) {
 }
 
 void Session::perform(const command::Open& command) {
-    const auto opened = std::make_shared<const System>(command.system, opener_(command.system));
-    const auto motion = std::make_shared<Motion>(*opened, opened->model->default_run(), theme_);
-    system_ = opened;
-    motion_ = motion;
-    playing_ = false;
-    selected_ = 0;
+    begin_document(library_.open ? library_.open(command.system)
+                                 : open_document(command.system, library_.find(command.system)));
+}
+
+void Session::perform(const command::New&) { begin_document(new_document()); }
+
+// Another text. Where it is no system the editor shows why, and the last system goes on.
+void Session::begin_document(Document document) {
+    document_ = std::move(document);
+    try {
+        SystemDescription description = parse_system(document_.text, document_.source);
+        if (library_.finish) library_.finish(description);
+        const auto system = std::make_shared<const System>(document_.name, description);
+        system->model->check(system->model->default_run());
+        playing_ = false;
+        selected_ = 0;
+        time_ = 0.0;
+        placed_.reset();
+        change_system(system, Plots(system->model), system->model->default_run());
+    } catch (const InputError& problem) {
+        document_.problems = {problem};
+        shows_editor_ = true;
+    }
+}
+
+void Session::perform(const command::Text& command) {
+    document_.text = command.text;
+    read_document();
+}
+
+void Session::perform(const command::Save& command) {
+    if (library_.save)
+        library_.save(document_, command.file, command.overwrite);
+    else
+        save(document_, command.file, command.overwrite);
+    read_document();  // under its new name
+}
+
+void Session::perform(const command::Show& command) { shows_editor_ = command.editor; }
+
+// The edited text takes effect if it is a system.
+void Session::read_document() {
+    document_.problems.clear();
+    try {
+        const SystemDescription description = parse_system(document_.text, document_.source);
+        refuse_unavailable(description, {});
+        const auto system = std::make_shared<const System>(document_.name, description);
+        // Read once more as it stood there: the command line may have put other values over it.
+        const SystemDescription before = parse_system(this->description().source_text, this->description().file);
+        Run run = carried_over(before, asked_, *system->model);
+        try {
+            system->model->check(run);
+        } catch (const InputError&) {  // what the sliders changed does not fit the new text: the text alone
+            run = system->model->default_run();
+            system->model->check(run);
+        }
+        placed_ = command::Seek{time_};
+        change_system(system, plots_.carried_over(system->model), run);
+    } catch (const InputError& problem) {
+        document_.problems = {problem};
+    }
+}
+
+// Shows the start of the system until its run is there. The run must be one that can start.
+void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
+    system_ = system;
+    plots_ = plots;
+    motion_.reset();
+    rerun(run);
+    if (motion_ != nullptr) return;
+    std::stop_source at_once;
+    at_once.request_stop();
+    Watch watch;
+    watch.stop = at_once.get_token();
+    motion_ = std::make_shared<Motion>(*system_, run, plots_, theme_, &watch);
     move_to(0.0);
 }
 
@@ -138,7 +206,10 @@ void Session::perform(const command::UseReinitialization& command) {
     rerun(changed);
 }
 
-void Session::perform(const command::Seek& command) { move_to(command.time); }
+void Session::perform(const command::Seek& command) {
+    move_to(command.time);
+    place(command);
+}
 
 void Session::perform(const command::Play&) {
     // Play at the end means: once more.
@@ -154,13 +225,37 @@ void Session::perform(const command::Select& command) {
         throw refusal(fmt::format("there is no event {}: this run has {}", command.event, events.size()));
     selected_ = command.event;
     if (selected_ > 0) move_to(events[static_cast<std::size_t>(selected_ - 1)].t);
+    place(command);
 }
 
 // The same model with another run: nothing is read or derived again.
 void Session::rerun(const Run& run) {
-    motion_ = std::make_shared<Motion>(*system_, run, theme_);
+    system_->model->check(run);
+    asked_ = run;
+    const auto watch = std::make_shared<Watch>();
+    watch_ = watch;
+    worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
+        watch->stop = stop;
+        return std::make_shared<Motion>(*system, run, plots, theme, watch.get());
+    });
+    receive(patience_);
+}
+
+void Session::receive(Patience patience) {
+    if (watch_ == nullptr) return;
+    const auto motion = worker_.take(patience);
+    if (!motion) return;
+    motion_ = *motion;
+    watch_.reset();
+    compose_plots();  // they may have been changed meanwhile
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
     move_to(time_);
+    if (placed_) apply(*std::exchange(placed_, std::nullopt));
+}
+
+// While a run is under way: what is to be done again on its result.
+void Session::place(const Command& command) {
+    if (watch_ != nullptr) placed_ = command;
 }
 
 void Session::move_to(double time) {
@@ -168,17 +263,27 @@ void Session::move_to(double time) {
     now_ = motion_->sampler.at(time_);
 }
 
-std::vector<Point> Session::present(std::size_t plot) const {
-    const Panel panel = compose(motion_->without_events, {&now_, 1}, system_->views[plot], theme_);
-    std::vector<Point> points;
-    for (const Curve& curve : panel.curves) points.insert(points.end(), curve.points.begin(), curve.points.end());
-    return points;
+std::vector<double> Session::values(std::size_t plot, const Sample& sample) const {
+    return values_at(motion_->trajectory, sample, *plots_.list()[plot].prepared);
+}
+
+// How the run is looked at: nothing runs again.
+template <class PlotCommand>
+void Session::perform(const PlotCommand& command) {
+    plots_.perform(command);
+    compose_plots();
+}
+
+void Session::compose_plots() {
+    if (motion_->revision == plots_.revision()) return;
+    motion_->revision = plots_.revision();
+    motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
 }
 
 void play_on(Session& session, double seconds, bool loop) {
     if (!session.playing()) return;
     session.apply(command::Seek{session.time() + seconds});
-    if (session.time() < session.trajectory().end_time) return;
+    if (session.time() < session.trajectory().end_time || session.under_way() != nullptr) return;
     if (loop)
         session.apply(command::Play{});  // at the end: once more
     else
@@ -197,7 +302,10 @@ std::string to_text(const Session& session) {
     }
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
+    text += to_text(session.plotted());
     if (!session.error().empty()) text += "error " + session.error() + "\n";
+    if (session.document().is_changed()) text += "the text is not saved\n";
+    for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());
     return text + to_text(session.trajectory());
 }
 

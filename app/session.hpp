@@ -1,6 +1,7 @@
 // The state of the explorer: one system, one run of it, and where its player stands. apply() is the only door.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -8,37 +9,68 @@
 #include <vector>
 
 #include "command.hpp"
+#include "document.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
-#include "trajectory.hpp"
+#include "plots.hpp"
+#include "simulate/simulate.hpp"
+#include "worker.hpp"
 
 namespace achilles {
 
-// How a session finds a system by what `open` says. Throws InputError.
-using Opener = std::function<SystemDescription(const std::string& system)>;
+// How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
+struct Library {
+    std::function<std::filesystem::path(const std::string& system)> find{};  // its file
+    std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
+    std::function<Document(const std::string& system)> open{};                                // empty: from its file
+    std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
+};
 
+// Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
+// as long as it takes, so that the same commands lead to the same session. With less patience the last result stays
+// until update() takes in the new one; a newer run cancels an older one. The commands that place the present while a
+// run is under way are done again when it is there, and so mean what they mean in a replayed journal.
 class Session {
  public:
     // Opens `first`, known as `name`. Throws InputError if it cannot be derived or cannot start.
-    Session(const std::string& name, const SystemDescription& first, Opener opener);
+    Session(const std::string& name, const SystemDescription& first, Library library, Patience patience = {});
 
-    // Does what the command says. What cannot be done leaves everything as it was but error().
+    // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
+    // text is no system.
     void apply(const Command& command);
 
+    // A mistake that is no command's: error() tells it until the next command.
+    void refuse(const InputError& problem) { error_ = problem.what(); }
+
+    void set_patience(Patience patience) { patience_ = patience; }
+    // Called on another thread when update() would take something in.
+    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    // Takes in the run that was under way, if it is ready.
+    void update() { receive(0.0); }
+    // How far the run is that was asked for last; null if it is the one that is shown.
+    const Watch* under_way() const { return watch_.get(); }
+
+    // The text that is edited; without problems it is the system that runs.
+    const Document& document() const { return document_; }
+    bool shows_editor() const { return shows_editor_; }
     const std::string& system() const { return system_->name; }  // as opened
     const std::shared_ptr<const Model>& model() const { return system_->model; }
     const SystemDescription& description() const { return system_->model->description(); }
-    const Run& run() const { return motion_->trajectory.run; }
+    // What was asked for last. trajectory().run is what is shown.
+    const Run& run() const { return asked_; }
     // Of a parameter, a coordinate's start x or its rate x'; nothing if there is no such name.
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return motion_->trajectory; }
     const Mechanism& mechanism() const { return system_->mechanism; }
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return motion_->limits; }
-    // The first views of the system, at most four, composed.
+    // What is plotted, and the plots, composed.
+    const Plots& plotted() const { return plots_; }
     const std::vector<Panel>& plots() const { return motion_->plots; }
-    // Where the present stands in such a plot, in its units, one point a curve.
-    std::vector<Point> present(std::size_t plot) const;
+    // What a plot shows of an instant, in its units: x, then every y.
+    std::vector<double> values(std::size_t plot, const Sample& sample) const;
+    // The state at a time of the run that is shown.
+    Sample at(double time) const { return motion_->sampler.at(time); }
 
     double time() const { return time_; }
     const Sample& now() const { return now_; }  // the state at that time
@@ -54,15 +86,15 @@ class Session {
         std::string name;
         std::shared_ptr<const Model> model;
         Mechanism mechanism;
-        std::vector<PreparedView> views;
     };
     // One run and what is shown of it.
     struct Motion {
-        Motion(const System& system, const Run& run, const Theme& theme);
+        Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch);
         Trajectory trajectory;
-        Trajectory without_events;  // of the same model and run
         Sampler sampler;
+        std::vector<Sample> samples;
         Drawing limits;
+        int revision = 0;  // of what is plotted
         std::vector<Panel> plots;
     };
 
@@ -77,18 +109,38 @@ class Session {
     void perform(const command::Play& command);
     void perform(const command::Pause& command);
     void perform(const command::Select& command);
+    void perform(const command::New& command);
+    void perform(const command::Text& command);
+    void perform(const command::Save& command);
+    void perform(const command::Show& command);
+    template <class PlotCommand>
+    void perform(const PlotCommand& command);
+    void begin_document(Document document);
+    void read_document();
+    void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
+    void receive(Patience patience);
+    void compose_plots();
+    void place(const Command& command);
     void move_to(double time);
 
-    Opener opener_;
+    Library library_;
+    Patience patience_;
     Theme theme_ = light_theme();
+    Document document_;
+    bool shows_editor_ = false;
     std::shared_ptr<const System> system_;
-    std::shared_ptr<Motion> motion_;
+    Plots plots_;
+    Run asked_;
+    std::shared_ptr<Motion> motion_;  // of this system; of another run than the one asked for while that is under way
+    std::shared_ptr<const Watch> watch_;  // of the run under way
+    std::optional<Command> placed_;       // what placed the present meanwhile
     Sample now_;
     double time_ = 0.0;
     bool playing_ = false;
     int selected_ = 0;
     std::string error_;
+    Worker<std::shared_ptr<Motion>> worker_;
 };
 
 // Lets so much time pass for a session that plays. At the end it stops, or with `loop` begins again.

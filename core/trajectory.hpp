@@ -93,7 +93,15 @@ struct Event {
 };
 
 struct Outcome {
-    enum class Kind { end_time, too_many_impacts, not_a_number, left_the_domain, step_too_small, undecided };
+    enum class Kind {
+        end_time,
+        too_many_impacts,
+        not_a_number,
+        left_the_domain,
+        step_too_small,
+        undecided,
+        cancelled  // another thread told it to stop
+    };
     Kind kind = Kind::end_time;
     std::string message;
 };

@@ -48,7 +48,8 @@ int run_again(const std::string& picture, const Origin& origin, bool png, Studio
 int reproduce(const std::string& picture, const std::string& out) {
     OutputFiles files;
     if (!out.empty()) files.add(out);
-    const std::string before = read_file(picture, largest_picture);
+    const std::string before = read_text(picture, largest_picture);
+    if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
     Studio studio(origin);
     const int status = with_name(picture, [&] { return run_again(picture, origin, is_png(before), studio); });

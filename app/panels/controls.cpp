@@ -95,8 +95,8 @@ void paragraph(const std::string& text, const Color& color) {
     ImGui::PopStyleColor();
 }
 
-void choose_system(const Session& session, PanelState& state, Commands& commands) {
-    ImGui::SetNextItemWidth(-1.0F);
+void choose_system(const Session& session, PanelState& state, Commands& commands, float width) {
+    ImGui::SetNextItemWidth(width);
     const bool is_down =
         ImGui::BeginCombo("##system", short_name(session.system()).c_str(), ImGuiComboFlags_HeightLargest);
     remember(state, "systems");
@@ -104,11 +104,14 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
         for (const SystemEntry& entry : state.systems) {
             const bool is_open = entry.name == session.system();
             if (ImGui::Selectable((entry.title + "##" + entry.name).c_str(), is_open))
-                commands.emplace_back(command::Open{entry.name});
+                request(session, state, command::Open{entry.name}, commands);
             remember(state, "open " + entry.name);
         }
         ImGui::EndCombo();
     }
+}
+
+void describe_system(const Session& session) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {units(8.0F), units(2.0F)});
     paragraph(session.description().title, text_color());
     paragraph(session.description().source, faint_color());
@@ -221,8 +224,20 @@ void integration(const Session& session, PanelState& state, Commands& commands) 
 
 }  // namespace
 
+void show_system(const Session& session, PanelState& state, Commands& commands) {
+    const float width = units(56.0F), space = ImGui::GetStyle().ItemInnerSpacing.x;
+    choose_system(session, state, commands, ImGui::GetContentRegionAvail().x - width - space);
+    ImGui::SameLine(0.0F, space);
+    const bool shown = session.shows_editor();
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(shown ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
+    if (ImGui::Button("text", {width, 0.0F})) toggle_editor(session, state, commands);
+    ImGui::PopStyleColor();
+    remember(state, "editor");
+    tooltip(shown ? "back to the sliders (Ctrl+E)" : "edit the text of the system (Ctrl+E)");
+}
+
 void show_controls(const Session& session, PanelState& state, Commands& commands) {
-    choose_system(session, state, commands);
+    describe_system(session);
     parameters(session, state, commands);
     section("Start");
     for (std::size_t i = 0; i < session.description().coordinates.size(); ++i) {

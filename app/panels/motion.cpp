@@ -147,8 +147,8 @@ void show_mechanism(const Session& session) {
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
     const float strip = show_state(session, {area.x + units(12.0F), area.y + units(8.0F)}, area.width - units(24.0F));
-    const Drawing drawing =
-        session.mechanism().draw(session.now().state, session.run().parameters, session.limits(), session.theme());
+    const Drawing drawing = session.mechanism().draw(session.now().state, session.trajectory().run.parameters,
+                                                     session.limits(), session.theme());
     paint(drawing, ImGui::GetWindowDrawList(), {area.x, area.y + strip, area.width, area.height - strip}, units(1.0F));
 }
 
@@ -166,7 +166,7 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     const Rectangle area = remaining();
     const float inset = units(8.0F);
     const Track track{area.x + inset, std::max(1.0F, area.width - 2.0F * inset), area.y + units(space),
-                      std::max(session.run().options.end_time, session.trajectory().end_time)};
+                      std::max(session.trajectory().run.options.end_time, session.trajectory().end_time)};
     ImGui::InvisibleButton("timeline", {area.width, units(space + marks + band + axis)});
     remember(state, "timeline");
     double time = 0.0;

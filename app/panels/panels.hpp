@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,47 @@ struct SystemEntry {
     std::string name, title;
 };
 
+// The text as the hand types it, until it rests and the text becomes a command; and what is asked about files.
+struct EditorState {
+    std::string text, known;  // as typed; as the session has it
+    int revision = 0;         // counts the texts that came from elsewhere
+    double resting = 0.0;     // s since the last letter
+    int go_to = 0;            // a line to scroll to; 0: none
+    bool is_active = false;   // letters go here
+
+    enum class Asking { nothing, open, save, unsaved };
+    Asking asking = Asking::nothing;
+    std::string path;                // typed in a dialog
+    bool keeps_path = false;         // what was entered was wrong: more letters go there
+    std::optional<Command> waiting;  // to be done once the changes are saved or given up
+    bool has_saved = false;          // the command to save has been given, what waits may follow
+    bool is_closing = false;         // it is the window that waits to be closed
+    bool may_close = false;          // now nothing is lost by it
+};
+
+// The menu of one plot: what is typed there.
+struct PlotMenu {
+    int plot = -1;
+    std::string x, y;
+};
+
+// A box that is being drawn in a plot.
+struct PlotBox {
+    int plot = -1;
+    Point from;  // pixels
+};
+
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
-    std::vector<SystemEntry> systems;         // to choose from
-    bool in_window = false;                   // a window may show how long the run took; a picture must not
-    bool show_impacts = true;                 // in the event list
-    bool loop = false;                        // at the end of the run the player begins again
-    int followed = -1;                        // the row the event list scrolled to last
+    std::vector<SystemEntry> systems;  // to choose from
+    bool in_window = false;            // a window may show how long the run took; a picture must not
+    bool show_impacts = true;          // in the event list
+    bool loop = false;                 // at the end of the run the player begins again
+    EditorState editor;
+    PlotMenu plot_menu;
+    PlotBox box;
+    std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
+    int followed = -1;                                 // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
 
@@ -30,18 +65,38 @@ std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Its parts, each inside a window of its own that the explorer has begun.
 using Commands = std::vector<Command>;
+void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
-void show_error(const Session& session);
-float error_height(const Session& session, float width);
+void show_editor(const Session& session, PanelState& state, Commands& commands);
+void show_dialogs(const Session& session, PanelState& state, Commands& commands);
 void show_mechanism(const Session& session);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
+// Above the plots: how many; and the menu behind a plot's title.
+void show_grid_bar(const Session& session, PanelState& state, Commands& commands);
+void open_plot_menu(const Session& session, std::size_t plot, PanelState& state);
+void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
 // What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
 // decided.
 std::vector<std::string> certificate_lines(const Event& event);
 void show_certificate(const Event& event, int number, PanelState& state, Commands& commands);
 void show_status(const Session& session, const PanelState& state);
+
+// Letters were typed that are no command yet: frames must go on until they are.
+bool is_typing(const PanelState& state);
+// What was typed becomes a command now.
+void hand_over_text(EditorState& editor, Commands& commands);
+// Shows the editor in place of the sliders, or the sliders again.
+void toggle_editor(const Session& session, PanelState& state, Commands& commands);
+// A command that puts another text in place of the edited one: asks first where that has changes that are not saved.
+void request(const Session& session, PanelState& state, const Command& command, Commands& commands);
+// Whether the window may be closed at once; otherwise asks first, and then sets may_close.
+bool request_close(const Session& session, PanelState& state);
+// Begin to ask for a path. Saving asks where the text has no file yet.
+void ask_to_open(PanelState& state);
+void ask_to_save(const Session& session, PanelState& state);
+void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 
 }  // namespace achilles

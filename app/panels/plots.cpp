@@ -1,14 +1,20 @@
-// The right side: the system's views, with the present in each.
+// The right side: a grid of plots, with the present and the pointer's instant in each. Wheel zooms where the pointer is
+// (over an axis only along it), dragging pans, the right button draws a box to zoom to, a double click fits, a click on
+// a plot over time goes there.
+#include <algorithm>
 #include <cmath>
 
 #include "figure/axes.hpp"
+#include "figure/label.hpp"
+#include "paint/label.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
 
 namespace {
 
-constexpr int columns = 2;
+constexpr float inset = 8.0F;
+constexpr double click = 4.0;  // pixels that a hand may slip and still click
 
 Figure style_of(const Theme& theme) {
     Figure style;
@@ -19,56 +25,254 @@ Figure style_of(const Theme& theme) {
     return style;
 }
 
-// A line where the plot runs over time, and a dot on every curve.
-void paint_present(const Session& session, std::size_t plot, const Rectangle& area, bool over_time, ImDrawList* list) {
-    const PanelMap map(session.plots()[plot], area);
+Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
+    const std::vector<Curve>& curves = session.plots()[plot].curves;
+    return curves.size() == 2 ? phase_color(session.theme(), session.now().phase) : curves[2 * curve].stroke.color;
+}
+
+struct Place {
+    std::size_t plot;
+    Rectangle area;  // inside the axes
+    Rectangle cell;  // the whole card
+    bool over_time;
+};
+
+// The instant of the present, or of the pointer: a line over time, a dot on every curve.
+void paint_instant(const Session& session, const Place& place, const Sample& sample, float strength) {
+    const PanelMap map(session.plots()[place.plot], place.area);
+    const std::vector<double> values = session.values(place.plot, sample);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const Rectangle& area = place.area;
     list->PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
-    for (const Point& point : session.present(plot)) {
-        const Point pixel = map(point);
-        if (over_time && std::isfinite(pixel.x)) {
-            const float x = std::floor(static_cast<float>(pixel.x)) + 0.5F;
-            list->AddLine({x, area.y}, {x, area.y + area.height}, packed(text_color(), 0.45F), units(1.0F));
-        }
-        if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) continue;
-        const ImVec2 center{static_cast<float>(pixel.x), static_cast<float>(pixel.y)};
+    const double x = map.x(values[0]);
+    if (place.over_time && std::isfinite(x)) {
+        const float at = std::floor(static_cast<float>(x)) + 0.5F;
+        list->AddLine({at, area.y}, {at, area.y + area.height}, packed(text_color(), 0.45F * strength), units(1.0F));
+    }
+    const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        const double y = map.y(values[i]);
+        if (hidden.contains(i - 1) || !std::isfinite(x) || !std::isfinite(y)) continue;
+        const ImVec2 center{static_cast<float>(x), static_cast<float>(y)};
         list->AddCircleFilled(center, units(5.0F), packed(session.theme().background), 20);
-        list->AddCircleFilled(center, units(3.5F), packed(text_color()), 20);
+        list->AddCircleFilled(center, units(3.5F), packed(text_color(), strength), 20);
     }
     list->PopClipRect();
+}
+
+// The values under the pointer's instant, in the corner that is away from it.
+void paint_values(const Session& session, const Place& place, const Sample& sample) {
+    const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
+    const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
+    const std::vector<double> values = session.values(place.plot, sample);
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i > 0 && hidden.contains(i - 1)) continue;
+        const std::string unit = quantities[i].unit.empty() ? "" : " " + quantities[i].unit;
+        lines.push_back(quantities[i].label + " = " +
+                        (std::isfinite(values[i]) ? number(values[i], "{:.6g}") + unit : "\u2013"));
+    }
+    const float size = 0.87F * ImGui::GetFontSize(), line = 1.15F * size, padding = units(5.0F);
+    float width = 0.0F;
+    for (const std::string& text : lines) width = std::max(width, label_width(text, size));
+    const PanelMap map(session.plots()[place.plot], place.area);
+    const bool at_left = map.x(values[0]) > place.area.x + 0.5 * place.area.width;
+    const float left =
+        std::floor(at_left ? place.area.x + padding : place.area.x + place.area.width - width - 3.0F * padding);
+    const float top = place.area.y + padding;
+    const float height = line * static_cast<float>(lines.size()) + padding;
+    if (width + 4.0F * padding > place.area.width || height + padding > place.area.height) return;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({left, top}, {left + width + 2.0F * padding, top + height},
+                        packed(session.theme().background, 0.92F), units(3.0F));
+    list->AddRect({left, top}, {left + width + 2.0F * padding, top + height}, packed(session.theme().grid),
+                  units(3.0F));
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        paint_label(list, left + padding, top + 0.5F * padding + line * static_cast<float>(i), lines[i],
+                    i == 0 ? faint_color() : text_color(), size);
+}
+
+// The limits that put the pixels a, b of each axis at its ends.
+command::Zoom zoom_to(const PanelMap& map, std::size_t plot, double left, double right, double top, double bottom) {
+    return {static_cast<int>(plot) + 1, map.x.value(left), map.x.value(right), map.y.value(bottom), map.y.value(top)};
+}
+
+void use_wheel(const Session& session, const Place& place, bool along_x, bool along_y, Commands& commands) {
+    const float wheel = ImGui::GetIO().MouseWheel;
+    if (wheel == 0.0F) return;
+    const PanelMap map(session.plots()[place.plot], place.area);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const double factor = std::pow(0.85, double{wheel});
+    const auto about = [&](double pixel, double at, bool along) { return along ? at + (pixel - at) * factor : pixel; };
+    const Rectangle& a = place.area;
+    commands.emplace_back(zoom_to(map, place.plot, about(a.x, mouse.x, along_x), about(a.x + a.width, mouse.x, along_x),
+                                  about(a.y, mouse.y, along_y), about(a.y + a.height, mouse.y, along_y)));
+}
+
+// Moves with the hand from where it took hold.
+void use_drag(const Session& session, const Place& place, Commands& commands) {
+    const ImVec2 delta = ImGui::GetIO().MouseDelta;
+    if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, static_cast<float>(click)) || (delta.x == 0 && delta.y == 0))
+        return;
+    const PanelMap map(session.plots()[place.plot], place.area);
+    const Rectangle& a = place.area;
+    commands.emplace_back(
+        zoom_to(map, place.plot, a.x - delta.x, a.x + a.width - delta.x, a.y - delta.y, a.y + a.height - delta.y));
+}
+
+// With the right button: a box, and when it is let go the box is the plot.
+void use_box(const Session& session, const Place& place, PanelState& state, Commands& commands) {
+    const int number = static_cast<int>(place.plot);
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const Rectangle& a = place.area;
+    const Point corner{std::clamp<double>(mouse.x, a.x, a.x + a.width),
+                       std::clamp<double>(mouse.y, a.y, a.y + a.height)};
+    if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) state.box = {number, corner};
+    if (state.box.plot != number) return;
+    const Point from = state.box.from;
+    const auto [left, right] = std::minmax(from.x, corner.x);
+    const auto [top, bottom] = std::minmax(from.y, corner.y);
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+        const ImVec2 low{static_cast<float>(left), static_cast<float>(top)};
+        const ImVec2 high{static_cast<float>(right), static_cast<float>(bottom)};
+        ImGui::GetWindowDrawList()->AddRectFilled(low, high, packed(text_color(), 0.08F));
+        ImGui::GetWindowDrawList()->AddRect(low, high, packed(text_color(), 0.6F));
+        return;
+    }
+    state.box.plot = -1;
+    if (right - left < click || bottom - top < click) return;
+    commands.emplace_back(zoom_to(PanelMap(session.plots()[place.plot], a), place.plot, left, right, top, bottom));
+}
+
+void use_click(const Session& session, const Place& place, Commands& commands) {
+    const int number = static_cast<int>(place.plot) + 1;
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        commands.emplace_back(command::Fit{number});
+        return;
+    }
+    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+    if (!place.over_time || !ImGui::IsItemDeactivated() || std::hypot(moved.x, moved.y) > click) return;
+    const PanelMap map(session.plots()[place.plot], place.area);
+    const double time = map.x.value(ImGui::GetIO().MousePos.x);
+    if (time != session.time()) commands.emplace_back(command::Seek{time});
+}
+
+// A part of the card that the mouse can use. Its wheel is ours: no panel scrolls.
+bool hot(const std::string& name, const Rectangle& area) {
+    if (area.width < 1.0F || area.height < 1.0F) return false;
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::InvisibleButton(name.c_str(), {area.width, area.height},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    return ImGui::IsItemHovered();
+}
+
+void use_mouse(const Session& session, const Place& place, PanelState& state, Commands& commands) {
+    const Rectangle &a = place.area, &c = place.cell;
+    const std::string name = "plot " + std::to_string(place.plot);
+    if (hot("x axis of " + name, {a.x, a.y + a.height, a.width, c.y + c.height - a.y - a.height}))
+        use_wheel(session, place, true, false, commands);
+    if (hot("y axis of " + name, {c.x, a.y, a.x - c.x, a.height})) use_wheel(session, place, false, true, commands);
+    const bool hovered = hot(name, a);
+    remember(state, name);
+    if (hovered) use_wheel(session, place, true, true, commands);
+    if (ImGui::IsItemActive()) use_drag(session, place, commands);
+    use_click(session, place, commands);
+    use_box(session, place, state, commands);
+    if (hovered && place.over_time)
+        state.pointed_at = PanelMap(session.plots()[place.plot], a).x.value(ImGui::GetIO().MousePos.x);
+}
+
+// Clickable: the curves of a plot that has several. Returns where it began.
+float show_legend(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state,
+                  Commands& commands) {
+    const Plot& shown = session.plotted().list()[plot];
+    const auto& quantities = shown.prepared->quantities();
+    float right = row.x + row.width;
+    if (quantities.size() < 3) return right;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float size = 0.87F * ImGui::GetFontSize(), line = units(16.0F), space = units(5.0F);
+    for (std::size_t i = quantities.size() - 1; i >= 1; --i) {
+        const bool hidden = shown.framing.hidden.contains(i - 1);
+        const std::string name = fitted(quantities[i].label, units(110.0F));
+        const float width = line + space + label_width(name, size) + 2.0F * space;
+        if (right - width < row.x + 0.3F * row.width) break;  // the title needs some room
+        right -= width;
+        ImGui::SetCursorScreenPos({right, row.y});
+        const std::string id = "curve " + std::to_string(plot + 1) + " " + std::to_string(i);
+        if (ImGui::InvisibleButton(id.c_str(), {width, row.height}))
+            commands.emplace_back(command::ShowCurve{static_cast<int>(plot) + 1, static_cast<int>(i), hidden});
+        remember(state, id);
+        if (ImGui::IsItemHovered())
+            list->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), packed(text_color(), 0.06F),
+                                units(3.0F));
+        tooltip(hidden ? "show this curve" : "hide this curve");
+        const float middle = std::floor(row.y + 0.5F * row.height) + 0.5F;
+        list->AddLine({right + space, middle}, {right + space + line, middle},
+                      packed(color_of(session, plot, i - 1), hidden ? 0.25F : 1.0F), units(2.0F));
+        paint_label(list, right + 2.0F * space + line, row.y + 0.5F * (row.height - 1.2F * size), name,
+                    hidden ? faint_color() : text_color(), size);
+    }
+    return right;
+}
+
+// The title opens the plot's menu; the legend stands at its right.
+void show_head(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state, Commands& commands) {
+    const float right = show_legend(session, plot, row, state, commands);
+    const std::string name = session.plotted().list()[plot].view.name;
+    const float arrow = units(14.0F), width = right - row.x - units(4.0F), size = ImGui::GetFontSize();
+    const std::string title = fitted(typeset(name), width - arrow);
+    ImGui::SetCursorScreenPos({row.x, row.y});
+    const std::string id = "menu of plot " + std::to_string(plot + 1);
+    const bool pressed = ImGui::InvisibleButton(id.c_str(), {label_width(title, size) + arrow, row.height});
+    remember(state, id);
+    const bool lit = ImGui::IsItemHovered();
+    tooltip("choose what is plotted");
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    paint_label(list, row.x, row.y + 0.5F * (row.height - 1.2F * size), title, text_color(), size);
+    const float x = row.x + label_width(title, size) + units(5.0F), y = std::floor(row.y + 0.5F * row.height);
+    list->AddTriangleFilled({x, y - units(2.0F)}, {x + units(7.0F), y - units(2.0F)},
+                            {x + units(3.5F), y + units(3.0F)}, packed(lit ? text_color() : faint_color()));
+    if (pressed) open_plot_menu(session, plot, state);
+    show_plot_menu(session, plot, state, commands);
 }
 
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
                         packed(session.theme().background), units(4.0F));
-    const float inset = units(8.0F);
-    const Rectangle inner{cell.x + inset, cell.y + inset, cell.width - 2.0F * inset, cell.height - 2.0F * inset};
-    const Panel& panel = session.plots()[plot];
-    const Rectangle area = paint(panel, style_of(session.theme()), list, inner, units(1.0F));
+    const float edge = units(inset), head = ImGui::GetTextLineHeight() + units(4.0F);
+    const Rectangle row{cell.x + edge, cell.y + units(4.0F), cell.width - 2.0F * edge, head};
+    const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
+                          cell.y + cell.height - edge - row.y - head};
+    if (inner.width < 2.0F || inner.height < 2.0F) return;
+    const Rectangle area = paint(session.plots()[plot], style_of(session.theme()), list, inner, units(1.0F));
+    show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
-    const bool over_time = session.description().views[plot].x.text == "t";
-    paint_present(session, plot, area, over_time, list);
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::InvisibleButton(("plot " + std::to_string(plot)).c_str(), {area.width, area.height});
-    remember(state, "plot " + std::to_string(plot));
-    double time = 0.0;
-    if (over_time && dragged_to(panel.x.low, panel.x.high, area.x, area.width, time) && time != session.time())
-        commands.emplace_back(command::Seek{time});
+    const Place place{plot, area, cell, session.plotted().list()[plot].over_time()};
+    paint_instant(session, place, session.now(), 1.0F);
+    if (state.pointed_before) {
+        const Sample sample = session.at(*state.pointed_before);
+        paint_instant(session, place, sample, 0.6F);
+        paint_values(session, place, sample);
+    }
+    use_mouse(session, place, state, commands);
 }
 
 }  // namespace
 
 void show_plots(const Session& session, PanelState& state, Commands& commands) {
+    state.pointed_before = state.pointed_at;  // by the last frame: this one may point in a plot that comes later
+    state.pointed_at.reset();
+    show_grid_bar(session, state, commands);
     const Rectangle area = remaining();
-    const auto count = static_cast<int>(session.plots().size());
-    if (count == 0) return;
+    const Plots& plots = session.plotted();
     const float gap = units(8.0F);
-    const int across = std::min(columns, count), down = (count + across - 1) / across;
-    const float width = std::floor((area.width - gap * static_cast<float>(across - 1)) / static_cast<float>(across));
-    const float height = std::floor((area.height - gap * static_cast<float>(down - 1)) / static_cast<float>(down));
-    for (int i = 0; i < count; ++i) {
-        const Rectangle cell{area.x + static_cast<float>(i % across) * (width + gap),
-                             area.y + static_cast<float>(i / across) * (height + gap), width, height};
+    const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(plots.rows());
+    const float width = std::floor((area.width - gap * (columns - 1.0F)) / columns);
+    const float height = std::floor((area.height - gap * (rows - 1.0F)) / rows);
+    for (int i = 0; i < static_cast<int>(session.plots().size()); ++i) {
+        const Rectangle cell{area.x + static_cast<float>(i % plots.columns()) * (width + gap),
+                             area.y + static_cast<float>(i / plots.columns()) * (height + gap), width, height};
         show_plot(session, static_cast<std::size_t>(i), cell, state, commands);
     }
 }

@@ -1,6 +1,7 @@
 // The last line: how the run went, and what the colours and signs mean.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "paint/marker.hpp"
@@ -49,6 +50,24 @@ void show_legend(const Session& session) {
     }
 }
 
+// A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
+// the run before it.
+void show_progress(const Run& run, const Watch& watch) {
+    const double time = watch.time, impacts = static_cast<double>(watch.impacts);
+    const double share = std::clamp(std::max(time / run.options.end_time, impacts / run.options.max_impacts), 0.0, 1.0);
+    const ImVec2 corner = ImGui::GetWindowPos();
+    const ImU32 accent = ImGui::GetColorU32(ImGuiCol_SliderGrab);
+    const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)}, accent);
+    ImGui::PushStyleColor(ImGuiCol_Text, accent);
+    ImGui::TextUnformatted(
+        fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts", time, run.options.end_time, impacts)
+            .c_str());
+    ImGui::PopStyleColor();
+    ImGui::SameLine(0.0F, units(24.0F));
+    ImGui::TextDisabled("the run before this one is shown until then");
+}
+
 }  // namespace
 
 void show_status(const Session& session, const PanelState& state) {
@@ -58,6 +77,7 @@ void show_status(const Session& session, const PanelState& state) {
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
                                         ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SetCursorPosY(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()));
+    if (const Watch* watch = session.under_way()) return show_progress(session.run(), *watch);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
             fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));
@@ -67,11 +87,11 @@ void show_status(const Session& session, const PanelState& state) {
         tooltip(trajectory.outcome.message);
         ImGui::SameLine(0.0F, units(24.0F));
     }
-    std::string text =
-        fmt::format("{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
-                    s.impacts, s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
+    const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
+    const std::string text =
+        fmt::format("{}{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy error {}   \u00b7   {}",
+                    seconds, s.impacts, s.steps, number(s.least_gap, "{:.2g}"), number(s.energy_drift, "{:.2g}"),
                     to_text(trajectory.run.options.method));
-    if (state.in_window) text += fmt::format("   \u00b7   {:.1f} ms", s.seconds * 1e3);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();

@@ -32,6 +32,10 @@ Rectangle remaining();
 void remember(PanelState& state, const std::string& name);
 // The instant under the mouse, while the last item is dragged.
 bool dragged_to(double low, double high, float left, float width, double& value);
+// What is wrong with an input, as the command line says it, and how high that is; the colour behind it.
+void show_message(const std::string& message, float width);
+float message_height(const std::string& message, float width);
+void paint_error_card(const Rectangle& area);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
 

@@ -23,17 +23,20 @@ Interval around(double centre, double radius) { return Interval(centre) + Interv
 struct PaperConditions::Bounds {
     Interval a_min, a_max, eta, zeta, beta, w, e1, e2;
     Interval time, position, velocity;  // per unit of w
+    std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
 PaperConditions::PaperConditions(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
+      sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       point_(model.evaluator(model.bounds(), run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       box_(model.evaluator<Interval>(model.bounds(), run.parameters)),
-      surface_(model.evaluator<Interval>(model.surface(), run.parameters)) {}
+      surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
+      motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
@@ -81,7 +84,9 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
              {},
              {},
              {},
-             {}};
+             {},
+             box,
+             n};
     const Interval r = b.a_max / b.a_min;
     b.e1 = e_ * r;
     b.e2 = e_ * sqrt(r);
@@ -115,7 +120,26 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
     return std::nullopt;
 }
 
-Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) const {
+// |s_k - v*| + T max |s'| over V; see the header. Relies on surface_ being at this collision.
+Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b, const Interval& wait) {
+    const Interval speeds(-b.w.hi(), b.w.hi());
+    for (std::size_t i = 0; i < n_; ++i) {
+        motion_.input(i) = b.box[i];
+        motion_.input(n_ + i) = b.box[n_ + i] - b.n[i] * speeds;
+    }
+    motion_.input(sigma_) = speeds;
+    motion_.run();
+    std::vector<Interval> distance;
+    for (std::size_t i = 0; i < n_; ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const Interval s = Interval(collision.before.v[k]) - surface_.output(2 + i) * surface_.output(1);
+        distance.push_back(abs(s - Interval(collision.restart[k])) +
+                           Interval(mag(motion_.output(n_ + i))) * Interval(wait.hi()));
+    }
+    return norm(distance);
+}
+
+Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) {
     Certificate certificate;
     certificate.certified = true;
     certificate.conditions = Conditions::paper;
@@ -126,27 +150,22 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     // tolerances.
     const std::array<double, 3> eps{truncation_.eps_t, truncation_.eps_q, truncation_.eps_v};
     std::array<double, 3> c{};
-    double closest = -1.0;
     for (std::size_t i = 0; i < 3; ++i) {
         c[i] = factors[i].hi() > 0.0 ? (Interval(eps[i]) / Interval(factors[i].hi())).lo()
                                      : std::numeric_limits<double>::infinity();
         certificate.inequalities.push_back({names[i], b.w.hi(), c[i]});
-        const double share = (factors[i] * b.w).hi() / eps[i];
-        if (share > closest) certificate.decisive = names[i];
-        closest = std::max(closest, share);
     }
+    name_decisive(certificate);
     certificate.inequalities.push_back({"e a_max/a_min", b.e1.hi(), 1.0});
     certificate.inequalities.push_back({"normal acceleration", -b.a_min.lo(), 0.0});
     certificate.position_bound = (b.position * b.w).hi();
-    certificate.velocity_bound = (b.velocity * b.w).hi();
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
     // The sharper interval for tau_inf (THEORY section 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
-    const Interval one(1.0), r = b.a_max / b.a_min, rebound = Interval(2.0) * e_ * (one + e_) * b.w;
-    const Interval latest = rebound / (b.a_min * (one - square(e_) * r));
-    const Interval earliest = rebound / (b.a_max * (one - square(e_) / r));
-    certificate.zeno_low = (Interval(collision.t) + Interval(earliest.lo())).lo();
-    certificate.zeno_high = (Interval(collision.t) + Interval(latest.hi())).hi();
+    const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
+    set_zeno_time(certificate, collision.t, wait);
+    const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
+    certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();
     certificate.paper =
         Certificate::Paper{b.e1.hi(), b.e2.hi(), b.beta.hi(), b.eta.hi(), b.zeta.hi(), c[0], c[1], c[2]};
     return certificate;

@@ -11,6 +11,13 @@
 //
 // w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q', |v_inf - v*| < eps_v'.
 //
+// c3 adds up the jumps of every impact, though they cancel nearly. Where Thm. 3 holds, V is proved to contain the whole
+// bouncing, so the tangential velocity s, which impacts do not change (model/bouncing.hpp), gives a closer bound:
+//
+//     |v_inf - v*| <= |s_k - v*| + T max |s'|     T: the attained bound of section 4,  |hdot| <= w,  s in V - n [-w, w]
+//
+// The certificate's velocity bound is the smaller of the two; c3 and with it the decision remain the paper's.
+//
 // Which eps' <= eps? A smaller V makes every bound smaller (inclusion is monotone), so among all V that satisfy their
 // own conditions there is a least one, and it is met from below: V grows to what its own bounds ask for, until they
 // stand still inside it. Where a bound exceeds eps on the way, no eps' <= eps can succeed; where eps' = eps succeeds,
@@ -35,14 +42,16 @@ class PaperConditions : public TruncationConditions {
     bool hopeless(const Collision& collision);
     std::optional<Certificate> prove(const Collision& collision, const Truncation& tolerances);
     std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v);
-    Certificate certificate_of(const Collision& collision, const Bounds& bounds) const;
+    Certificate certificate_of(const Collision& collision, const Bounds& bounds);
+    Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& wait);
 
     std::size_t n_;
+    std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;
     Evaluator<double> point_;
     Range hddot_;
-    Evaluator<Interval> box_, surface_;
+    Evaluator<Interval> box_, surface_, motion_;
 };
 
 }  // namespace achilles

@@ -41,7 +41,8 @@ struct SharpConditions::Box {
 
 // Over X: bounds of -hddot, and the longest time to the Zeno point.
 struct SharpConditions::Time {
-    Interval a_min, a_max, r, earliest, latest;
+    Interval a_min, a_max, r;
+    Wait wait;
 };
 
 struct SharpConditions::Shadow {
@@ -105,15 +106,13 @@ std::optional<SharpConditions::Time> SharpConditions::time_over(const Box& box) 
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
     if (!certainly_less(square(e_) * r, one)) return std::nullopt;
-    const Interval rebound = Interval(2.0) * e_ * (one + e_) * box.w;
-    return Time{a_min, a_max, r, rebound / (a_max * (one - square(e_) / r)),
-                rebound / (a_min * (one - square(e_) * r))};
+    return Time{a_min, a_max, r, wait_for_zeno(e_, a_min, a_max, box.w)};
 }
 
 // Is the motion until tau_inf proved to stay inside X? If not, X grows to what it asked for, and a fifth more.
 bool SharpConditions::contain_motion(Box& box, const Time& time) {
     set(motion_, box);
-    const Interval T(time.latest.hi());
+    const Interval T(time.wait.latest.hi());
     bool inside = true;
     for (std::size_t i = 0; i < n_; ++i) {
         need_q_[i] = times(motion_.output(i), T);
@@ -131,7 +130,7 @@ bool SharpConditions::contain_motion(Box& box, const Time& time) {
 // The same for the shifted variables of section 5, and for the comparison motion where it starts from v*.
 bool SharpConditions::contain_shadow(Box& box, const Time& time) {
     set(shadow_, box);
-    const Interval h = square(e_ * box.w) / (Interval(2.0) * time.a_min), T(time.latest.hi());
+    const Interval h = square(e_ * box.w) / (Interval(2.0) * time.a_min), T(time.wait.latest.hi());
     bool inside = true;
     for (std::size_t i = 0; i < n_; ++i) {
         const double q = need_q_[i] + times(shadow_.output(n_ + i), h);
@@ -171,7 +170,7 @@ SharpConditions::Shadow SharpConditions::shadow_over(const Box& box, const Time&
         c_q.push_back(abs(B(i) - ndot(i)) * gap_integral);
         c_s.push_back(abs(drift) * gap_integral + time.a_max * abs(D(i)) * gap_integral);
     }
-    const Interval K = exp(Interval(lipschitz) * Interval(time.latest.hi())) - one;
+    const Interval K = exp(Interval(lipschitz) * Interval(time.wait.latest.hi())) - one;
     const Interval grown = K * Interval(std::max(largest(c_q), largest(c_s)));
     std::vector<Interval> d;
     for (const Interval& entry : box.d) d.emplace_back(mag(entry));
@@ -217,8 +216,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Bo
     c.certified = true;
     c.conditions = Conditions::sharp;
     c.reinitialization = truncation_.reinitialization;
-    c.zeno_low = (Interval(collision.t) + Interval(time.earliest.lo())).lo();
-    c.zeno_high = (Interval(collision.t) + Interval(time.latest.hi())).hi();
+    set_zeno_time(c, collision.t, time.wait);
     std::vector<Interval> q, v;
     for (std::size_t i = 0; i < n_; ++i) {
         q.emplace_back(need_q_[i]);
@@ -230,18 +228,14 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Bo
     c.shadowing_velocity = norm(shadow.E_s).hi();
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
-    const double half_width = (Interval(0.5) * (Interval(time.latest.hi()) - Interval(time.earliest.lo()))).hi();
+    const double half_width =
+        (Interval(0.5) * (Interval(time.wait.latest.hi()) - Interval(time.wait.earliest.lo()))).hi();
     c.inequalities = {{"time bound", half_width, truncation_.eps_t},
                       {"position bound", *c.shadowing_position, truncation_.eps_q},
                       {"velocity bound", *c.shadowing_velocity, truncation_.eps_v},
                       {"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0},
                       {"normal acceleration", -c.a_min, 0.0}};
-    double closest = -1.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double share = c.inequalities[i].left / c.inequalities[i].right;
-        if (share > closest) c.decisive = c.inequalities[i].name;
-        closest = std::max(closest, share);
-    }
+    name_decisive(c);
     return c;
 }
 

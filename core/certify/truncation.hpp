@@ -33,4 +33,15 @@ std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);
 
+// tau_inf - tau_k wherever -hddot stays in [a_min, a_max] and e^2 a_max/a_min < 1 (THEORY section 4): attained bounds.
+struct Wait {
+    Interval earliest, latest;
+};
+Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w);
+
+// Writes it into the certificate as [zeno_low, zeno_high].
+void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait);
+// Names the one of the first three inequalities (time, position, velocity) that has least room.
+void name_decisive(Certificate& certificate);
+
 }  // namespace achilles

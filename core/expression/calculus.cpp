@@ -95,9 +95,10 @@ Expression rebuild(Expression e, Expression a, Expression b) {
 
 }  // namespace
 
-Expression derivative(Expression expression, std::uint32_t slot) {
-    Graph& graph = expression.graph();
-    const std::vector<bool> needed = reachable(std::span(&expression, 1));
+std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot) {
+    if (expressions.empty()) return {};
+    Graph& graph = expressions.front().graph();
+    const std::vector<bool> needed = reachable(expressions);
     const Expression zero = graph.number(0);
     std::vector<Expression> d(needed.size(), zero);
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
@@ -110,13 +111,27 @@ Expression derivative(Expression expression, std::uint32_t slot) {
             if (!d[node.a].is_zero() || !db.is_zero()) d[id] = derivative_of({&graph, id}, d[node.a], db);
         }
     }
-    return d[expression.id()];
+    std::vector<Expression> result;
+    for (const Expression expression : expressions) result.push_back(d[expression.id()]);
+    return result;
+}
+
+Expression derivative(Expression expression, std::uint32_t slot) {
+    return derivative(std::span(&expression, 1), slot).front();
+}
+
+std::vector<std::vector<Expression>> jacobian(std::span<const Expression> expressions,
+                                              std::span<const std::uint32_t> slots) {
+    std::vector<std::vector<Expression>> rows(expressions.size());
+    for (const std::uint32_t slot : slots) {
+        const std::vector<Expression> column = derivative(expressions, slot);
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(column[i]);
+    }
+    return rows;
 }
 
 std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots) {
-    std::vector<Expression> result;
-    for (const std::uint32_t slot : slots) result.push_back(derivative(expression, slot));
-    return result;
+    return jacobian(std::span(&expression, 1), slots).front();
 }
 
 Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,12 @@ class Expression {
  private:
     Graph* graph_ = nullptr;
     std::uint32_t id_ = 0;
+};
+
+// More nodes, or more digits of exact numbers, than a graph may hold; what() is "it takes more than ...". Whatever
+// makes a node may throw it.
+struct TooLarge : std::runtime_error {
+    using std::runtime_error::runtime_error;
 };
 
 // Arithmetic builds nodes and simplifies locally: constants fold, 0 and 1 vanish, x - x = 0, like factors gather.
@@ -110,9 +117,13 @@ class Graph {
     std::unique_ptr<Table> table_;
 };
 
-// d(expression)/d(symbol of that slot), for each slot of a list: one pass, shared nodes.
-std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
+// d(expression)/d(symbol of that slot): one pass over the graph for all expressions of a list.
 Expression derivative(Expression expression, std::uint32_t slot);
+std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot);
+// The same for each slot of a list: one row an expression, one column a slot.
+std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
+std::vector<std::vector<Expression>> jacobian(std::span<const Expression> expressions,
+                                              std::span<const std::uint32_t> slots);
 
 // The expression with symbols replaced: slots[i] becomes values[i].
 Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values);

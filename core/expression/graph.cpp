@@ -1,12 +1,17 @@
 #include "expression/graph.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 
 namespace achilles {
 
 namespace {
+
+using boost::multiprecision::numerator, boost::multiprecision::denominator;
 
 std::uint64_t hash(const Graph::Node& node) {
     std::uint64_t value = static_cast<std::uint64_t>(node.operation);
@@ -20,6 +25,15 @@ std::uint64_t hash(const Graph::Node& node) {
 
 bool same(const Graph::Node& x, const Graph::Node& y) {
     return x.operation == y.operation && x.a == y.a && x.b == y.b && x.exponent == y.exponent;
+}
+
+std::uint64_t hash(const Rational& value) {
+    return std::hash<Rational>()(value) * 0x9E3779B97F4A7C15ULL;  // its low bits decide the place
+}
+
+// Bits of numerator and denominator together.
+std::size_t bits(const Rational& value) {
+    return value.is_zero() ? 0 : msb(abs(numerator(value))) + msb(denominator(value)) + 2;
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -43,21 +57,31 @@ double round_down(const Rational& value) {
 }  // namespace
 
 std::uint32_t Graph::Table::intern(const Node& node) {
-    std::vector<std::uint32_t>& ids = index[hash(node)];
-    for (const std::uint32_t id : ids)
-        if (same(nodes[id], node)) return id;
-    ids.push_back(static_cast<std::uint32_t>(nodes.size()));
-    nodes.push_back(node);
-    return ids.back();
+    node_ids.room(nodes.size(), [&](std::uint32_t id) { return hash(nodes[id]); });
+    std::uint32_t& id = node_ids.find(hash(node), [&](std::uint32_t other) { return same(nodes[other], node); });
+    if (id == IdSet::none) {
+        if (nodes.size() == most_nodes) throw TooLarge(fmt::format("it takes more than {} operations", most_nodes));
+        id = static_cast<std::uint32_t>(nodes.size());
+        nodes.push_back(node);
+    }
+    return id;
 }
 
 std::uint32_t Graph::Table::intern(const Rational& value) {
-    const auto [place, is_new] = number_ids.try_emplace(value.str(), 0);
-    if (is_new) {
+    const std::size_t size = bits(value);
+    if (size > most_bits) throw TooLarge(fmt::format("an exact number in it takes more than {} bits", most_bits));
+    bits_in_all += size;
+    if (bits_in_all > most_bits_in_all)
+        throw TooLarge(fmt::format("its exact numbers take more than {} bits in all", most_bits_in_all));
+    number_ids.room(numbers.size(), [&](std::uint32_t id) { return hash(numbers[id]); });
+    std::uint32_t& id = number_ids.find(hash(value), [&](std::uint32_t other) { return numbers[other] == value; });
+    if (id == IdSet::none) {
+        const auto next = static_cast<std::uint32_t>(numbers.size());
+        number_nodes.push_back(intern(Node{Operation::number, next, 0, 0}));
         numbers.push_back(value);
-        place->second = intern(Node{Operation::number, static_cast<std::uint32_t>(numbers.size() - 1), 0, 0});
+        id = next;
     }
-    return place->second;
+    return number_nodes[id];
 }
 
 Graph::Graph() : table_(std::make_unique<Table>()) {}
@@ -106,17 +130,26 @@ Expression Graph::symbol(std::uint32_t slot) { return Builder::make(*this, Node{
 
 Constant Graph::constant(std::uint32_t id) const {
     const Rational& value = table_->numbers[table_->nodes[id].a];
+    const auto p = numerator(value), q = denominator(value);
+    if (constexpr std::int64_t exact = std::int64_t{1} << 53; abs(p) <= exact && q <= exact) {
+        // One correctly rounded division; the sign of its exact rest tells the side.
+        const double top = p.convert_to<double>(), bottom = q.convert_to<double>();
+        const double nearest = top / bottom, rest = std::fma(-nearest, bottom, top);
+        return {nearest, rest < 0.0 ? std::nextafter(nearest, -infinity) : nearest,
+                rest > 0.0 ? std::nextafter(nearest, infinity) : nearest, p.str(), q.str()};
+    }
     const double low = round_down(value);
     const double high = -round_down(-value);
     const bool low_is_nearer =
         std::isfinite(low) && (!std::isfinite(high) || value - Rational(low) <= Rational(high) - value);
-    return {low_is_nearer ? low : high, low, high, boost::multiprecision::numerator(value).str(),
-            boost::multiprecision::denominator(value).str()};
+    return {low_is_nearer ? low : high, low, high, p.str(), q.str()};
 }
 
 bool Expression::is_number() const { return Builder::is(*this, Operation::number); }
-bool Expression::is_zero() const { return is_number() && Builder::value(*this) == 0; }
-bool Expression::is_one() const { return is_number() && Builder::value(*this) == 1; }
+bool Expression::is_zero() const { return is_number() && Builder::value(*this).is_zero(); }
+bool Expression::is_one() const {
+    return is_number() && numerator(Builder::value(*this)) == 1 && denominator(Builder::value(*this)) == 1;
+}
 
 std::vector<bool> reachable(std::span<const Expression> outputs) {
     std::uint32_t last = 0;

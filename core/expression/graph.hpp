@@ -2,7 +2,7 @@
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
-#include <unordered_map>
+#include <utility>
 
 #include "expression/expression.hpp"
 
@@ -10,13 +10,45 @@ namespace achilles {
 
 using Rational = boost::multiprecision::cpp_rational;
 
+// What a graph may hold: far above what a chain of eight links takes (10 000 nodes), and low enough that what exceeds
+// it is refused in a second. An exact number's size is that of numerator and denominator together.
+inline constexpr std::size_t most_nodes = 200000;
+inline constexpr std::size_t most_bits = 1 << 14, most_bits_in_all = 1 << 26;
+
+// Ids of nodes, found by the hash of what they hold: open addressing, so that a copy of a graph is a copy of bytes.
+class IdSet {
+ public:
+    // The place of the id for which same(id) holds, among those of this hash; or the free place where it belongs, which
+    // holds `none`. The caller writes there what it adds, once room() was called.
+    template <class Same>
+    std::uint32_t& find(std::uint64_t hash, const Same& same) {
+        std::size_t at = hash & (places_.size() - 1);
+        while (places_[at] != none && !same(places_[at])) at = (at + 1) & (places_.size() - 1);
+        return places_[at];
+    }
+    // Makes room for one more of `count` ids; hash_of(id) tells where each belongs.
+    template <class HashOf>
+    void room(std::size_t count, const HashOf& hash_of) {
+        if (2 * count < places_.size()) return;
+        const std::vector<std::uint32_t> old(2 * places_.size(), none);
+        const std::vector<std::uint32_t> ids = std::exchange(places_, old);
+        for (const std::uint32_t id : ids)
+            if (id != none) find(hash_of(id), [](std::uint32_t) { return false; }) = id;
+    }
+    static constexpr std::uint32_t none = 0xFFFFFFFF;
+
+ private:
+    std::vector<std::uint32_t> places_ = std::vector<std::uint32_t>(64, none);  // a power of two
+};
+
 struct Graph::Table {
     std::vector<Node> nodes;
     std::vector<Rational> numbers;
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> index;  // hash of a node -> ids
-    std::unordered_map<std::string, std::uint32_t> number_ids;            // "3/2" -> id
+    std::vector<std::uint32_t> number_nodes;  // the node of each of them
+    IdSet node_ids, number_ids;               // into nodes, into numbers
+    std::size_t bits_in_all = 0;              // of every number that was asked for: arithmetic costs in proportion
 
-    // The node with this content: the one that exists, or a new one.
+    // The node with this content: the one that exists, or a new one. Throws TooLarge.
     std::uint32_t intern(const Node& node);
     std::uint32_t intern(const Rational& value);
 };

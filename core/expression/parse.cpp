@@ -39,6 +39,8 @@ class Parser {
  public:
     Parser(std::string_view text, const Scope& scope, Graph& graph) : text_(text), scope_(scope), graph_(graph) {}
 
+    std::size_t at() const { return at_; }  // how far it was read
+
     Expression whole() {
         skip_space();
         if (at_end()) throw ParseError(0, "an expression is missing");
@@ -235,7 +237,14 @@ class Parser {
 
 }  // namespace
 
-Expression parse(std::string_view text, const Scope& scope, Graph& graph) { return Parser(text, scope, graph).whole(); }
+Expression parse(std::string_view text, const Scope& scope, Graph& graph) {
+    Parser parser(text, scope, graph);
+    try {
+        return parser.whole();
+    } catch (const TooLarge& problem) {
+        throw ParseError(parser.at(), std::string("this expression is too large: ") + problem.what());
+    }
+}
 
 bool is_reserved(std::string_view name) {
     const auto is_name_of = [&](const auto& entry) { return entry.first == name; };

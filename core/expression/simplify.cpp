@@ -70,8 +70,8 @@ Expression operator+(Expression a, Expression b) {
     if (a.is_number() && b.is_number()) return number(a, Rational(Builder::value(a) + Builder::value(b)));
     const Term x = split(a), y = split(b);
     if (x.rest == y.rest) return scaled(Rational(x.factor + y.factor), x.rest);
-    if (!b.is_number() && y.factor < 0) return a - scaled(Rational(-y.factor), y.rest);
-    if (!a.is_number() && x.factor < 0) return b - scaled(Rational(-x.factor), x.rest);
+    if (!b.is_number() && y.factor.sign() < 0) return a - scaled(Rational(-y.factor), y.rest);
+    if (!a.is_number() && x.factor.sign() < 0) return b - scaled(Rational(-x.factor), x.rest);
     if (b.id() < a.id()) std::swap(a, b);
     return binary(Op::add, a, b);
 }
@@ -83,8 +83,8 @@ Expression operator-(Expression a, Expression b) {
     if (a.is_number() && b.is_number()) return number(a, Rational(Builder::value(a) - Builder::value(b)));
     const Term x = split(a), y = split(b);
     if (x.rest == y.rest) return scaled(Rational(x.factor - y.factor), x.rest);
-    if (!b.is_number() && y.factor < 0) return a + scaled(Rational(-y.factor), y.rest);
-    if (b.is_number() && Builder::value(b) < 0) return a + number(b, Rational(-Builder::value(b)));
+    if (!b.is_number() && y.factor.sign() < 0) return a + scaled(Rational(-y.factor), y.rest);
+    if (b.is_number() && Builder::value(b).sign() < 0) return a + number(b, Rational(-Builder::value(b)));
     // (a + b) - b = a and (a - b) - a = -b: they appear in every derivative of a product.
     if (Builder::is(a, Op::add) && Builder::second(a) == b) return Builder::first(a);
     if (Builder::is(a, Op::add) && Builder::first(a) == b) return Builder::second(a);
@@ -167,7 +167,7 @@ Expression apply(Operation function, Expression x) {
     if (x.is_one() && function == Op::log) return number(x, 0);
     if (x.is_one() && function == Op::sqrt) return x;
     const Term term = split(x);
-    const bool negative = term.factor < 0;
+    const bool negative = term.factor.sign() < 0;
     if (negative && odd) return -apply(function, -x);
     if (negative && even) return apply(function, -x);
     return unary(function, x);

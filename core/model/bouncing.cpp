@@ -12,11 +12,20 @@ Row adopt(Graph& graph, const Row& row) {
     return result;
 }
 
-// dx/d(slots) times a direction.
-Expression along(Expression x, const std::vector<std::uint32_t>& slots, const Row& direction) {
-    Expression sum = x.graph().number(0);
-    for (std::size_t i = 0; i < slots.size(); ++i) sum = sum + derivative(x, slots[i]) * direction[i];
-    return sum;
+// dx_i/d(slots) times a direction, for each entry.
+Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& direction) {
+    Row sums(x.size(), x.front().graph().number(0));
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+        const Row slope = derivative(x, slots[k]);
+        for (std::size_t i = 0; i < x.size(); ++i) sums[i] = sums[i] + slope[i] * direction[k];
+    }
+    return sums;
+}
+
+Row sum(const Row& a, const Row& b) {
+    Row result;
+    for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
+    return result;
 }
 
 }  // namespace
@@ -33,24 +42,18 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     }
     const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
     const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.n);
-    Row velocity, B, D, rate, ndot, Bdot, jacobian;
+    const Row slope = along(A, v, n);  // df_c/dv n
+    const Row bend = along(slope, v, n), turn = along(n, q, s), twist = along(n, q, n);
+    Row velocity, B, D, rate, slopes;
     for (std::size_t i = 0; i < count; ++i) {
         velocity.push_back(s[i] + n[i] * sigma);
-        const Expression slope = along(A[i], v, n);  // df_c/dv n
-        B.push_back(slope - along(n[i], q, s));
-        D.push_back(half * along(slope, v, n) - along(n[i], q, n));
+        B.push_back(slope[i] - turn[i]);
+        D.push_back(half * bend[i] - twist[i]);
         rate.push_back(A[i] + B[i] * sigma + D[i] * power(sigma, 2));
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        ndot.push_back(along(n[i], q, velocity));
-        Bdot.push_back(along(B[i], q, velocity) + along(B[i], v, rate));
-    }
-    for (const auto& slots : {q, v}) {
-        for (const Expression entry : A) {
-            const Row row = gradient(entry, slots);
-            jacobian.insert(jacobian.end(), row.begin(), row.end());
-        }
-    }
+    const Row ndot = along(n, q, velocity), Bdot = sum(along(B, q, velocity), along(B, v, rate));
+    for (const auto& slots : {q, v})
+        for (const Row& row : jacobian(A, slots)) slopes.insert(slopes.end(), row.begin(), row.end());
     const Expression hddot = substitute(graph.adopt(equations.hddot), v, velocity);
     std::vector<std::uint32_t> variables = q;
     variables.insert(variables.end(), v.begin(), v.end());
@@ -63,7 +66,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         return Program(outputs, slots);
     };
     return {program({{hddot}}), program({gradient(hddot, variables)}), program({velocity, rate}),
-            program({A, n, B, D, ndot, Bdot, jacobian})};
+            program({A, n, B, D, ndot, Bdot, slopes})};
 }
 
 }  // namespace achilles

@@ -1,5 +1,9 @@
 #include "model/derive.hpp"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
 namespace achilles {
 
 namespace {
@@ -13,6 +17,7 @@ class Factorisation {
         for (std::size_t j = 0; j < n; ++j) {
             pivots_[j] = M[j * n + j];
             for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - power(lower_[j * n + k], 2) * pivots_[k];
+            if (pivots_[j].is_zero()) throw std::domain_error(fmt::format("pivot {} is 0", j + 1));
             for (std::size_t i = j + 1; i < n; ++i) {
                 Expression entry = M[i * n + j];
                 for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
@@ -47,8 +52,7 @@ Expression dot(const Row& a, const Row& b, Graph& graph) {
 // b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i
 Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std::uint32_t>& q, Graph& graph) {
     const std::size_t n = v.size();
-    std::vector<Row> dM;  // dM[i n + j][k] = dM_ij/dq_k
-    for (const Expression entry : M) dM.push_back(gradient(entry, q));
+    const std::vector<Row> dM = jacobian(M, q);  // dM[i n + j][k] = dM_ij/dq_k
     Row b = gradient(potential, q);
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = 0; j < n; ++j) {
@@ -81,13 +85,15 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     e.g = gradient(e.gap, q_slots);
     e.hdot = dot(e.g, v, graph);
     Expression curvature = graph.number(0);  // v'Hv
+    const std::vector<Row> H = jacobian(e.g, q_slots);
     for (std::size_t i = 0; i < n; ++i) {
-        const Row row = gradient(e.g[i], q_slots);
+        const Row& row = H[i];
         e.H.insert(e.H.end(), row.begin(), row.end());
         curvature = curvature + v[i] * dot(row, v, graph);
     }
     const Row impulse = mass.solve(e.g);  // M^-1 g'
     e.W = dot(e.g, impulse, graph);
+    if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
     for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : u / e.W);
 
     e.hddot = curvature + dot(e.g, e.f, graph);

@@ -35,7 +35,8 @@ struct Equations {
 //     M(q) a + b(q,v) = 0,   b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i,   f = -M^-1 b
 //     g = dh,  W = g M^-1 g',  n = M^-1 g'/W,  hddot = v'Hv + g f,  lambda = -hddot/W,  f_c = f - n hddot,  s = v - n
 //     hdot
-// M^-1 is applied through an L D L' factorisation unrolled in the graph.
+// M^-1 is applied through an L D L' factorisation unrolled in the graph. Throws std::domain_error where a pivot or W is
+// 0 everywhere (M is not positive definite, or dh = 0), TooLarge where the graph would be.
 void derive(Equations& equations, const Layout& layout, Graph& graph);
 
 }  // namespace achilles

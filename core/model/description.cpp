@@ -192,6 +192,8 @@ InputError SystemDescription::error(Location at, const std::string& message, con
 }
 
 SystemDescription parse_system(std::string text, std::string name) {
+    if (text.size() > largest_file)
+        throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
     SystemDescription system;
     system.file = std::move(name);
     system.source_text = std::move(text);

@@ -87,9 +87,12 @@ struct SystemDescription {
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
-// The whole of a file, as it is. Throws InputError: there is none, a directory, larger than so many bytes (/dev/zero
-// has no end).
-std::string read_file(const std::filesystem::path& file, std::size_t largest = std::size_t{64} << 20);
+// The most bytes of a file: thousands of points of a polyline fit, and whatever else it holds is refused in a second.
+inline constexpr std::size_t largest_file = std::size_t{4} << 20;
+
+// What a file holds. Throws InputError if there is none to read. Of a file that is too large it is only so much that
+// the size tells: parse_system will say so.
+std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
 // Reads a file. Throws InputError.
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.

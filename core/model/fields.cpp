@@ -126,6 +126,9 @@ std::vector<Fields> tables(const SystemDescription& system, const TomlValue& roo
                                fmt::format("'{}' must be an array of tables, not {}", key, kind_name(entry.value.kind)),
                                fmt::format("write {}, once for each", where));
         }
+        constexpr std::size_t most = 1000;
+        if (entry.value.items.size() > most)
+            throw system.error(entry.value.items[most].at, fmt::format("more than {} {}", most, where));
         for (const TomlValue& item : entry.value.items) list.emplace_back(system, item, where);
     }
     return list;

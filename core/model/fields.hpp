@@ -48,7 +48,8 @@ class Fields {
     std::string where_;
 };
 
-// The tables of an array of tables; none where the key is absent. Throws InputError if it is something else.
+// The tables of an array of tables; none where the key is absent. Throws InputError if it is something else, or has
+// more than 1000.
 std::vector<Fields> tables(const SystemDescription& system, const TomlValue& root, const std::string& key);
 
 // The names of these entries as a list for a person: "a, b, c".

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "model/rate_polynomial.hpp"
 
@@ -86,15 +88,47 @@ Model::Model(SystemDescription description) : description_(std::move(description
     equations_.potential = read(description_.potential, position_scope(names, "potential"), *graph_);
     equations_.gap = read(description_.gap, position_scope(names, "gap"), *graph_);
     equations_.restitution = read(description_.restitution, restitution, *graph_);
-    read_mass_matrix();
-    derive(equations_, layout_, *graph_);
-    compile();
-    for (const ViewDescription& view :
-         description_.views) {  // a mistake in a view or a drawing speaks now, not when it is drawn
-        compile_view(std::span(&view.x, 1));
-        compile_view(view.y);
+    try {
+        derive_equations();
+        compile();
+        read_pictures();
+    } catch (const TooLarge& problem) {
+        throw description_.error(description_.kinetic.at,
+                                 fmt::format("the equations of motion are too large: {}", problem.what()));
     }
-    for (const DrawingDescription& drawing : description_.drawings) compile_drawing(texts_of(drawing), drawing.over);
+}
+
+void Model::derive_equations() {
+    try {
+        read_mass_matrix();
+        std::vector<std::uint32_t> q;
+        for (std::size_t i = 0; i < layout_.n; ++i) q.push_back(layout_.q(i));
+        const std::vector<Expression> slope = gradient(equations_.gap, q);
+        if (std::all_of(slope.begin(), slope.end(), [](Expression e) { return e.is_zero(); }))
+            throw description_.error(description_.gap.at,
+                                     "dh = 0 everywhere: the gap does not change with any coordinate");
+        derive(equations_, layout_, *graph_);
+    } catch (const std::domain_error& problem) {
+        throw description_.error(description_.kinetic.at,
+                                 fmt::format("the mass matrix is positive definite nowhere: {}", problem.what()),
+                                 "every coordinate needs a positive inertia");
+    }
+}
+
+// A mistake in a view or a drawing speaks now, not when it is drawn.
+void Model::read_pictures() const {
+    Graph graph(*graph_);
+    const Scope view_names = view_scope(graph);
+    for (const ViewDescription& view : description_.views) {
+        read(view.x, view_names, graph);
+        for (const Text& y : view.y) read(y, view_names, graph);
+    }
+    Scope names = drawing_scope(graph);
+    for (const DrawingDescription& drawing : description_.drawings) {
+        if (!drawing.over.empty()) names.allowed.insert_or_assign(drawing.over, graph.symbol(layout_.own()));
+        for (const Text& text : texts_of(drawing)) read(text, names, graph);
+        names.allowed.erase(drawing.over);
+    }
 }
 
 Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const {
@@ -155,8 +189,14 @@ void Model::compile() {
 }
 
 const Bouncing& Model::bouncing() const {
-    std::call_once(bouncing_once_,
-                   [&] { bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_)); });
+    std::call_once(bouncing_once_, [&] {
+        try {
+            bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_));
+        } catch (const TooLarge& problem) {
+            throw description_.error(description_.kinetic.at,
+                                     fmt::format("what proves a truncation is too large: {}", problem.what()));
+        }
+    });
     return *bouncing_;
 }
 
@@ -240,8 +280,7 @@ void Model::check_start(const Run& run) const {
                                      "the acceleration is not finite at the start: a function is outside its domain");
 }
 
-Program Model::compile_view(std::span<const Text> texts) const {
-    Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
+Scope Model::view_scope(Graph& graph) const {
     const Names names = names_of(description_, layout_, graph);
     const Expression contact = graph.symbol(layout_.contact());
     Scope scope;
@@ -254,6 +293,16 @@ Program Model::compile_view(std::span<const Text> texts) const {
     scope.allowed.emplace("gap''", (graph.number(1) - contact) * graph.adopt(equations_.hddot));
     scope.allowed.emplace("lambda", contact * graph.adopt(equations_.lambda));
     scope.allowed.emplace("energy", graph.adopt(equations_.energy));
+    return scope;
+}
+
+Scope Model::drawing_scope(Graph& graph) const {
+    return position_scope(names_of(description_, layout_, graph), "drawing");
+}
+
+Program Model::compile_view(std::span<const Text> texts) const {
+    Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
+    const Scope scope = view_scope(graph);
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
     return Program(outputs, layout_.slots());
@@ -261,8 +310,7 @@ Program Model::compile_view(std::span<const Text> texts) const {
 
 Program Model::compile_drawing(std::span<const Text> texts, const std::string& own) const {
     Graph graph(*graph_);
-    const Names names = names_of(description_, layout_, graph);
-    Scope scope = position_scope(names, "drawing");
+    Scope scope = drawing_scope(graph);
     if (!own.empty()) scope.allowed.insert_or_assign(own, graph.symbol(layout_.own()));
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));

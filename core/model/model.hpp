@@ -45,7 +45,8 @@ class Model {
     const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
 
-    // The programs of the sharp conditions, derived when they are first asked for.
+    // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
+    // too large.
     const Bouncing& bouncing() const;
 
     // An evaluator of one of the programs above with the parameters' values in place.
@@ -71,7 +72,11 @@ class Model {
  private:
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
     void read_mass_matrix();
+    void derive_equations();
     void compile();
+    void read_pictures() const;
+    Scope view_scope(Graph& graph) const;
+    Scope drawing_scope(Graph& graph) const;
     void check_start(const Run& run) const;
 
     SystemDescription description_;

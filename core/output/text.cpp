@@ -30,6 +30,8 @@ std::string_view to_text(Outcome::Kind kind) {
             return "left the domain";
         case Outcome::Kind::step_too_small:
             return "step too small";
+        case Outcome::Kind::cancelled:
+            return "cancelled";
         default:
             return "undecided";
     }

@@ -21,9 +21,10 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 }  // namespace
 
-Execution::Execution(std::shared_ptr<const Model> model, const Run& run)
+Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch)
     : model_(std::move(model)),
       run_(run),
+      watch_(watch),
       flow_(*model_, run_),
       surface_(*model_, run_),
       conditions_(truncation_conditions(*model_, run_)),
@@ -333,8 +334,20 @@ void Execution::release() {
 
 // ---- steps and ends ----
 
+// Tells the watch how far the run is, and asks whether it shall go on. Once a step: every impact and every release lies
+// between two.
+bool Execution::is_cancelled() {
+    if (watch_ == nullptr) return false;
+    watch_->time.store(t_, std::memory_order_relaxed);
+    watch_->impacts.store(record_.impacts(), std::memory_order_relaxed);
+    if (!watch_->stop.stop_requested()) return false;
+    stop(Outcome::Kind::cancelled, fmt::format("cancelled at t = {:.9g}", t_));
+    return true;
+}
+
 // One step of the flow, not longer than `longest`. False if the run is over.
 bool Execution::advance(double longest) {
+    if (is_cancelled()) return false;
     if (longest <= 1e-15 * std::abs(flow_.end_time())) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;

@@ -8,12 +8,14 @@
 #include "simulate/flow.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/recorder.hpp"
+#include "simulate/simulate.hpp"
 
 namespace achilles {
 
 class Execution {
  public:
-    Execution(std::shared_ptr<const Model> model, const Run& run);
+    // `watch` may be null; otherwise it lives as long as this.
+    Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch);
 
     // Decides how the run starts: in flight, in contact, or at an impact.
     void begin();
@@ -47,6 +49,7 @@ class Execution {
     bool locate_release(double theta);
     void release();
 
+    bool is_cancelled();
     bool advance(double longest);
     void take(double gap);
     void leave(Flow::Obstacle obstacle);
@@ -54,6 +57,7 @@ class Execution {
 
     std::shared_ptr<const Model> model_;
     Run run_;
+    Watch* watch_;
     Flow flow_;
     Surface surface_;
     std::unique_ptr<TruncationConditions> conditions_;

@@ -1,14 +1,24 @@
 // The completed execution of a system: past every Zeno point, until the end time.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <stop_token>
 
 #include "trajectory.hpp"
 
 namespace achilles {
 
+// A run as another thread sees it: it can be told to stop, and it says how far it is.
+struct Watch {
+    std::stop_token
+        stop;  // asked for, the run ends at its next step, as Outcome "cancelled"; set before the run starts
+    std::atomic<double> time{0.0};  // s, reached so far
+    std::atomic<long> impacts{0};   // so far
+};
+
 // Runs. Never throws for what happens on the way: that is the trajectory's outcome. Throws InputError if the run cannot
 // start (Model::check).
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run);
+Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch = nullptr);
 
 }  // namespace achilles

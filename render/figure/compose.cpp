@@ -36,11 +36,12 @@ class Values {
     const Layout& layout_;
 };
 
-// The range of all finite values.
+// The range of all finite values; of the positive ones where the axis is logarithmic.
 struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+    bool positive = false;
     void include(double x) {
-        if (!std::isfinite(x)) return;
+        if (!std::isfinite(x) || (positive && !(x > 0.0))) return;
         low = std::min(low, x);
         high = std::max(high, x);
     }
@@ -88,6 +89,32 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     return Sampler(trajectory).all(between);
 }
 
+std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to) {
+    constexpr int wanted = 2400;
+    Sampler sampler(trajectory);
+    std::vector<Sample> samples;
+    auto event = std::lower_bound(trajectory.events.begin(), trajectory.events.end(), from,
+                                  [](const Event& e, double t) { return e.t < t; });
+    for (int i = 0; i <= wanted; ++i) {
+        const double t = i == wanted ? to : from + (to - from) * i / wanted;
+        // An event between two samples is one of its own, seen from both sides.
+        for (; event != trajectory.events.end() && event->t <= t; ++event) {
+            samples.push_back(sampler.at(std::nextafter(event->t, from)));
+            samples.push_back(sampler.at(event->t));
+        }
+        samples.push_back(sampler.at(t));
+    }
+    return samples;
+}
+
+std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view) {
+    Values values(view, trajectory);
+    values.set(sample);
+    std::vector<double> result;
+    for (std::size_t i = 0; i < view.quantities().size(); ++i) result.push_back(values[i]);
+    return result;
+}
+
 namespace {
 
 // Two curves for each quantity: its hybrid and its constrained parts.
@@ -109,7 +136,8 @@ Point point_of(double x, double y) {
 }
 
 // Fills the curves. Where the phase changes one breaks and the other goes on from the same point.
-void trace(Panel& panel, std::span<const Sample> samples, Values& values, Range& x_range, Range& y_range) {
+void trace(Panel& panel, std::span<const Sample> samples, Values& values, const Framing& framing, Range& x_range,
+           Range& y_range) {
     const std::size_t curves = panel.curves.size() / 2;
     std::vector<double> last(curves + 1), now(curves + 1);
     const Sample* previous = nullptr;
@@ -118,6 +146,7 @@ void trace(Panel& panel, std::span<const Sample> samples, Values& values, Range&
         for (std::size_t i = 0; i < now.size(); ++i) now[i] = values[i];
         const bool changed = previous == nullptr || previous->phase != sample.phase;
         for (std::size_t i = 0; i < curves; ++i) {
+            if (framing.hidden.contains(i)) continue;
             std::vector<Point>& points = panel.curves[2 * i + (sample.phase == Phase::Kind::hybrid ? 0 : 1)].points;
             if (changed && !points.empty()) points.push_back({nothing, nothing});
             if (changed && previous != nullptr) points.push_back(point_of(last[0], last[i + 1]));
@@ -130,7 +159,8 @@ void trace(Panel& panel, std::span<const Sample> samples, Values& values, Range&
     }
 }
 
-void add_markers(Panel& panel, const Trajectory& trajectory, Values& values, const Theme& theme) {
+void add_markers(Panel& panel, const Trajectory& trajectory, Values& values, const Framing& framing,
+                 const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
@@ -138,6 +168,7 @@ void add_markers(Panel& panel, const Trajectory& trajectory, Values& values, con
             if (event.kind != kind) continue;
             values.set(at_event(event));
             for (std::size_t i = 0; i < curves; ++i) {
+                if (framing.hidden.contains(i)) continue;
                 const Point point = point_of(values[0], values[i + 1]);
                 if (!std::isnan(point.x)) markers.points.push_back(point);
             }
@@ -173,26 +204,38 @@ void thin(Panel& panel) {
         if (markers.points.size() > many_markers) markers.points = thinned(markers.points, panel.x, 1000.0);
 }
 
+void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, double margin) {
+    if (limits)
+        set_ticks(axis, (*limits)[0], (*limits)[1], 0.0);
+    else
+        set_ticks(axis, range.low, range.high, margin);
+}
+
 }  // namespace
 
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-              const Theme& theme) {
+              const Theme& theme, const Framing& framing) {
     const auto& quantities = view.quantities();
     const bool over_time = quantities[0].is_time, single = quantities.size() == 2;
     Panel panel;
     panel.title = view.name();
     Values values(view, trajectory);
+    panel.x.logarithmic = framing.log_x;
+    panel.y.logarithmic = framing.log_y;
     Range x_range, y_range;
+    x_range.positive = framing.log_x;
+    y_range.positive = framing.log_y;
     add_curves(panel, view, theme);
-    trace(panel, samples, values, x_range, y_range);
-    add_markers(panel, trajectory, values, theme);
-    if (over_time) x_range = {0.0, trajectory.end_time};
-    set_ticks(panel.x, x_range.low, x_range.high, over_time ? 0.0 : 0.05);
-    set_ticks(panel.y, y_range.low, y_range.high, 0.07);
+    trace(panel, samples, values, framing, x_range, y_range);
+    add_markers(panel, trajectory, values, framing, theme);
+    const bool whole_run = over_time && !framing.log_x;
+    if (whole_run) x_range.low = 0.0, x_range.high = trajectory.end_time;
+    set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
+    set_limits(panel.y, framing.y, y_range, 0.07);
     thin(panel);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
     if (single) panel.y.label = with_unit(quantities[1].label, quantities[1].unit);
-    if (!single) place_legend(panel);
+    if (!single && framing.legend) place_legend(panel);
     return panel;
 }
 

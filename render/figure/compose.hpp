@@ -1,6 +1,9 @@
 // From a trajectory and a view to a panel: every limit, tick, colour and marker is decided here.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <set>
 #include <span>
 
 #include "figure/figure.hpp"
@@ -36,10 +39,27 @@ class PreparedView {
 // The samples a plot needs: dense enough to look smooth, bounded for any number of impacts. All panels share them.
 std::vector<Sample> plot_samples(const Trajectory& trajectory);
 
+// The same for a part of the run: as dense as a plot of it needs, however short it is.
+std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to);
+
+// How a panel is looked at. Limits are in the units that are shown; without them the data fits. On a logarithmic axis
+// only what is positive is seen.
+struct Framing {
+    using Limits = std::optional<std::array<double, 2>>;
+    Limits x, y;
+    bool log_x = false, log_y = false;
+    std::set<std::size_t> hidden;  // curves, counted from 0 as the view's y
+    bool legend = true;            // where there are several curves
+    friend bool operator==(const Framing&, const Framing&) = default;
+};
+
 // The panel of one view: hybrid phases dashed, constrained ones solid, squares at impacts, markers at Zeno points and
 // releases.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-              const Theme& theme);
+              const Theme& theme, const Framing& framing = {});
+
+// What the view's quantities are at one sample, x first, in the units that are shown.
+std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view);
 
 // Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
 // gets room at the top.

@@ -127,15 +127,13 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
     }
 }
 
-// Keys in lines beside one another, none longer than the room unless it is a single key.
+// Keys in lines beside one another, as few lines as the room allows, and those about equally long.
 struct KeyLines {
-    KeyLines(const std::vector<Key>& wanted, float room, const Metrics& m) : keys(wanted) {
-        for (const Key& key : keys) {
-            const float length = sample(key, m) + m.width(key.label, m.text);
-            if (lines.empty() || lines.back().length + between(m) + length > room) lines.push_back({0, 0.0F});
-            Line& line = lines.back();
-            line.length += length + (line.count > 0 ? between(m) : 0.0F);
-            ++line.count;
+    KeyLines(const std::vector<Key>& wanted, float room, const Metrics& m) : keys(wanted), lines(fill(room, m)) {
+        for (float narrower = longest() - m.text; narrower > m.text; narrower -= m.text) {
+            const std::vector<Line> even = fill(narrower, m);
+            if (even.size() > lines.size()) break;
+            lines = even;
         }
     }
     float height(const Metrics& m) const { return static_cast<float>(lines.size()) * row(m); }
@@ -164,6 +162,18 @@ struct KeyLines {
         std::size_t count;
         float length;
     };
+    // One key after the other, a new line where the room ends; a single key may be longer.
+    std::vector<Line> fill(float room, const Metrics& m) const {
+        std::vector<Line> filled;
+        for (const Key& key : keys) {
+            const float length = sample(key, m) + m.width(key.label, m.text);
+            if (filled.empty() || filled.back().length + between(m) + length > room) filled.push_back({0, 0.0F});
+            Line& line = filled.back();
+            line.length += length + (line.count > 0 ? between(m) : 0.0F);
+            ++line.count;
+        }
+        return filled;
+    }
     static float sign(const Key& key, const Metrics& m) {
         return std::round((std::holds_alternative<Stroke>(key.sign) ? 2.2F : 0.8F) * m.text);
     }

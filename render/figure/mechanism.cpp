@@ -36,15 +36,28 @@ struct Box {
     void include(const Placed& placed) {
         for (const Point& point : placed.points) include(point, std::max(0.0, placed.radius));
     }
+    void include(const Box& other) {
+        x_low = std::min(x_low, other.x_low);
+        x_high = std::max(x_high, other.x_high);
+        y_low = std::min(y_low, other.y_low);
+        y_high = std::max(y_high, other.y_high);
+    }
     bool empty() const { return x_low > x_high; }
+    double size() const { return std::max(x_high - x_low, y_high - y_low); }
     // How far a point is outside, in the direction where it is farther.
     double distance(const Point& p) const {
         return std::max({x_low - p.x, p.x - x_high, y_low - p.y, p.y - y_high, 0.0});
     }
 };
 
-// A curve that stands still, the surface mostly, counts where the motion is above it, not far below.
+// A curve that stands still: a ground counts where the motion is above it, not far below; a thing not much larger than
+// the motion (a bowl, a ring) is seen whole.
 void include_under(Box& all, const Box& motion, const std::vector<Point>& curve) {
+    Box whole;
+    for (const Point& p : curve) whole.include(p);
+    const bool near =
+        std::any_of(curve.begin(), curve.end(), [&](const Point& p) { return motion.distance(p) <= motion.size(); });
+    if (near && whole.size() <= 2.0 * motion.size()) return all.include(whole);
     const double height = std::max(motion.y_high - motion.y_low, 0.2 * (motion.x_high - motion.x_low));
     for (const Point& p : curve)
         if (p.x >= motion.x_low && p.x <= motion.x_high && p.y >= motion.y_low - height &&
@@ -56,7 +69,7 @@ void include_under(Box& all, const Box& motion, const std::vector<Point>& curve)
 template <class Placed>
 void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     constexpr int parts = 100;
-    const double reach = std::max(motion.x_high - motion.x_low, motion.y_high - motion.y_low);
+    const double reach = motion.size();
     double least = std::numeric_limits<double>::infinity();
     Point nearest;
     for (std::size_t i = 0; i < placed.points.size(); ++i) {
@@ -210,7 +223,7 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
     const std::size_t stride = 1 + samples.size() / 1000;
     if (plane_)
         for (std::size_t i = 0; i < samples.size(); i += stride)
-            box.include({samples[i].state.q[0], samples[i].state.q[1]});
+            box.include(Point{samples[i].state.q[0], samples[i].state.q[1]});
     for (const Item& item : items_) {
         if (!item.moves) continue;
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
@@ -229,8 +242,8 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
         else
             include_nearest(all, box, placed);
     }
-    if (all.empty()) all.include({0.0, 0.0}, 1.0);
-    const double size = std::max(all.x_high - all.x_low, all.y_high - all.y_low);
+    if (all.empty()) all.include(Point{0.0, 0.0}, 1.0);
+    const double size = all.size();
     const double room = size > 0.0 ? 0.06 * size : 1.0;
     Drawing drawing;
     drawing.x_low = all.x_low - room;

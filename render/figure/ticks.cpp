@@ -50,6 +50,8 @@ int decimals_of(double step) { return std::max(0, static_cast<int>(-std::floor(s
 
 }  // namespace
 
+std::string power_of_ten(int exponent) { return "10" + superscript(exponent); }
+
 std::string tick_label(double value, double step, double largest) {
     const double size = std::max({std::abs(value), step, largest});
     if (size < 1e5 && (step >= 1e-4 || size >= 1e-2))
@@ -91,7 +93,7 @@ void set_linear(Axis& axis, double low, double high, double margin, int most) {
 // The label of 10^exponent; `plain` where a whole axis is short enough to write out.
 std::string decade_label(int exponent, bool plain) {
     if (plain) return fmt::format("{:.{}f}", decade(exponent), std::max(0, -exponent));
-    return "10" + superscript(exponent);
+    return power_of_ten(exponent);
 }
 
 // Powers of ten, every k-th one labelled, and 2 to 9 between them. Few powers of ten say little: 2 and 5 are labelled

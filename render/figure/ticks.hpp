@@ -15,4 +15,7 @@ void set_ticks(Axis& axis, double low, double high, double margin, int most = 6)
 // `largest` is the greatest size on the axis: it decides the form and the power, so that all labels of an axis agree.
 std::string tick_label(double value, double step, double largest = 0.0);
 
+// "10\u207B\u00B3" for -3.
+std::string power_of_ten(int exponent);
+
 }  // namespace achilles

@@ -20,7 +20,7 @@ struct SurfaceOptions {
     bool dark = false;                // ImGui's colours
     int curve_fineness = 1;           // 2: curves are drawn at twice the size and averaged down; finer, slower
     bool transparent = false;         // pictures keep what nothing was drawn on clear
-    std::filesystem::path fonts;      // folder that holds DejaVuSans.ttf
+    std::filesystem::path fonts;      // folder that holds DejaVuSans.ttf and DejaVuSansMono.ttf
 };
 
 // Keys as ImGui::IsKeyDown and IsKeyPressed number them here. Letters, digits and space are their upper case ASCII

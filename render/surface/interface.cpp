@@ -21,6 +21,9 @@ constexpr ImWchar glyphs[] = {0x0020, 0x017F, 0x02D9, 0x02D9, 0x0300, 0x0308, 0x
                               0x206F, 0x2070, 0x209C, 0x2102, 0x2135, 0x2190, 0x21FF, 0x2200, 0x22FF,
                               0x25A0, 0x25FF, 0x2758, 0x275E, 0x27E8, 0x27E9, 0xFFFD, 0xFFFD, 0};
 
+constexpr const char* proportional = "DejaVuSans.ttf";
+constexpr const char* monospaced = "DejaVuSansMono.ttf";
+
 ImVec4 gray(float level, float alpha = 1.0F) { return {level, level, level, alpha}; }
 
 // One accent on greys. `accent` is what the hand can move, `text` what it reads.
@@ -98,9 +101,9 @@ void map_keys(ImGuiIO& io) {
 
 Interface::Interface(const SurfaceOptions& options) : options_(options) {
     // ImGui itself aborts on a missing font.
-    const auto file = options.fonts / "DejaVuSans.ttf";
-    if (!std::filesystem::is_regular_file(file))
-        throw std::runtime_error(file.string() + ": the font is missing; the package fonts-dejavu-core has it");
+    for (const char* name : {proportional, monospaced})
+        if (const auto file = options.fonts / name; !std::filesystem::is_regular_file(file))
+            throw std::runtime_error(file.string() + ": the font is missing; the package fonts-dejavu-core has it");
     if (!(options.scale >= 0.1 && options.scale <= 20.0)) throw std::runtime_error("the scale must be 0.1 to 20");
     IMGUI_CHECKVERSION();
     ImGuiContext* before = ImGui::GetCurrentContext();
@@ -139,19 +142,22 @@ void Interface::restyle(double scale, bool dark) {
 void Interface::build_fonts(double scale) {
     ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
     atlas.Clear();
-    const std::string file = (options_.fonts / "DejaVuSans.ttf").string();
+    const auto add = [&](const char* name, double pixels) {
+        ImFontConfig config;
+        config.OversampleH = config.OversampleV = 1;  // letters stand on whole pixels
+        config.PixelSnapH = true;
+        const std::string file = (options_.fonts / name).string();
+        atlas.AddFontFromFileTTF(file.c_str(), static_cast<float>(pixels), &config, glyphs);
+    };
     // The first is the interface's own.
     std::vector<double> sizes;
     for (const double size :
          {options_.text_size, options_.figure_text_size, options_.figure_text_size * double{script_size}}) {
         const double pixels = std::max(std::round(size * scale), 4.0);
-        if (std::find(sizes.begin(), sizes.end(), pixels) != sizes.end()) continue;
-        sizes.push_back(pixels);
-        ImFontConfig config;
-        config.OversampleH = config.OversampleV = 1;  // letters stand on whole pixels
-        config.PixelSnapH = true;
-        atlas.AddFontFromFileTTF(file.c_str(), static_cast<float>(pixels), &config, glyphs);
+        if (std::find(sizes.begin(), sizes.end(), pixels) == sizes.end()) sizes.push_back(pixels);
     }
+    for (const double pixels : sizes) add(proportional, pixels);
+    add(monospaced, std::max(std::round(0.9 * options_.text_size * scale), 4.0));  // the last: monospace_font()
     atlas.Build();
 }
 
@@ -186,11 +192,13 @@ void apply(const Input& input) {
 }
 
 ImFont* font_for(double pixels) {
-    ImFont* best = ImGui::GetFont();
+    ImFont* best = ImGui::GetIO().Fonts->Fonts.front();
     const auto distance = [pixels](const ImFont* font) { return std::abs(double{font->FontSize} - pixels); };
     for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
-        if (best == nullptr || distance(font) < distance(best)) best = font;
+        if (font != monospace_font() && distance(font) < distance(best)) best = font;
     return best;
 }
+
+ImFont* monospace_font() { return ImGui::GetIO().Fonts->Fonts.back(); }
 
 }  // namespace achilles

@@ -1,5 +1,5 @@
-// ImGui as both surfaces set it up: one font, two looks, no file written, no clock read. Version 1.87 and 1.92 of ImGui
-// changed input and fonts; what depends on that is here and in events.cpp.
+// ImGui as both surfaces set it up: its fonts, two looks, no file written, no clock read. Version 1.87 and 1.92 of
+// ImGui changed input and fonts; what depends on that is here and in events.cpp.
 #pragma once
 
 #include "surface/frame.hpp"
@@ -49,5 +49,7 @@ void apply(const Input& input);
 
 // The font of the current context made for a size nearest to the one asked for: text at that size is sharp.
 ImFont* font_for(double pixels);
+// The font whose letters are all of one width, for text that is edited, a little smaller than the interface's.
+ImFont* monospace_font();
 
 }  // namespace achilles

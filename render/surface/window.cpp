@@ -118,6 +118,7 @@ struct Window::Implementation {
     void make_cursors();
     void show_cursor();
     void wait();
+    bool is_closing();
     void restyle();
     void frame(const FrameFunction& draw);
 
@@ -127,6 +128,7 @@ struct Window::Implementation {
     std::optional<Canvas> canvas;
     Events events;
     std::vector<std::string> files;
+    std::function<bool()> may_close;
     std::array<GLFWcursor*, ImGuiMouseCursor_COUNT> cursors{};
     double monitor_scale = 1.0, scale = 1.0;
     bool dark = false, stale = false, moving = true;
@@ -237,6 +239,14 @@ void Window::Implementation::wait() {
     if (!events.empty()) unsettled = settling_frames;
 }
 
+bool Window::Implementation::is_closing() {
+    if (glfwWindowShouldClose(window) == GLFW_FALSE) return false;
+    if (!may_close || may_close()) return true;
+    glfwSetWindowShouldClose(window, GLFW_FALSE);
+    unsettled = settling_frames;
+    return false;
+}
+
 void Window::Implementation::restyle() {
     interface.restyle(scale * monitor_scale, dark);
     const Current current(window);
@@ -271,11 +281,13 @@ Window::~Window() = default;
 void Window::run(const FrameFunction& draw) {
     Implementation& self = *implementation_;
     glfwSetWindowShouldClose(self.window, GLFW_FALSE);
-    while (glfwWindowShouldClose(self.window) == GLFW_FALSE) {
+    while (!self.is_closing()) {
         self.wait();
-        if (glfwWindowShouldClose(self.window) == GLFW_FALSE) self.frame(draw);
+        if (!self.is_closing()) self.frame(draw);
     }
 }
+
+void Window::on_close(std::function<bool()> may_close) { implementation_->may_close = std::move(may_close); }
 
 void Window::close() { glfwSetWindowShouldClose(implementation_->window, GLFW_TRUE); }
 

@@ -1,6 +1,7 @@
 // A desktop window. The only file that knows GLFW.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ class Window {
     // Draws frames until the user closes the window or close() is called.
     void run(const FrameFunction& draw);
     void close();
+    // Asked whenever the window is to be closed; if it says no, the window stays.
+    void on_close(std::function<bool()> may_close);
     // false: nothing moves by itself, so after a few frames the window sleeps until the user does something. true at
     // first.
     void keep_drawing(bool moving);

@@ -24,6 +24,20 @@ const std::vector<Command> one_of_each{
     command::Play{},
     command::Pause{},
     command::Select{25},
+    command::Grid{3, 2},
+    command::PlotView{2, "t", {"y", "x'^2 + y'^2"}},
+    command::Zoom{1, -1.0, 1e-7, 0.1 + 0.2, 3.0},
+    command::Fit{4},
+    command::AxisScale{1, false, true},
+    command::ShowCurve{1, 2, false},
+    command::Link{false},
+    command::New{},
+    command::Text{"title = \"A \\ \\n ball\"\n\t# \u03b8\r\n"},
+    command::Text{""},
+    command::Save{"mine.toml", false},
+    command::Save{"a folder/mine\n.toml", true},
+    command::Show{true},
+    command::Show{false},
 };
 
 TEST(Command, reads_back_what_it_writes) {
@@ -36,6 +50,8 @@ TEST(Command, looks_as_the_manual_says) {
     EXPECT_EQ(to_text(command::Set{"x'", 1.5}), "set x' 1.5");
     EXPECT_EQ(to_text(command::Seek{3.2}), "seek 3.2");
     EXPECT_EQ(to_text(command::Eps{1e-6, 1e-6, 1e-6}), "eps 1e-06");
+    EXPECT_EQ(to_text(command::Text{"a = \"1\"\nb\\"}), "text \"a = \\\"1\\\"\\nb\\\\\"");
+    EXPECT_EQ(to_text(command::Save{"mine.toml", true}), "save mine.toml overwrite");
     EXPECT_EQ(parse_command("eps 1e-6"), Command(command::Eps{1e-6, 1e-6, 1e-6}));
     EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
 }
@@ -54,7 +70,12 @@ struct Mistake {
 };
 
 TEST(Journal, names_the_place_of_a_mistake) {
-    const Mistake mistakes[] = {{"  seeek 3", 3, "did you mean 'seek'"},
+    const Mistake mistakes[] = {{"save", 5, "needs more"},
+                                {"save a b", 8, "save FILE overwrite"},
+                                {"show controls", 6, "there is no panel 'controls'"},
+                                {"text a b", 8, "'b' is too much"},
+                                {"new file", 5, "'file' is too much"},
+                                {"  seeek 3", 3, "did you mean 'seek'"},
                                 {"seek", 5, "needs more"},
                                 {"seek 3 4", 8, "'4' is too much"},
                                 {"seek soon", 6, "'soon' is not a finite number"},

@@ -12,7 +12,17 @@ inline SystemDescription system(const std::string& name) {
     return read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml");
 }
 
-inline Session session(const std::string& name) { return {name, system(name), system}; }
+inline Library library() {
+    return {[](const std::string& name) -> std::filesystem::path {
+                if (name.find('/') != std::string::npos) return name;
+                return ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml";
+            },
+            {}};
+}
+
+inline Session session(const std::string& name, Patience patience = {}) {
+    return {name, system(name), library(), patience};
+}
 
 // A surface as explore.cpp sets it up.
 inline SurfaceOptions surface(int width = 1280, int height = 800, double scale = 1.0) {

@@ -125,6 +125,23 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     EXPECT_EQ(folder.run("reproduce achilles-paper/fig4.png").out, "achilles paper --scale 0.5\n");
 }
 
+// A picture may come from anybody: what its journal saves is not saved again.
+TEST(Reproduce, AJournalThatSavesWritesNothing) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    folder.put("other.toml", "mine");
+    folder.put("tour.journal",
+               "open ./drop.toml\nopen drop.toml\nsave copy.toml\nsave other.toml overwrite\nopen copy.toml\n");
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
+    EXPECT_EQ(content(folder.path() / "other.toml"), drop);
+    folder.put("other.toml", "mine");
+    std::filesystem::remove(folder.path() / "copy.toml");
+    const Answer answer = folder.run("reproduce s.png");
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    EXPECT_EQ(content(folder.path() / "other.toml"), "mine");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "copy.toml"));
+}
+
 TEST(Reproduce, ARunThatStoppedEarlyIsThatAgain) {
     const Folder folder;
     ASSERT_EQ(folder.run("figure ball_on_sine --max-impacts 3 --out a.svg").status, 3);

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "app/open.hpp"
+#include "app/program.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -117,15 +118,133 @@ TEST(Session, opens_another_system) {
     EXPECT_EQ(to_text(session), to_text(test::session("double_pendulum")));
 }
 
+std::string with(std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Session, a_text_takes_effect_and_keeps_what_the_sliders_changed) {
+    Session session = test::session("ball_on_sine");
+    const std::string text = session.document().text;
+    EXPECT_EQ(text, test::content(session.description().file));
+    session.apply(command::Set{"g", 2.0});
+    session.apply(command::Set{"x'", 1.25});
+    session.apply(command::End{12.0});
+    session.apply(command::Seek{6.0});
+    session.apply(command::Text{with(text, "value = 0.5", "value = 0.25")});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_TRUE(session.document().problems.empty());
+    EXPECT_TRUE(session.document().is_changed());
+    EXPECT_EQ(session.run().parameters[2], 0.25) << "the text changed it";
+    EXPECT_EQ(session.run().parameters[1], 2.0) << "a slider changed it, and the text did not";
+    EXPECT_EQ(session.run().v[0], 1.25);
+    EXPECT_EQ(session.run().options.end_time, 12.0);
+    EXPECT_EQ(session.time(), 6.0) << "the present stays";
+    session.apply(command::Text{with(session.document().text, "rate  = 1.5", "rate  = -1.5")});
+    EXPECT_EQ(session.run().v[0], -1.5);
+    // A start that does not fit the new text gives way to the text's own.
+    session.apply(command::Set{"y", 1.0});
+    session.apply(command::Text{with(session.document().text, "y - sin(x)", "y - sin(x) - 1.5")});
+    EXPECT_TRUE(session.document().problems.empty());
+    EXPECT_EQ(session.run().q[1], 2.0);
+}
+
+// What the command line puts over a file stays over its edited text too, until the text says something else.
+TEST(Session, a_text_keeps_what_the_command_line_said) {
+    SystemDescription description = test::system("ball_on_sine");
+    assign(description, "g=3");
+    description.options.end_time = 7.0;
+    Session session("ball_on_sine", description, test::library());
+    const std::string text = session.document().text;
+    session.apply(command::Text{text + "# more\n"});
+    EXPECT_EQ(session.run().parameters[1], 3.0);
+    EXPECT_EQ(session.run().options.end_time, 7.0);
+    session.apply(command::Text{with(text, "end_time  = 20.0", "end_time  = 5.0")});
+    EXPECT_EQ(session.run().options.end_time, 5.0);
+    EXPECT_EQ(session.run().parameters[1], 3.0);
+}
+
+TEST(Session, a_text_that_is_no_system_is_told_and_leaves_the_run) {
+    Session session = test::session("ball_on_sine");
+    const std::string before = to_text(session.trajectory()), text = session.document().text;
+    const std::pair<std::string, int> mistakes[] = {{with(text, "m*g*y", "m*gg*y"), 47},              // an unknown name
+                                                    {with(text, "start = 2.0", "start = -2.0"), 50},  // the gap there
+                                                    {with(text, "[run]", "[run"), 53},                // no TOML
+                                                    {with(text, "\"lambda\"", "\"lamda\""), 95}};     // a view
+    for (const auto& [wrong, line] : mistakes) {
+        session.apply(command::Text{wrong});
+        ASSERT_EQ(session.document().problems.size(), 1U) << line;
+        EXPECT_EQ(session.document().problems[0].at.line, line) << session.document().problems[0].what();
+        EXPECT_EQ(session.document().text, wrong);
+        EXPECT_EQ(to_text(session.trajectory()), before);
+        EXPECT_NE(to_text(session).find("problem "), std::string::npos);
+    }
+    session.apply(command::Text{text});
+    EXPECT_TRUE(session.document().problems.empty());
+    EXPECT_EQ(to_text(session), to_text(test::session("ball_on_sine")));
+}
+
+TEST(Session, opens_a_file_that_is_no_system_in_the_editor) {
+    const test::Folder folder;
+    folder.put("wrong.toml", "title = 3");
+    const std::string wrong = (folder.path() / "wrong.toml").string();
+    Session session = test::session("ball_on_sine");
+    const std::string before = to_text(session.trajectory());
+    session.apply(command::Open{wrong});
+    EXPECT_TRUE(session.shows_editor());
+    EXPECT_EQ(session.document().file, wrong);
+    EXPECT_EQ(session.document().text, "title = 3");
+    EXPECT_FALSE(session.document().is_changed());
+    EXPECT_EQ(session.document().problems[0].file, wrong);
+    EXPECT_EQ(to_text(session.trajectory()), before);
+    EXPECT_EQ(session.system(), "ball_on_sine");
+}
+
+TEST(Session, begins_a_new_system) {
+    Session session = test::session("double_pendulum");
+    session.apply(command::New{});
+    EXPECT_TRUE(session.document().problems.empty());
+    EXPECT_FALSE(session.document().is_changed());
+    EXPECT_EQ(session.document().file, "");
+    EXPECT_EQ(session.trajectory().outcome.kind, Outcome::Kind::end_time);
+    EXPECT_EQ(session.trajectory().phases.size(), 2U) << "it comes to rest past a Zeno point";
+}
+
+TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
+    const test::Folder folder;
+    folder.put("other.toml", "other");
+    const std::string mine = (folder.path() / "mine.toml").string(), other = (folder.path() / "other.toml").string();
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Set{"g", 2.0});
+    session.apply(command::Text{session.document().text + "# mine\n"});
+    session.apply(command::Save{other});
+    EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+    EXPECT_EQ(test::content(other), "other");
+    session.apply(command::Save{session.description().file});
+    EXPECT_NE(session.error(), "") << "an asset is no file of the user's";
+    session.apply(command::Save{(folder.path() / "none" / "mine.toml").string()});
+    EXPECT_NE(session.error().find("cannot be written"), std::string::npos);
+    EXPECT_TRUE(session.document().is_changed());
+    session.apply(command::Save{mine});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(test::content(mine), session.document().text);
+    EXPECT_FALSE(session.document().is_changed());
+    EXPECT_EQ(session.system(), mine);
+    EXPECT_EQ(session.run().parameters[1], 2.0);
+    session.apply(command::Text{session.document().text + "# more\n"});
+    session.apply(command::Save{folder.path() / "." / "mine.toml"});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(test::content(mine), session.document().text);
+    session.apply(command::Save{other, true});
+    EXPECT_EQ(test::content(other), session.document().text);
+    EXPECT_EQ(folder.files().size(), 2U);
+}
+
 TEST(Session, knows_where_the_present_stands_in_a_plot) {
     Session session = test::session("double_pendulum");
     session.apply(command::Seek{2.0});
-    bool found = false;
-    for (const Point& point : session.present(0)) {
-        EXPECT_EQ(point.x, 2.0);
-        found = found || std::abs(point.y - session.now().state.q[0] * 57.29577951308232) < 1e-9;
-    }
-    EXPECT_TRUE(found);
+    const std::vector<double> values = session.values(0, session.now());
+    EXPECT_EQ(values[0], 2.0);
+    EXPECT_NEAR(values[1], session.now().state.q[0] * 57.29577951308232, 1e-9);
 }
 
 }  // namespace

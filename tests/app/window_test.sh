@@ -1,6 +1,7 @@
 #!/bin/bash
 # A real window on a display of its own: what it draws is what the offscreen picture draws, a slider dragged by the mouse
-# changes the run, Ctrl+Q closes the window with status 0.
+# changes the run, a text typed into the editor takes effect and is saved, Ctrl+Q closes the window with status 0, also in
+# the middle of a run that takes minutes.
 #     window_test.sh BUILD_FOLDER
 set -euo pipefail
 
@@ -47,8 +48,43 @@ cmp -s "$folder/before.png" "$folder/after.png" && fail "nothing changed"
 xdotool key --window "$window" space
 await grep -q '^play' "$folder/journal" || xdotool key space
 await grep -q '^play' "$folder/journal" || fail "space does not play"
-xdotool key ctrl+q
-status=0
-wait "$explorer" || status=$?
-explorer=
-[ "$status" -eq 0 ] || fail "the explorer ends with status $status"
+
+# The editor: a comment typed at the end of the text, saved to a file that the dialog asks for.
+xdotool key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
+xdotool type --delay 40 "# by hand"
+await grep -q '^text .*# by hand"$' "$folder/journal" || fail "what is typed does not take effect"
+xdotool key ctrl+s sleep 0.5 key ctrl+a sleep 0.2
+xdotool type --delay 40 "$folder/mine.toml"
+xdotool sleep 0.3 key Return
+await grep -q "^save $folder/mine.toml" "$folder/journal" || fail "Ctrl+S does not save"
+await test -s "$folder/mine.toml" || fail "nothing was saved"
+[ "$(tail -c 9 "$folder/mine.toml")" = "# by hand" ] || fail "something else was saved"
+
+# A window that would close over changes asks first.
+xdotool key ctrl+End sleep 0.2
+xdotool type --delay 40 "!"
+xdotool sleep 0.2 key ctrl+q sleep 1
+kill -0 "$explorer" || fail "the window closes over changes that are not saved"
+xdotool key Escape sleep 0.5 mousemove --window "$window" 200 300 click 1 sleep 0.2 key ctrl+s
+saved_twice() { [ "$(grep -c "^save $folder/mine.toml" "$folder/journal")" -ge 2 ]; }
+await saved_twice || fail "the window is deaf after it was to be closed"
+
+close_window() {
+    xdotool key ctrl+q
+    status=0
+    wait "$explorer" || status=$?
+    explorer=
+    [ "$status" -eq 0 ] || fail "the explorer ends with status $status"
+}
+close_window
+
+# Impacts without end: the window is there at once, and closes at once.
+"$build/achilles" explore ball_on_sine --size 1280x800 --set e=1 --end 1e9 --max-impacts 1000000000 &
+explorer=$!
+await xdotool search --onlyvisible --class achilles || fail "no window appears while a long run is under way"
+window=$(xdotool search --onlyvisible --class achilles | head -1)
+xdotool windowfocus --sync "$window" || true
+sleep 2
+begin=$SECONDS
+close_window
+[ $((SECONDS - begin)) -le 10 ] || fail "a long run keeps the window from closing"

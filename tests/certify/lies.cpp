@@ -1,5 +1,6 @@
 #include "certify/lies.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace achilles::test {
@@ -41,8 +42,8 @@ void swap_accelerations(Certificate& c, double e, double w) {
 
 }  // namespace
 
-Certificate falsified(Certificate c, Lie lie, const Certified& about, const Run& run, const Model& model) {
-    const double w = about.collision.speed;
+Certificate falsified(Certificate c, Lie lie, const Collision& collision, const Run& run, const Model& model) {
+    const double w = collision.speed;
     const double e = model.evaluator(model.restitution(), run.parameters).output(0);
     switch (lie) {
         case Lie::earliest_time:
@@ -70,8 +71,9 @@ Certificate falsified(Certificate c, Lie lie, const Certified& about, const Run&
             if (c.paper) {
                 const bool kinetic = c.reinitialization == Reinitialization::kinetic;
                 const double jumps = (e + (kinetic ? c.paper->e2 : 1.0)) / (1.0 - c.paper->e2);
-                const double eta = eta_with_M(model, run, {about.collision.before.q, about.collision.restart});
-                c.velocity_bound += jumps * w * (eta - c.paper->eta);
+                const double eta = eta_with_M(model, run, {collision.before.q, collision.restart});
+                const double added = run.options.truncation.eps_v / c.paper->c3 * w;
+                c.velocity_bound = std::min(c.velocity_bound, added + jumps * w * (eta - c.paper->eta));
             }
             break;
     }

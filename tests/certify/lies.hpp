@@ -20,6 +20,6 @@ constexpr Lie lies[] = {
     Lie::shadowing_velocity, Lie::swapped_accelerations, Lie::eta_with_M};
 
 // The certificate that a program with this mistake would have issued.
-Certificate falsified(Certificate certificate, Lie lie, const Certified& about, const Run& run, const Model& model);
+Certificate falsified(Certificate certificate, Lie lie, const Collision& collision, const Run& run, const Model& model);
 
 }  // namespace achilles::test

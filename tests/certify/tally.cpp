@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <limits>
 
+#include "certify/definition7.hpp"
+
 namespace achilles::test {
 
-void Tally::add(const Trial& trial, const Certified& certified) {
+void Tally::add(const Trial& trial, const Certified& certified, const Model& model) {
     ++certificates;
     if (!trial.zeno) {
         ++unknown;
@@ -23,8 +25,17 @@ void Tally::add(const Trial& trial, const Certified& certified) {
         if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
         if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
     }
-    const double far = largest_excursion(trial, certified.asked.reinitialization);
-    if (far > 0.0) ratios[excursion].push_back(certified.certificate.velocity_bound / far);
+    if (certified.asked.conditions == Conditions::paper) {
+        const double far = largest_excursion(trial, certified.asked.reinitialization);
+        const double added = certified.asked.eps_v / certified.certificate.paper->c3 *
+                             trial.restarted(certified.asked.reinitialization).collision.speed;
+        if (far > 0.0) ratios[excursion].push_back(added / far);
+        Run run = trial.run;
+        run.options.truncation = certified.asked;
+        const Collision& collision = trial.restarted(certified.asked.reinitialization).collision;
+        const double least = Definition7(model, run).at(collision).velocity * collision.speed;
+        ratios[formula].push_back(added / least);
+    }
     if (violated) ++violations;
 }
 
@@ -36,14 +47,16 @@ double Tally::median(Ratio ratio) const {
     return *middle;
 }
 
-void add(Tallies& tallies, const Trial& trial) {
+void add(Tallies& tallies, const Trial& trial, const Model& model) {
     for (const Certified& certified : trial.certified)
-        tallies[{certified.asked.conditions, certified.asked.reinitialization, certified.held}].add(trial, certified);
+        tallies[{certified.asked.conditions, certified.asked.reinitialization, certified.held}].add(trial, certified,
+                                                                                                    model);
 }
 
 std::string table_head() {
-    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>10}\n", "system", "", "restart", "",
-                       "proved", "false", "n/a", "time", "position", "velocity", "farthest", "shadowing");
+    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}\n", "system", "",
+                       "restart", "", "proved", "false", "n/a", "time", "position", "velocity", "farthest", "formula",
+                       "shadowing");
 }
 
 std::string table_rows(const std::string& system, const Tallies& tallies) {
@@ -56,8 +69,8 @@ std::string table_rows(const std::string& system, const Tallies& tallies) {
                             tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest));
         rows += fmt::format("{:>9.2f}{:>9.2f}", tally.median(Tally::position), tally.median(Tally::velocity));
         const bool paper = conditions == Conditions::paper;
-        rows += paper ? fmt::format("{:>9.2f}{:>10}\n", tally.median(Tally::excursion), "")
-                      : fmt::format("{:>9}{:>10.2f}\n", "", tally.median(Tally::shadowing));
+        rows += paper ? fmt::format("{:>9.2f}{:>9.3f}\n", tally.median(Tally::excursion), tally.median(Tally::formula))
+                      : fmt::format("{:>18}{:>10.2f}\n", "", tally.median(Tally::shadowing));
     }
     return rows;
 }

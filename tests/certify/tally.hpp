@@ -13,16 +13,19 @@ namespace achilles::test {
 struct Tally {
     long certificates = 0, violations = 0, unknown = 0;  // unknown: no truth to compare with
     // bound/actual by what it is about; the time from tau_k on
-    std::array<std::vector<double>, 5> ratios;
-    enum Ratio { latest, position, velocity, excursion, shadowing };
+    std::array<std::vector<double>, 6> ratios;
+    // Of Def. 7's own velocity bound, w eps_v/c3, which the certificate's may undercut: excursion, over the largest
+    // |v - v*| on the way; formula, over what it would be with the values at the restart for its maxima, so what the
+    // neighbourhood costs.
+    enum Ratio { latest, position, velocity, excursion, formula, shadowing };
 
-    void add(const Trial& trial, const Certified& certified);
+    void add(const Trial& trial, const Certified& certified, const Model& model);
     double median(Ratio ratio) const;  // NaN without data
 };
 
 // By conditions, re-initialisation, and whether the tolerances were met.
 using Tallies = std::map<std::tuple<Conditions, Reinitialization, bool>, Tally>;
-void add(Tallies& tallies, const Trial& trial);
+void add(Tallies& tallies, const Trial& trial, const Model& model);
 std::string table_head();
 std::string table_rows(const std::string& system, const Tallies& tallies);
 

@@ -25,8 +25,7 @@ double actual(const Real& x) { return static_cast<double>(x); }
 std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
     using About = Claim::About;
     const Certificate& c = certified.certificate;
-    const Trial::Restarted& own =
-        certified.asked.reinitialization == Reinitialization::kinetic ? trial.kinetic : trial.euclidean;
+    const Trial::Restarted& own = trial.restarted(certified.asked.reinitialization);
     const ZenoPoint& truth = *trial.zeno;
     const double t = actual(truth.time), q = actual(distance(truth.point.q, own.restart.q)),
                  v = actual(distance(truth.point.v, own.restart.v));
@@ -49,7 +48,7 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
 }
 
 double largest_excursion(const Trial& trial, Reinitialization kind) {
-    const Trial::Restarted& own = kind == Reinitialization::kinetic ? trial.kinetic : trial.euclidean;
+    const Trial::Restarted& own = trial.restarted(kind);
     Real most = distance(trial.zeno->point.v, own.restart.v);
     for (const Reals& v : trial.zeno->velocities) most = std::max(most, distance(v, own.restart.v));
     return actual(most);
@@ -78,19 +77,22 @@ std::optional<State> Trials::zeno_equilibrium(const Run& run) {
 
 void Trials::certify(Trial& trial, const State& before) {
     const Contact contact = Surface(*model_, trial.run).at(before);
+    const auto collision = [&](Reinitialization kind) {
+        return Collision{0.0, before, std::abs(contact.hdot),
+                         reinitialize(contact, before.v, Reinitialization::kinetic),
+                         reinitialize(contact, before.v, kind)};
+    };
+    trial.kinetic.collision = collision(Reinitialization::kinetic);
+    trial.euclidean.collision = collision(Reinitialization::euclidean);
     Run run = trial.run;
     for (const auto conditions : {Conditions::paper, Conditions::sharp}) {
         for (const auto kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
             run.options.truncation.conditions = conditions;
             run.options.truncation.reinitialization = kind;
-            const Collision collision{0.0, before, std::abs(contact.hdot),
-                                      reinitialize(contact, before.v, Reinitialization::kinetic),
-                                      reinitialize(contact, before.v, kind)};
             const auto prover = truncation_conditions(*model_, run);
-            if (auto c = prover->hold(collision))
-                trial.certified.push_back({run.options.truncation, true, collision, *c});
-            if (auto c = prover->widest(collision))
-                trial.certified.push_back({run.options.truncation, false, collision, *c});
+            const Collision& own = trial.restarted(kind).collision;
+            if (auto c = prover->hold(own)) trial.certified.push_back({run.options.truncation, true, *c});
+            if (auto c = prover->widest(own)) trial.certified.push_back({run.options.truncation, false, *c});
         }
     }
 }

@@ -15,7 +15,6 @@ namespace achilles::test {
 struct Certified {
     Truncation asked;
     bool held = false;  // the conditions hold for the tolerances; otherwise it is the widest that can be proved
-    Collision collision;
     Certificate certificate;
 };
 
@@ -25,9 +24,13 @@ struct Trial {
     std::vector<Certified> certified;
     std::optional<ZenoPoint> zeno;
     struct Restarted {
+        Collision collision;     // as the conditions see it
         Point restart, at_zeno;  // where the constrained motion starts, and where it is at tau_inf
     };
     Restarted kinetic, euclidean;
+    const Restarted& restarted(Reinitialization kind) const {
+        return kind == Reinitialization::kinetic ? kinetic : euclidean;
+    }
 };
 
 // A claim is true if actual <= bound.

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "systems.hpp"
 
 namespace achilles {
@@ -328,6 +330,61 @@ TEST(Repeatability, TheSameRunGivesTheSameBits) {
     const Trajectory a = simulate(model, model->default_run()), b = simulate(model, model->default_run());
     EXPECT_EQ(a.coefficients, b.coefficients);
     EXPECT_EQ(a.end.q, b.end.q);
+}
+
+// A run that would take hours: with restitution 1 every impact is followed by another.
+Run endless(const Model& model) {
+    Run run = model.default_run();
+    run.parameters[2] = 1.0;
+    run.options.end_time = 1e9;
+    run.options.max_impacts = 1000000000;
+    return run;
+}
+
+TEST(Watched, ARunEndsWhereAnotherThreadStopsIt) {
+    const auto model = test::load("ball_on_sine");
+    const auto run = endless(*model);
+    std::stop_source source;
+    Watch watch;
+    watch.stop = source.get_token();
+    std::thread hand([&] {
+        while (watch.impacts.load() < 20) std::this_thread::yield();
+        source.request_stop();
+    });
+    const Trajectory stopped = simulate(model, run, &watch);
+    hand.join();
+    EXPECT_EQ(stopped.outcome.kind, Outcome::Kind::cancelled);
+    EXPECT_GE(stopped.statistics.impacts, 20);
+    EXPECT_EQ(watch.impacts.load(), stopped.statistics.impacts);
+    EXPECT_EQ(watch.time.load(), stopped.end_time);
+    // What there is of it is the beginning of the whole run.
+    auto shorter = run;
+    shorter.options.max_impacts = static_cast<int>(stopped.statistics.impacts);
+    const Trajectory whole = simulate(model, shorter);
+    ASSERT_EQ(whole.events.size(), stopped.events.size());
+    EXPECT_EQ(whole.events.back().q, stopped.events.back().q);
+}
+
+TEST(Watched, ARunStoppedBeforehandIsItsStart) {
+    const auto model = test::load("ball_on_sine");
+    std::stop_source source;
+    source.request_stop();
+    Watch watch;
+    watch.stop = source.get_token();
+    const Trajectory start = simulate(model, model->default_run(), &watch);
+    EXPECT_EQ(start.outcome.kind, Outcome::Kind::cancelled);
+    EXPECT_EQ(start.end_time, 0.0);
+    EXPECT_EQ(start.end.q, model->default_run().q);
+    EXPECT_TRUE(start.pieces.empty());
+    EXPECT_EQ(Sampler(start).all(3).size(), 1U);
+}
+
+TEST(Watched, ARunThatIsOnlyWatchedIsTheSameRun) {
+    const auto model = test::load("ball_on_sine");
+    Watch watch;
+    const Trajectory alone = simulate(model, model->default_run());
+    EXPECT_EQ(simulate(model, model->default_run(), &watch).coefficients, alone.coefficients);
+    EXPECT_EQ(watch.impacts.load(), alone.statistics.impacts);
 }
 
 }  // namespace

@@ -155,6 +155,13 @@ TEST(MechanismLimits, StayAtTheMotion) {
     EXPECT_LT(near.x_high - near.x_low, 12.0);
     const Drawing far = limits(ball("[run]\nend_time = 2\n" + floor("-400")));
     EXPECT_GT(far.y_low, -2.0);
+    // A bowl that is hardly larger than the motion is seen whole, a valley as long as a road is not.
+    const auto valley = [&](const std::string& half) {
+        return disc + "[[drawing]]\nshape = \"curve\"\nover = [\"s\", -" + half + ", " + half +
+               "]\nat = [\"s\", \"0.3*s^2\"]\n";
+    };
+    EXPECT_LT(limits(ball("[run]\nend_time = 2\n" + valley("1.4"))).x_low, -1.4);
+    EXPECT_GT(limits(ball("[run]\nend_time = 2\n" + valley("20"))).x_low, -1.0);
     // A curve on a coordinate moves with it.
     const std::string rope =
         "[[drawing]]\nshape = \"curve\"\nover = [\"s\", 0, 1]\nat = [\"s*x\", \"5 + s*(y - 5)\"]\n";

@@ -1,0 +1,222 @@
+// What the explorer asks: which file to open, where to save, what to do with changes that are not saved.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr float dialog_width = 460.0F;
+
+// "~/a.toml" as a shell reads it.
+std::string expanded(const std::string& path) {
+    const char* home = std::getenv("HOME");
+    return home != nullptr && path.rfind("~/", 0) == 0 ? home + path.substr(1) : path;
+}
+
+// What is to be known of a path before anything is done with it.
+struct Verdict {
+    std::string note;
+    bool is_good = false, asks = false;
+};
+
+Verdict to_open(const std::string& path) {
+    std::error_code problem;
+    const fs::file_status status = fs::status(path, problem);
+    if (path.empty()) return {"the path of a system file", false, false};
+    if (!fs::exists(status)) return {"there is no such file", false, false};
+    if (fs::is_directory(status)) return {"this is a folder", false, false};
+    return {"", true, false};
+}
+
+Verdict to_save(const Document& document, const std::string& path) {
+    std::error_code problem;
+    const fs::path target(path);
+    const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    if (path.empty() || !target.has_filename()) return {"the path of the file to write", false, false};
+    if (!fs::is_directory(folder, problem)) return {"there is no such folder", false, false};
+    if (fs::is_directory(target, problem)) return {"this is a folder", false, false};
+    if (!fs::exists(target, problem)) return {"", true, false};
+    if (!document.file.empty() && fs::equivalent(target, document.file, problem)) return {"", true, false};
+    return {"There is a file of this name. Overwrite it?", true, true};
+}
+
+// A window in the middle, which keeps everything else from the hand.
+template <class Content>
+void dialog(const char* title, Content content) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * size.x, 0.4F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize({std::min(units(dialog_width), size.x), 0.0F});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(16.0F), units(14.0F)});
+    if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+        content();
+        ImGui::EndPopup();
+    }
+    ImGui::PopStyleVar();
+}
+
+bool button(const char* name, PanelState& state, bool enabled = true) {
+    ImGui::BeginDisabled(!enabled);
+    const bool pressed = ImGui::Button(name, {units(96.0F), 0.0F});
+    ImGui::EndDisabled();
+    remember(state, std::string("dialog ") + name);
+    return pressed;
+}
+
+void close(EditorState& editor) {
+    editor.asking = EditorState::Asking::nothing;
+    ImGui::CloseCurrentPopup();
+}
+
+// Nothing is done of what was asked about.
+void give_up(EditorState& editor) {
+    editor.waiting.reset();
+    editor.is_closing = false;
+    close(editor);
+}
+
+bool is_escape() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false); }
+
+// The line to type a path in, what is to say about it, and two buttons. True when the path is chosen.
+template <class Judge>
+bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
+    EditorState& editor = state.editor;
+    if (ImGui::IsWindowAppearing() || editor.keeps_path) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0F);
+    const bool entered = ImGui::InputText("##path", &editor.path, ImGuiInputTextFlags_EnterReturnsTrue);
+    remember(state, "path");
+    const Verdict verdict = judge(expanded(editor.path));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
+    ImGui::TextUnformatted(verdict.note.empty() ? " " : verdict.note.c_str());
+    ImGui::PopStyleColor();
+    const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
+    ImGui::SameLine();
+    if (button("Cancel", state) || is_escape()) give_up(editor);
+    // Enter alone overwrites nothing.
+    const bool chosen = verdict.is_good && (pressed || (entered && !verdict.asks));
+    editor.keeps_path = entered && !chosen;  // Enter lets go of the line: hold it while it is wrong
+    return chosen;
+}
+
+void open_dialog(PanelState& state, const Session& session, Commands& commands) {
+    if (!path_chosen("Open", state, to_open)) return;
+    close(state.editor);
+    request(session, state, command::Open{expanded(state.editor.path)}, commands);
+}
+
+void save_dialog(PanelState& state, const Session& session, Commands& commands) {
+    EditorState& editor = state.editor;
+    const auto judge = [&](const std::string& path) { return to_save(session.document(), path); };
+    if (!path_chosen("Save", state, judge)) return;
+    const std::string file = expanded(editor.path);
+    close(editor);
+    hand_over_text(editor, commands);
+    commands.emplace_back(command::Save{file, judge(file).asks});
+    editor.has_saved = editor.waiting.has_value() || editor.is_closing;
+}
+
+// Nothing keeps what waited any longer.
+void go_on(EditorState& editor, Commands& commands) {
+    editor.may_close = std::exchange(editor.is_closing, false);
+    if (editor.waiting) commands.push_back(*std::exchange(editor.waiting, std::nullopt));
+}
+
+void unsaved_dialog(PanelState& state, const Session& session, Commands& commands) {
+    EditorState& editor = state.editor;
+    const std::string name = session.document().name;
+    ImGui::PushTextWrapPos(0.0F);
+    const char* before = editor.is_closing ? "the window is closed" : "another takes its place";
+    ImGui::TextUnformatted(fmt::format("Save the text of {} before {}?", name, before).c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    if (button("Save", state)) {
+        close(editor);
+        save_or_ask(session, state, commands);
+        editor.has_saved = editor.asking == EditorState::Asking::nothing;
+    }
+    ImGui::SameLine();
+    if (button("Discard", state)) {
+        close(editor);
+        go_on(editor, commands);
+        editor.known = editor.text;  // nor is what was typed last
+    }
+    ImGui::SameLine();
+    if (button("Cancel", state) || is_escape()) give_up(editor);
+}
+
+// What waited for the changes to be saved is done once they are; if that failed, it is not.
+void go_on_if_saved(const Session& session, EditorState& editor, Commands& commands) {
+    if (!std::exchange(editor.has_saved, false)) return;
+    if (!session.document().is_changed()) go_on(editor, commands);
+    editor.waiting.reset();
+    editor.is_closing = false;
+}
+
+void take_keys(const Session& session, PanelState& state, Commands& commands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
+    if (ImGui::IsKeyPressed('S', false)) save_or_ask(session, state, commands);
+    if (ImGui::IsKeyPressed('O', false)) ask_to_open(state);
+    if (ImGui::IsKeyPressed('N', false)) request(session, state, command::New{}, commands);
+    if (ImGui::IsKeyPressed('E', false)) toggle_editor(session, state, commands);
+}
+
+}  // namespace
+
+void ask_to_open(PanelState& state) {
+    state.editor.path.clear();
+    state.editor.asking = EditorState::Asking::open;
+}
+
+void ask_to_save(const Session& session, PanelState& state) {
+    const Document& document = session.document();
+    // An asset is not saved over unasked: a copy where the explorer was started.
+    state.editor.path = document.file.empty() ? fs::path(document.name).stem().string() + ".toml" : document.file;
+    state.editor.asking = EditorState::Asking::save;
+}
+
+void save_or_ask(const Session& session, PanelState& state, Commands& commands) {
+    if (session.document().file.empty()) return ask_to_save(session, state);
+    hand_over_text(state.editor, commands);
+    commands.emplace_back(command::Save{session.document().file, false});
+}
+
+void request(const Session& session, PanelState& state, const Command& command, Commands& commands) {
+    if (!session.document().is_changed() && !is_typing(state)) return commands.push_back(command);
+    state.editor.waiting = command;
+    state.editor.is_closing = false;
+    state.editor.asking = EditorState::Asking::unsaved;
+}
+
+bool request_close(const Session& session, PanelState& state) {
+    if (state.editor.may_close || (!session.document().is_changed() && !is_typing(state))) return true;
+    state.editor.waiting.reset();
+    state.editor.is_closing = true;
+    state.editor.asking = EditorState::Asking::unsaved;
+    return false;
+}
+
+void show_dialogs(const Session& session, PanelState& state, Commands& commands) {
+    EditorState& editor = state.editor;
+    go_on_if_saved(session, editor, commands);
+    take_keys(session, state, commands);
+    using Asking = EditorState::Asking;
+    constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
+                                                         {Asking::save, "Save the system"},
+                                                         {Asking::unsaved, "Changes that are not saved"}};
+    for (const auto& [asking, title] : titles)
+        if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
+    dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
+    dialog(titles[2].second, [&] { unsaved_dialog(state, session, commands); });
+}
+
+}  // namespace achilles

@@ -1,0 +1,269 @@
+// The text of the system: what is typed takes effect when the hand rests, what cannot be read is told under it.
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/input_error.hpp"
+#include "panels/widgets.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr double pause = 0.4;         // s without a letter: the hand rests
+constexpr float card_padding = 8.0F;  // around the message, at scale 1
+constexpr float gutter_padding = 6.0F;
+constexpr const char* text_id = "##text";
+
+// ImGui keeps what is typed as 16-bit characters up to a zero, and is slow with very long texts: what it would change
+// by itself is shown but not edited.
+const char* reason_against_editing(const std::string& text) {
+    if (text.size() > std::size_t{1} << 20) return "Too long to be edited here: more than 1 MB.";
+    for (const char c : text)
+        if (c == '\0' || static_cast<unsigned char>(c) >= 0xF0)
+            return "Not to be edited here: the text holds characters (emoji, for example) that would be lost.";
+    return nullptr;
+}
+
+// Another text than the one that was typed: opened, new, or from a journal.
+void follow_session(const Session& session, EditorState& editor) {
+    if (session.document().text == editor.known) return;
+    editor.text = editor.known = session.document().text;
+    editor.resting = 0.0;
+    ++editor.revision;  // the widget begins anew: its cursor and its undo belong to the old text
+    const auto& problems = session.document().problems;
+    if (!problems.empty()) editor.go_to = problems.front().at.line;
+}
+
+// What the text looks like on the screen: where the first letter of a line stands.
+struct Page {
+    float left, top;      // of the first letter, scrolling included
+    float line, letter;   // height, width
+    Rectangle text, all;  // what is visible of the text; that and the gutter
+    float y(int number) const { return top + static_cast<float>(number - 1) * line; }
+};
+
+void paint_line_numbers(const Page& page, int lines, const std::vector<InputError>& problems, ImDrawList* list) {
+    const int first = std::max(1, static_cast<int>((page.all.y - page.top) / page.line));
+    const int last = std::min(lines, static_cast<int>((page.all.y + page.all.height - page.top) / page.line) + 1);
+    const float right = page.text.x - units(gutter_padding);
+    for (int number = first; number <= last; ++number) {
+        const bool is_wrong = std::any_of(problems.begin(), problems.end(),
+                                          [number](const InputError& problem) { return problem.at.line == number; });
+        const std::string text = std::to_string(number);
+        const float x = right - page.letter * static_cast<float>(text.size());
+        list->AddText({x, page.y(number)}, packed(is_wrong ? error_color() : faint_color()), text.c_str());
+    }
+}
+
+// A wave under the word that begins at the place, and the line behind it tinted.
+void paint_problem(const Page& page, const std::string& text, Location at, ImDrawList* list) {
+    if (at.line < 1) return;
+    const float top = page.y(at.line), bottom = top + page.line;
+    list->AddRectFilled({page.all.x, top}, {page.all.x + page.all.width, bottom}, packed(error_color(), 0.10F));
+    if (at.column < 1) return;
+    const std::string line = line_of(text, at.line);
+    const std::size_t begin = byte_of_column(line, at.column);
+    std::size_t end = begin;
+    const auto is_word = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || static_cast<unsigned char>(c) >= 0x80;
+    };
+    while (end < line.size() && is_word(line[end])) ++end;
+    const auto width = [&](std::size_t from, std::size_t to) {
+        return ImGui::CalcTextSize(line.data() + from, line.data() + to).x;
+    };
+    const float left = page.left + width(0, begin);
+    const float right = left + std::max(page.letter, width(begin, end));
+    const float step = std::max(2.0F, units(2.5F)), y = bottom - units(1.5F);
+    list->PushClipRect({page.text.x, page.text.y}, {page.text.x + page.text.width, page.text.y + page.text.height},
+                       true);
+    std::vector<ImVec2> wave;
+    for (float x = left; x < right + 0.5F * step; x += step)
+        wave.push_back({x, wave.size() % 2 == 0 ? y : y - units(2.0F)});
+    list->AddPolyline(wave.data(), static_cast<int>(wave.size()), packed(error_color()), ImDrawFlags_None, units(1.5F));
+    list->PopClipRect();
+}
+
+// The widget itself, without its frame: the page is painted behind it. True if a letter was typed.
+bool typed(EditorState& editor, ImVec2 size, bool read_only) {
+    const ImGuiID id = ImGui::GetID(text_id);
+    // Escape would take back everything that was typed since the text was clicked.
+    int& escape = ImGui::GetIO().KeyMap[ImGuiKey_Escape];
+    const int was = std::exchange(escape, ImGui::GetActiveID() == id ? -1 : escape);
+    const ImGuiInputTextFlags flags =
+        ImGuiInputTextFlags_AllowTabInput | (read_only ? ImGuiInputTextFlags_ReadOnly : ImGuiInputTextFlags_None);
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, 0U);
+    ImGui::InputTextMultiline(text_id, &editor.text, size, flags);
+    ImGui::PopStyleColor();
+    escape = was;
+    return ImGui::IsItemEdited();
+}
+
+// Text, line numbers and marks, as high as given.
+void show_text(const Session& session, PanelState& state, float height) {
+    EditorState& editor = state.editor;
+    ImGui::PushFont(monospace_font());
+    ImGui::PushID(editor.revision);
+    const int lines = 1 + static_cast<int>(std::count(editor.text.begin(), editor.text.end(), '\n'));
+    const float letter = ImGui::CalcTextSize("0").x;
+    const float digits = static_cast<float>(std::max<std::size_t>(2, std::to_string(lines).size()));
+    const float gutter = std::floor(digits * letter + 2.0F * units(gutter_padding));
+    Rectangle all = remaining();
+    // Whole lines: the last is not cut, until somebody scrolls.
+    const float paddings = ImGui::GetStyle().FramePadding.y + units(1.0F), font = ImGui::GetFontSize();
+    height = std::max(std::floor((height - paddings) / font), 1.0F) * font + paddings;
+    all.height = height;
+    const ImVec2 padding = ImGui::GetStyle().FramePadding;
+    // Paper first: ImGui paints a scroll bar right onto it.
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 low{all.x, all.y}, high{all.x + all.width, all.y + all.height};
+    list->AddRectFilled(low, high, packed(session.theme().background), units(4.0F));
+    list->AddRectFilled(low, {low.x + gutter - units(1.0F), high.y}, packed(faint_color(), 0.08F));
+    ImGui::SetCursorScreenPos({all.x + gutter, all.y});
+    const bool has_typed = typed(editor, {all.width - gutter, height}, reason_against_editing(editor.text) != nullptr);
+    remember(state, "text");
+    const bool was_left = ImGui::IsItemDeactivated();
+    editor.is_active = ImGui::IsItemActive();
+    const ImGuiInputTextState* input = ImGui::GetInputTextState(ImGui::GetID(text_id));
+    const float sideways = input != nullptr ? input->ScrollX : 0.0F;
+    // The widget scrolls in a window of its own.
+    const std::string name =
+        fmt::format("{}/{}_{:08X}", ImGui::GetCurrentWindow()->Name, text_id, ImGui::GetID(text_id));
+    ImGuiWindow* child = ImGui::FindWindowByName(name.c_str());
+    const float line = ImGui::GetFontSize();
+    if (child != nullptr && editor.go_to > 0 && child->ScrollMax.y > 0.0F) {
+        const float above = std::floor(0.4F * height / line);  // whole lines
+        ImGui::SetScrollY(child, std::max(0.0F, (static_cast<float>(editor.go_to) - above) * line));
+        editor.go_to = 0;
+    }
+    const float scroll = child != nullptr ? child->Scroll.y : 0.0F;
+    const Page page{all.x + gutter + padding.x - sideways,
+                    all.y + padding.y - scroll,
+                    line,
+                    letter,
+                    {all.x + gutter, all.y, all.width - gutter, height},
+                    all};
+    list->PushClipRect(low, {high.x - (child != nullptr ? child->ScrollbarSizes.x : 0.0F), high.y}, true);
+    // Marks belong to the text that was read, not to what was typed since.
+    const bool is_known = editor.text == session.document().text;
+    const std::vector<InputError> none;
+    const auto& problems = is_known ? session.document().problems : none;
+    for (const InputError& problem : problems) paint_problem(page, editor.text, problem.at, list);
+    paint_line_numbers(page, lines, problems, list);
+    list->PopClipRect();
+    ImGui::PopID();
+    ImGui::PopFont();
+    editor.resting = has_typed ? 0.0 : editor.resting + double{ImGui::GetIO().DeltaTime};
+    if (was_left) editor.resting = pause;
+}
+
+void show_problems(const Session& session, EditorState& editor, float height) {
+    Rectangle area = remaining();
+    area.height = height;
+    paint_error_card(area);
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(card_padding), units(card_padding)});
+    ImGui::BeginChild("problems", {area.width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    const float width = ImGui::GetContentRegionAvail().x;
+    for (const InputError& problem : session.document().problems) {
+        ImGui::BeginGroup();
+        show_message(problem.what(), width);
+        ImGui::EndGroup();
+        tooltip("click to go to line " + std::to_string(problem.at.line));
+        if (problem.at.line > 0 && ImGui::IsItemClicked()) editor.go_to = problem.at.line;
+    }
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+}
+
+// How high the messages are, at most a third of the panel.
+float problems_height(const Session& session, float width, float room) {
+    if (session.document().problems.empty()) return 0.0F;
+    float height = 2.0F * units(card_padding);
+    for (const InputError& problem : session.document().problems)
+        height += message_height(problem.what(), width - 2.0F * units(card_padding));
+    return std::floor(std::min(height, room / 3.0F));
+}
+
+void show_buttons(const Session& session, PanelState& state, Commands& commands) {
+    constexpr int count = 4;
+    const float space = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = std::floor((ImGui::GetContentRegionAvail().x - space * (count - 1)) / count);
+    const auto button = [&](const char* name, const char* about) {
+        const bool pressed = ImGui::Button(name, {width, 0.0F});
+        remember(state, name);
+        tooltip(about);
+        return pressed;
+    };
+    if (button("New", "a short system to start from (Ctrl+N)")) request(session, state, command::New{}, commands);
+    ImGui::SameLine(0.0F, space);
+    if (button("Open\u2026", "a system file (Ctrl+O); or drop it on the window")) ask_to_open(state);
+    ImGui::SameLine(0.0F, space);
+    if (button("Save", "to the file it came from (Ctrl+S)")) save_or_ask(session, state, commands);
+    ImGui::SameLine(0.0F, space);
+    if (button("Save as\u2026", "to another file")) ask_to_save(session, state);
+}
+
+// Which file it is, and whether it holds what is seen.
+void show_file(const Session& session, const EditorState& editor) {
+    const Document& document = session.document();
+    const bool is_changed = editor.text != document.saved;
+    const std::string status = is_changed ? "not saved" : "";
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(status.c_str()).x - units(16.0F);
+    const bool is_new = document.file.empty() && document.name == document.source;
+    const std::string name = is_new                  ? "a new system, in no file yet"
+                             : document.file.empty() ? document.name + ", from the list"
+                                                     : document.file;
+    ImGui::TextUnformatted(fitted(name, room).c_str());
+    tooltip(document.source);
+    if (is_changed) {
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(status.c_str()).x);
+        ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+        ImGui::TextUnformatted(status.c_str());
+        ImGui::PopStyleColor();
+    }
+}
+
+}  // namespace
+
+bool is_typing(const PanelState& state) { return state.editor.text != state.editor.known; }
+
+void hand_over_text(EditorState& editor, Commands& commands) {
+    if (editor.text == editor.known) return;
+    editor.known = editor.text;
+    commands.emplace_back(command::Text{editor.text});
+}
+
+void toggle_editor(const Session& session, PanelState& state, Commands& commands) {
+    hand_over_text(state.editor, commands);
+    commands.emplace_back(command::Show{!session.shows_editor()});
+}
+
+void show_editor(const Session& session, PanelState& state, Commands& commands) {
+    EditorState& editor = state.editor;
+    follow_session(session, editor);
+    show_buttons(session, state, commands);
+    show_file(session, editor);
+    const Rectangle room = remaining();
+    const float below = problems_height(session, room.width, room.height);
+    const char* against = reason_against_editing(editor.text);
+    const float note = against == nullptr ? 0.0F : 2.0F * ImGui::GetTextLineHeightWithSpacing();
+    const float space = ImGui::GetStyle().ItemSpacing.y;
+    show_text(session, state, std::max(1.0F, room.height - (below > 0.0F ? below + space : 0.0F) - note));
+    if (against != nullptr) {
+        ImGui::PushTextWrapPos(0.0F);
+        ImGui::TextDisabled("%s", against);
+        ImGui::PopTextWrapPos();
+    }
+    if (below > 0.0F) {
+        ImGui::SetCursorScreenPos({room.x, room.y + room.height - below});
+        show_problems(session, editor, below);
+    }
+    if (editor.resting >= pause) hand_over_text(editor, commands);
+}
+
+}  // namespace achilles

@@ -1,0 +1,130 @@
+#include "figure/lens.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "figure/ticks.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr int points_a_flight = 48;
+
+// The gap at u in [0, 1] of a flight of this length between two impacts, from the normal velocities at its ends. The
+// cubic is off by O(length^4); evaluating h(q) instead would lose h ~ speed^2 in the rounding of q ~ 1.
+double cubic_gap(double u, double length, double up, double down) {
+    return length * u * (1.0 - u) * (up * (1.0 - u) + down * u);
+}
+
+double share(int i) { return static_cast<double>(i) / points_a_flight; }
+
+// Powers of ten of the time left, as many as have room, and their 2 to 9 between them where all have.
+void set_time_left(Axis& axis, double low, double high) {
+    constexpr double most = 8.0;
+    axis.low = low;
+    axis.high = high;
+    const double every = std::max(1.0, std::ceil((high - low) / most));
+    for (double k = std::floor(low); k <= high; ++k) {
+        if (k >= low) axis.ticks.push_back({k, std::fmod(k, every) == 0.0 ? power_of_ten(-static_cast<int>(k)) : ""});
+        for (int digit = 9; every == 1.0 && digit >= 2; --digit) {
+            const double x = k + 1.0 - std::log10(digit);
+            if (x >= low && x <= high) axis.ticks.push_back({x, ""});
+        }
+    }
+}
+
+}  // namespace
+
+std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
+    if (event >= trajectory.events.size()) return std::nullopt;
+    const Event& zeno = trajectory.events[event];
+    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.impacts == 0) return std::nullopt;
+    const Model& model = *trajectory.model;
+    Lens lens;
+    lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
+    auto flight = model.evaluator(model.flight(), trajectory.run.parameters);
+    put(flight, State{zeno.q, zeno.v_after});
+    flight.run();
+    const double a = -flight.output(static_cast<std::size_t>(model.n()));
+    if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;
+    lens.spacing_ = -std::log10(lens.e_);
+    lens.height_ = lens.e_ * lens.e_ / (2.0 * a);
+    const auto x = [&](double t) { return -std::log10(zeno.t - t); };
+    lens.cut_ = x(zeno.truncation->t);
+    if (zeno.certificate && zeno.certificate->certified && zeno.certificate->zeno_low < zeno.t)
+        lens.interval_ = std::max(lens.cut_, x(zeno.certificate->zeno_low));
+
+    auto gap = model.evaluator(model.gap(), trajectory.run.parameters);
+    Sampler sampler(trajectory);
+    const auto first = event - static_cast<std::size_t>(zeno.impacts);
+    for (std::size_t i = first; i < event; ++i) {
+        const Event& impact = trajectory.events[i];
+        const bool last = i + 1 == event;
+        const double end = last ? zeno.truncation->t : trajectory.events[i + 1].t;
+        const double down = last ? zeno.truncation->impact_speed : trajectory.events[i + 1].impact_speed;
+        const double w = impact.impact_speed, length = end - impact.t;
+        Flight& drawn = lens.flights_.emplace_back(Flight{x(impact.t), w, {}});
+        for (int k = 0; k <= points_a_flight; ++k) {
+            const double u = share(k), t = impact.t + u * length;
+            double h = cubic_gap(u, length, lens.e_ * w, down);
+            if (length > 1e-3 && k > 0 && k < points_a_flight) {
+                put(gap, sampler.at(t).state);
+                gap.run();
+                h = gap.output(0);
+            }
+            drawn.points.push_back({x(t), h / (w * w)});
+        }
+    }
+    return lens;
+}
+
+Panel Lens::panel(double low, double high, const Theme& theme) const {
+    Panel panel;
+    panel.x.label = "time left, τ∞ − t [s]";
+    panel.y.label = "h / w²";
+    panel.curves.resize(2);
+    Curve &run = panel.curves[0], &limit = panel.curves[1];
+    run.label = "run";
+    limit.label = "limit";
+    run.stroke = limit.stroke = phase_stroke(theme, Phase::Kind::hybrid, 0, 1);
+    run.stroke.dash.clear();
+    limit.stroke.dash = {2.0, 2.5};
+    Markers& impacts = panel.markers.emplace_back(event_markers(theme, Event::Kind::impact));
+    double top = height_;
+    for (const Flight& flight : flights_) {
+        if (flight.points.back().x < low || flight.x > high) continue;
+        impacts.points.push_back({flight.x, 0.0});
+        for (const Point& point : flight.points) {
+            run.points.push_back(point);
+            top = std::max(top, point.y);
+        }
+    }
+    // Flight number k of the limit takes e^k of the time left at the cut; only what is seen is drawn.
+    const double begin = std::max(0.0, std::floor((low - cut_) / spacing_));
+    for (double k = begin; cut_ + k * spacing_ <= high; ++k) {
+        const double x = cut_ + k * spacing_;
+        impacts.points.push_back({x, 0.0});
+        for (int i = 0; i <= points_a_flight; ++i) {
+            const double u = share(i);
+            limit.points.push_back({x - std::log10(1.0 - (1.0 - e_) * u), 4.0 * height_ * u * (1.0 - u)});
+        }
+    }
+    const auto bar = [&](double x, const char* label, const Color& color) {
+        Markers& markers = panel.markers.emplace_back();
+        markers.shape = Markers::Shape::bar;
+        markers.label = label;
+        markers.fill = markers.edge = color;
+        markers.size = 1.5;
+        if (x >= low && x <= high) markers.points.push_back({x, 0.0});
+    };
+    bar(cut_, "cut", theme.surface);
+    if (interval_) bar(*interval_, "certified", event_markers(theme, Event::Kind::zeno).fill);
+    set_time_left(panel.x, low, high);
+    set_ticks(panel.y, 0.0, top, 0.08, 4);
+    return panel;
+}
+
+}  // namespace achilles

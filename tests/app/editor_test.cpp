@@ -1,0 +1,309 @@
+// The text of a system, edited by hand: what takes effect and when, what is told, what is saved where.
+#include <gtest/gtest.h>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+#include "journal.hpp"
+
+namespace achilles {
+namespace {
+
+using test::content;
+using test::Folder;
+using test::Hands;
+
+constexpr int frames_of_a_pause = 26;  // 0.4 s at 60 a second, and one to hand over
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::runtime_error("not in the text: " + from);
+    return text.replace(at, from.size(), to);
+}
+
+std::string ball() { return test::system("ball_on_sine").source_text; }
+
+// An explorer whose editor is open.
+struct Writer : Hands {
+    explicit Writer(const std::string& system = "ball_on_sine", const SurfaceOptions& options = test::surface())
+        : Hands(system, options) {
+        session.apply(command::Show{true});
+        rest(2);
+    }
+    void write(const std::string& text) {
+        click("text");
+        press_with_control('A');
+        type(text);
+    }
+    // Types a path into a dialog in place of what is there.
+    void write_path(const std::string& path) {
+        press_with_control('A');
+        type(path);
+        rest(2);
+        ASSERT_EQ(state.editor.path, path);
+    }
+    std::vector<std::string> told() const {
+        std::vector<std::string> lines;
+        for (const Command& command : all) lines.push_back(to_text(command).substr(0, 60));
+        return lines;
+    }
+};
+
+TEST(Editor, shows_and_hides_and_does_nothing_by_itself) {
+    Hands hands("ball_on_sine");
+    hands.click("editor");
+    EXPECT_TRUE(hands.session.shows_editor());
+    hands.rest(60);
+    EXPECT_EQ(hands.state.editor.text, ball());
+    hands.press_with_control('E');
+    EXPECT_FALSE(hands.session.shows_editor());
+    EXPECT_EQ(journal_text(hands.all), "show editor\nhide editor\n");
+}
+
+TEST(Editor, a_text_takes_effect_when_the_hand_rests) {
+    Writer hands;
+    const std::string text = replaced(ball(), "value = 1.0\nrange = [0.1, 20.0]", "value = 2.5\nrange = [0.1, 20.0]");
+    hands.write(text);
+    hands.rest(frames_of_a_pause - 6);
+    EXPECT_TRUE(hands.all.empty()) << "the hand has not rested yet";
+    EXPECT_TRUE(is_typing(hands.state));
+    hands.type("#");  // on the last line, which is empty
+    hands.rest(frames_of_a_pause - 6);
+    EXPECT_TRUE(hands.all.empty()) << "every letter begins the pause anew";
+    hands.rest(10);
+    ASSERT_EQ(hands.all, std::vector<Command>{command::Text{text + "#"}});
+    EXPECT_EQ(hands.session.run().parameters[1], 2.5);
+    EXPECT_EQ(hands.session.trajectory().run.parameters[1], 2.5);
+    EXPECT_TRUE(hands.session.document().problems.empty());
+    hands.rest(60);
+    EXPECT_EQ(hands.all.size(), 1U) << "once";
+}
+
+TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_tells_it) {
+    Writer hands;
+    const std::string before = to_text(hands.session.trajectory());
+    const std::string bad = replaced(ball(), "x'^2 + y'^2", "x'^2 + yy'^2");
+    hands.write(bad);
+    hands.rest(frames_of_a_pause);
+    EXPECT_EQ(to_text(hands.session.trajectory()), before);
+    ASSERT_EQ(hands.session.document().problems.size(), 1U);
+    const InputError& problem = hands.session.document().problems[0];
+    EXPECT_EQ(problem.at.line, 46);
+    EXPECT_EQ(problem.at.column, 26);
+    EXPECT_EQ(hands.session.error(), "") << "told under the text, not over the picture too";
+    const Folder folder;
+    folder.put("bad.toml", bad);
+    Session other = test::session("ball_on_sine");
+    other.apply(command::Open{(folder.path() / "bad.toml").string()});
+    ASSERT_EQ(other.document().problems.size(), 1U);
+    EXPECT_EQ(std::string(other.document().problems[0].what()) + "\n",
+              folder.run("simulate " + (folder.path() / "bad.toml").string()).err);
+
+    hands.write(ball());
+    hands.rest(frames_of_a_pause);
+    EXPECT_TRUE(hands.session.document().problems.empty());
+    EXPECT_EQ(to_text(hands.session.trajectory()), before);
+}
+
+// The wave and the tinted line: the picture of a text with a problem is another one, and the last frame is the first.
+TEST(Editor, a_problem_is_marked_in_the_text) {
+    Writer hands;
+    const auto reddish = [&] {
+        const Image image = hands.picture();
+        const Rectangle r = hands.state.places.at("text");
+        int count = 0;
+        for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
+            for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x) {
+                const auto* pixel =
+                    &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                    static_cast<std::size_t>(x))];
+                if (pixel[0] > pixel[1] + 12 && pixel[1] < pixel[2] + 3) ++count;
+            }
+        return count;
+    };
+    EXPECT_EQ(reddish(), 0);
+    hands.session.apply(command::Text{replaced(ball(), "y = [\"lambda\"]", "y = [\"lamda\"]")});
+    hands.rest(3);
+    EXPECT_GT(reddish(), 300 * 10) << "the line is on the last page: the text scrolls there";
+    hands.session.apply(command::Text{ball()});
+    hands.rest(3);
+    EXPECT_EQ(reddish(), 0);
+}
+
+TEST(Editor, escape_takes_nothing_back) {
+    Writer hands;
+    hands.write(ball() + "# more");
+    hands.press(key::escape);
+    hands.rest(frames_of_a_pause);
+    EXPECT_EQ(hands.session.document().text, ball() + "# more");
+}
+
+TEST(Editor, what_was_typed_counts_when_the_hand_leaves) {
+    Writer hands;
+    hands.write(ball() + "# more");
+    EXPECT_TRUE(hands.all.empty());
+    hands.click("plot 1");
+    ASSERT_FALSE(hands.all.empty());
+    EXPECT_EQ(hands.all[0], Command(command::Text{ball() + "# more"}));
+    hands.write(ball() + "# and more");
+    hands.press_with_control('E');
+    EXPECT_EQ(hands.session.document().text, ball() + "# and more");
+    EXPECT_FALSE(is_typing(hands.state));
+}
+
+TEST(Editor, a_journal_of_what_was_typed_leads_to_the_same_session) {
+    Writer hands;
+    hands.write(replaced(ball(), "y - sin(x)", "y - 1.5*sin(x)"));
+    hands.rest(frames_of_a_pause);
+    hands.session.apply(command::Set{"g", 2.0});
+    hands.all.emplace_back(command::Set{"g", 2.0});
+    hands.write(replaced(ball(), "y - sin(x)", "y - 1.6*sin(x)"));
+    hands.rest(frames_of_a_pause);
+    Session again = test::session("ball_on_sine");
+    for (const Command& command : parse_journal(journal_text(hands.all))) again.apply(command);
+    EXPECT_EQ(to_text(again), to_text(hands.session));
+    EXPECT_EQ(again.run().parameters[1], 2.0);
+    EXPECT_NE(to_text(again.trajectory()), to_text(test::session("ball_on_sine").trajectory()));
+}
+
+TEST(Editor, saves_as_and_asks_before_it_writes_over_a_file) {
+    const Folder folder;
+    folder.put("there.toml", "something else");
+    const std::string there = (folder.path() / "there.toml").string(), mine = (folder.path() / "mine.toml").string();
+    Writer hands;
+    hands.write(ball() + "# mine");
+    hands.click("Save");  // it came from the list: there is no file to save to yet
+    EXPECT_EQ(hands.told(), std::vector<std::string>{to_text(Command(command::Text{ball()})).substr(0, 60)});
+    hands.write_path((folder.path() / "nowhere" / "mine.toml").string());
+    hands.press(key::enter);
+    EXPECT_EQ(hands.session.document().file, "") << "there is no such folder";
+    hands.write_path(there);
+    hands.press(key::enter);
+    EXPECT_EQ(content(there), "something else") << "Enter alone writes over nothing";
+    hands.click("dialog Cancel");
+    hands.click("Save as\u2026");
+    hands.write_path(mine);
+    hands.press(key::enter);
+    EXPECT_EQ(content(mine), ball() + "# mine");
+    EXPECT_EQ(hands.session.system(), mine);
+    EXPECT_FALSE(hands.session.document().is_changed());
+
+    hands.write(ball() + "# more");
+    hands.press_with_control('S');  // its own file
+    EXPECT_EQ(content(mine), ball() + "# more");
+    hands.click("Save as\u2026");
+    hands.write_path(there);
+    hands.click("dialog Overwrite");
+    EXPECT_EQ(content(there), ball() + "# more");
+    EXPECT_EQ(hands.told().back(), to_text(Command(command::Save{there, true})).substr(0, 60));
+    EXPECT_EQ(hands.session.error(), "");
+    EXPECT_EQ(folder.files().size(), 2U) << "nothing else was written";
+}
+
+TEST(Editor, opens_a_path_that_is_typed) {
+    const Folder folder;
+    folder.put("mine.toml", replaced(ball(), "Ball bouncing", "My ball bouncing"));
+    Writer hands;
+    hands.press_with_control('O');
+    hands.write_path((folder.path() / "min.toml").string());
+    hands.press(key::enter);
+    EXPECT_TRUE(hands.all.empty()) << "there is no such file";
+    hands.write_path((folder.path() / "mine.toml").string());
+    hands.press(key::enter);
+    ASSERT_EQ(hands.all.size(), 1U);
+    EXPECT_EQ(hands.session.description().title, "My ball bouncing on a sinusoidal surface");
+    EXPECT_EQ(hands.state.editor.text, content(folder.path() / "mine.toml"));
+}
+
+TEST(Editor, asks_what_to_do_with_changes_that_are_not_saved) {
+    const Folder folder;
+    const std::string mine = (folder.path() / "mine.toml").string();
+    Writer hands;
+    const auto choose_pendulum = [&] {
+        hands.click("systems");
+        hands.click("open double_pendulum");
+    };
+    hands.write(ball() + "# 1");
+    choose_pendulum();
+    EXPECT_EQ(hands.session.system(), "ball_on_sine");
+    hands.click("dialog Cancel");
+    EXPECT_EQ(hands.session.document().text, ball() + "# 1");
+    choose_pendulum();
+    hands.click("dialog Save");  // to no file yet: asks for one, then goes on
+    hands.write_path(mine);
+    hands.press(key::enter);
+    EXPECT_EQ(content(mine), ball() + "# 1");
+    EXPECT_EQ(hands.session.system(), "double_pendulum");
+    hands.write("no system at all");
+    hands.rest(frames_of_a_pause);
+    EXPECT_FALSE(hands.session.document().problems.empty());
+    hands.click("New");
+    hands.click("dialog Discard");
+    EXPECT_EQ(hands.session.system(), "untitled");
+    EXPECT_TRUE(hands.session.document().problems.empty());
+    EXPECT_EQ(folder.files().size(), 1U);
+}
+
+TEST(Editor, asks_before_the_window_is_closed_over_changes) {
+    const Folder folder;
+    Writer hands;
+    EXPECT_TRUE(request_close(hands.session, hands.state));
+    hands.write(ball() + "# 1");
+    EXPECT_FALSE(request_close(hands.session, hands.state));
+    hands.rest(3);
+    hands.click("dialog Cancel");
+    EXPECT_FALSE(hands.state.editor.may_close);
+    EXPECT_FALSE(request_close(hands.session, hands.state));
+    hands.rest(3);
+    hands.click("dialog Save");
+    hands.write_path((folder.path() / "mine.toml").string());
+    hands.press(key::enter);
+    EXPECT_TRUE(hands.state.editor.may_close);
+    EXPECT_EQ(content(folder.path() / "mine.toml"), ball() + "# 1");
+    EXPECT_TRUE(request_close(hands.session, hands.state));
+
+    Writer other;
+    other.write("nothing of value");
+    EXPECT_FALSE(request_close(other.session, other.state));
+    other.rest(3);
+    other.click("dialog Discard");
+    EXPECT_TRUE(other.state.editor.may_close);
+}
+
+TEST(Editor, another_text_takes_the_place_of_the_one_under_the_hand) {
+    Writer hands;
+    hands.write(ball() + "# more");
+    hands.rest(frames_of_a_pause);
+    hands.session.apply(command::Open{"double_pendulum"});  // a file dropped on the window, say
+    hands.rest(2);
+    EXPECT_EQ(hands.state.editor.text, test::system("double_pendulum").source_text);
+    hands.type("#");
+    hands.rest(frames_of_a_pause);
+    EXPECT_EQ(hands.session.document().text, test::system("double_pendulum").source_text)
+        << "letters for the old text do not go into the new one";
+    EXPECT_EQ(hands.session.system(), "double_pendulum");
+}
+
+TEST(Editor, shows_but_does_not_change_what_it_cannot_keep) {
+    Writer hands;
+    hands.session.apply(command::Text{"# \U0001F600\n" + ball()});
+    hands.rest(2);
+    hands.write("gone");
+    hands.rest(frames_of_a_pause);
+    EXPECT_EQ(hands.session.document().text, "# \U0001F600\n" + ball());
+}
+
+TEST(Editor, draws_the_same_bytes_every_time_in_any_size) {
+    for (const auto& [width, height, scale] :
+         {std::tuple{1280, 800, 1.0}, {2560, 1600, 2.0}, {1, 1, 1.0}, {60, 900, 1.0}, {300, 200, 1.0}}) {
+        Writer a("double_pendulum", test::surface(width, height, scale));
+        Writer b("double_pendulum", test::surface(width, height, scale));
+        for (Writer* hands : {&a, &b}) {
+            hands->session.apply(command::Text{"title ="});
+            hands->rest(2);
+        }
+        EXPECT_EQ(a.picture(), b.picture());
+    }
+}
+
+}  // namespace
+}  // namespace achilles

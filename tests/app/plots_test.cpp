@@ -1,0 +1,210 @@
+// The plots of the explorer: what commands make of them, and a hand that zooms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/hands.hpp"
+
+namespace achilles {
+namespace {
+
+void apply(Session& session, std::initializer_list<const char*> lines) {
+    for (const char* line : lines) session.apply(parse_command(line));
+}
+
+const Framing& framing(const Session& session, std::size_t plot) { return session.plotted().list()[plot].framing; }
+
+TEST(Plots, ShowTheViewsOfTheFileFirst) {
+    const Session session = test::session("ball_on_sine");
+    const auto& views = session.description().views;
+    ASSERT_EQ(session.plotted().list().size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(session.plotted().list()[i].view.name, views[i].name);
+    EXPECT_EQ(session.plots().size(), 4U);
+}
+
+TEST(Plots, AnyExpressionAgainstAnyOther) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"plot 2 x y sin(x) gap'"});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.plots()[1].curves.size(), 6U);
+    EXPECT_EQ(session.plotted().list()[1].view.name, "y, sin(x), gap' over x");
+    Sample sample = session.at(1.0);
+    const auto values = session.values(1, sample);
+    EXPECT_NEAR(values[2], std::sin(values[0]), 1e-15);
+}
+
+TEST(Plots, AWrongExpressionChangesNothing) {
+    Session session = test::session("ball_on_sine");
+    const std::string before = to_text(session.plotted());
+    session.apply(parse_command("plot 1 t yy"));
+    EXPECT_NE(session.error().find("did you mean 'y'"), std::string::npos) << session.error();
+    EXPECT_EQ(to_text(session.plotted()), before);
+    for (const char* line : {"plot 9 t y", "zoom 1 2 1 0 1", "fit 0", "grid 0 1", "grid 9 9", "curve 1 2 off"}) {
+        session.apply(parse_command(line));
+        EXPECT_NE(session.error(), "") << line;
+        EXPECT_EQ(to_text(session.plotted()), before);
+    }
+}
+
+TEST(Plots, LinkedTimesMoveTogether) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"zoom 1 2 3 0 1"});
+    for (std::size_t i = 0; i < 4; ++i) {
+        const bool over_time = session.plotted().list()[i].over_time();
+        EXPECT_EQ(framing(session, i).x.has_value(), over_time) << i;
+        EXPECT_EQ(framing(session, i).y.has_value(), i == 0) << i;
+        if (over_time) {
+            EXPECT_EQ(session.plots()[i].x.low, 2.0);
+        }
+    }
+    session.apply(parse_command("link off"));
+    session.apply(parse_command("zoom 1 5 6 0 1"));
+    EXPECT_EQ(session.plots()[0].x.low, 5.0);
+    EXPECT_EQ(session.plots()[1].x.low, 2.0);
+    session.apply(parse_command("fit 1"));
+    EXPECT_EQ(session.plots()[0].x.low, 0.0);
+    EXPECT_EQ(session.plots()[1].x.low, 2.0);
+}
+
+// However close one looks, the curve is the run's: dense, and with its impacts.
+TEST(Plots, AZoomIsSampledAnew) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"zoom 3 2.7251 2.7252 0 1e-6"});
+    const Panel& panel = session.plots()[2];
+    std::size_t points = 0;
+    for (const Curve& curve : panel.curves) points += curve.points.size();
+    EXPECT_GT(points, 2000U);
+    for (const Curve& curve : panel.curves) {
+        for (const Point& point : curve.points) {
+            if (!std::isfinite(point.x)) continue;
+            EXPECT_GE(point.x, 2.7250999);
+            EXPECT_LE(point.x, 2.7252001);
+        }
+    }
+}
+
+TEST(Plots, AHiddenCurveHasNoPointsAndNoLimits) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"plot 1 t x 100*y"});
+    const double wide = session.plots()[0].y.high;
+    session.apply(parse_command("curve 1 2 off"));
+    EXPECT_LT(session.plots()[0].y.high, 0.2 * wide);
+    EXPECT_TRUE(session.plots()[0].curves[2].points.empty());
+    session.apply(parse_command("curve 1 2 on"));
+    EXPECT_EQ(session.plots()[0].y.high, wide);
+}
+
+TEST(Plots, ALogarithmicAxisShowsWhatIsPositive) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"plot 1 t gap", "log 1 y on"});
+    const Axis& y = session.plots()[0].y;
+    EXPECT_TRUE(y.logarithmic);
+    EXPECT_GT(y.low, 0.0);
+    EXPECT_GT(y.high, 2.0);
+}
+
+TEST(Plots, ATextKeepsThemWhereItCan) {
+    Session session = test::session("ball_on_sine");
+    apply(session, {"grid 3 2", "plot 1 t y*g", "zoom 1 0 5 0 1"});
+    const std::string before = to_text(session.plotted());
+    std::string text = session.document().text;
+    session.apply(command::Text{text + "\n# a remark\n"});
+    EXPECT_EQ(to_text(session.plotted()), before);
+    session.apply(command::Open{"double_pendulum"});
+    EXPECT_EQ(session.plotted().columns(), 2);
+}
+
+struct PlotHand : test::Hands {
+    PlotHand() : Hands("ball_on_sine") {}
+    const Axis& x(std::size_t plot = 1) const { return session.plots()[plot].x; }
+    const Axis& y(std::size_t plot = 1) const { return session.plots()[plot].y; }
+};
+
+TEST(PlotHand, TheWheelZoomsAtThePointer) {
+    PlotHand hand;
+    hand.point("plot 1", 0.25);
+    const double low = hand.x().low, high = hand.x().high, bottom = hand.y().low, top = hand.y().high;
+    hand.hand.wheel = 1.0;
+    hand.rest(1);
+    hand.hand.wheel = 0.0;
+    hand.rest(1);
+    EXPECT_NEAR(hand.x().high - hand.x().low, 0.85 * (high - low), 1e-6);
+    EXPECT_NEAR(hand.y().high - hand.y().low, 0.85 * (top - bottom), 1e-6);
+    const double pointer = low + 0.25 * (high - low);
+    EXPECT_NEAR((pointer - hand.x().low) / (hand.x().high - hand.x().low), 0.25, 0.005);
+}
+
+TEST(PlotHand, DraggingPansAndADoubleClickFits) {
+    PlotHand hand;
+    const double low = hand.x().low, width = hand.x().high - low;
+    hand.point("plot 1", 0.5);
+    hand.hand.left = true;
+    hand.rest(1);
+    for (int i = 0; i < 5; ++i) {
+        hand.hand.mouse_x -= 8.0;
+        hand.rest(1);
+    }
+    hand.hand.left = false;
+    hand.rest(2);
+    EXPECT_GT(hand.x().low, low + 0.02 * width);
+    EXPECT_NEAR(hand.x().high - hand.x().low, width, 1e-9 * width);
+    EXPECT_EQ(hand.session.time(), 0.0);  // a drag is no click
+    for (int i = 0; i < 2; ++i) {
+        hand.hand.left = true;
+        hand.rest(1);
+        hand.hand.left = false;
+        hand.rest(1);
+    }
+    EXPECT_EQ(hand.x().low, 0.0);
+}
+
+TEST(PlotHand, TheRightButtonDrawsABoxToZoomTo) {
+    PlotHand hand;
+    hand.point("plot 1", 0.25);
+    hand.hand.right = true;
+    hand.rest(1);
+    const Rectangle place = hand.state.places.at("plot 1");
+    hand.hand.mouse_x = place.x + 0.5 * place.width;
+    hand.hand.mouse_y = place.y + 0.75 * place.height;
+    hand.rest(2);
+    hand.hand.right = false;
+    hand.rest(2);
+    EXPECT_NEAR(hand.x().low, 5.0, 0.1);
+    EXPECT_NEAR(hand.x().high, 10.0, 0.1);
+}
+
+TEST(PlotHand, ThePointersInstantIsInEveryPlotOverTime) {
+    PlotHand hand;
+    const Image before = hand.picture();
+    hand.point("plot 1", 0.4);
+    ASSERT_TRUE(hand.state.pointed_before);
+    EXPECT_NEAR(*hand.state.pointed_before, 8.0, 0.1);
+    EXPECT_GT(worst_tile(before, hand.surface.frame([&] { explorer(hand.session, hand.state); }, 3, hand.hand)), 0.02);
+}
+
+TEST(PlotHand, ChoosesTypesAndHides) {
+    PlotHand hand;
+    hand.click("grid 2 3");
+    EXPECT_EQ(hand.session.plots().size(), 6U);
+    hand.click("menu of plot 2");
+    hand.click("expression y");
+    hand.press_with_control('A');
+    hand.type("y, max_y");
+    hand.press(key::enter);
+    EXPECT_NE(hand.session.error(), "");
+    hand.click("menu of plot 2");
+    hand.click("expression y");
+    hand.press_with_control('A');
+    hand.type("y, gap");
+    hand.press(key::enter);
+    EXPECT_EQ(hand.session.error(), "");
+    EXPECT_EQ(hand.session.plotted().list()[1].view.y.size(), 2U);
+    hand.click("curve 2 1");
+    EXPECT_EQ(framing(hand.session, 1).hidden, std::set<std::size_t>{0});
+    hand.click("link");
+    EXPECT_FALSE(hand.session.plotted().linked());
+}
+
+}  // namespace
+}  // namespace achilles

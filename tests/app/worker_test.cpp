@@ -1,0 +1,161 @@
+// Runs on a thread of their own. This file alone also passes under -fsanitize=thread.
+#include "worker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <stdexcept>
+
+#include "app/open.hpp"
+
+namespace achilles {
+namespace {
+
+using namespace std::chrono_literals;
+
+// A job that goes on until it is told to stop.
+int endless(const std::stop_token& stop) {
+    while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
+    return -1;
+}
+
+TEST(Worker, gives_a_result_once) {
+    Worker<int> worker;
+    EXPECT_FALSE(worker.take({})) << "nothing was asked for";
+    worker.start([](const std::stop_token&) { return 7; });
+    EXPECT_EQ(worker.take({}), 7);
+    EXPECT_FALSE(worker.take({}));
+}
+
+TEST(Worker, a_newer_job_stops_an_older_one_whose_result_is_never_seen) {
+    std::atomic<int> stopped = 0;
+    Worker<int> worker;
+    for (int i = 0; i < 5; ++i) {
+        worker.start([&](const std::stop_token& stop) {
+            stopped += endless(stop) == -1 ? 1 : 0;
+            return -1;
+        });
+        EXPECT_FALSE(worker.take(i == 0 ? 0.05 : 0.0));
+    }
+    worker.start([](const std::stop_token&) { return 3; });
+    EXPECT_EQ(worker.take({}), 3);
+    EXPECT_GE(stopped, 1) << "those that had not begun yet need no stopping";
+}
+
+TEST(Worker, hands_over_what_a_job_throws) {
+    Worker<int> worker;
+    worker.start([](const std::stop_token&) -> int { throw std::runtime_error("no"); });
+    EXPECT_THROW(worker.take({}), std::runtime_error);
+    worker.start([](const std::stop_token&) { return 1; });
+    EXPECT_EQ(worker.take({}), 1);
+}
+
+TEST(Worker, tells_when_a_result_is_ready_and_ends_in_the_middle_of_a_job) {
+    std::atomic<bool> told = false;
+    {
+        Worker<int> worker;
+        worker.on_ready([&] { told = true; });
+        worker.start([](const std::stop_token&) { return 1; });
+        while (!told) std::this_thread::sleep_for(1ms);
+        EXPECT_EQ(worker.take(0.0), 1);
+        worker.start(endless);
+        EXPECT_FALSE(worker.take(0.01));
+    }
+}
+
+// Elastic impacts until there are too many: seconds of work.
+void ask_for_a_long_run(Session& session) {
+    session.apply(command::Set{"e", 1.0});
+    session.apply(command::End{1e6});
+}
+
+TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patient_one) {
+    Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
+    for (Session* session : {&patient, &live}) session->apply(command::End{1000.0});
+    live.set_patience(0.0);
+    const std::string before = to_text(live.trajectory());
+    for (Session* session : {&patient, &live}) {
+        session->apply(command::Set{"e", 1.0});  // hundreds of impacts
+        session->apply(command::Seek{876.5});
+    }
+    ASSERT_NE(live.under_way(), nullptr) << "taken in by update() alone";
+    for (int i = 0; i < 20000 && live.under_way() != nullptr; ++i) {
+        EXPECT_EQ(live.run().parameters[2], 1.0) << "the sliders show what was asked for";
+        EXPECT_TRUE(to_text(live.trajectory()) == before);
+        std::this_thread::sleep_for(1ms);
+        live.update();
+    }
+    EXPECT_EQ(live.under_way(), nullptr);
+    EXPECT_TRUE(to_text(live) == to_text(patient));
+    EXPECT_EQ(live.time(), 876.5);
+}
+
+TEST(LiveSession, a_newer_value_cancels_a_long_run) {
+    Session session = test::session("ball_on_sine");
+    session.set_patience(0.02);
+    ask_for_a_long_run(session);
+    ASSERT_NE(session.under_way(), nullptr) << "choose a longer run";
+    for (int i = 0; i < 5000 && session.under_way()->impacts < 100; ++i) std::this_thread::sleep_for(1ms);
+    EXPECT_GE(session.under_way()->impacts, 100);
+    session.set_patience(5.0);
+    session.apply(command::End{20.0});
+    session.apply(command::Set{"e", 0.5});
+    EXPECT_EQ(session.under_way(), nullptr);
+    EXPECT_EQ(session.trajectory().run.parameters[2], 0.5);
+    EXPECT_EQ(session.trajectory().outcome.kind, Outcome::Kind::end_time);
+}
+
+TEST(LiveSession, waits_no_longer_than_its_patience) {
+    Session session = test::session("ball_on_sine");
+    session.set_patience(0.02);
+    ask_for_a_long_run(session);
+    for (int i = 0; i < 10; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        session.apply(command::Set{"g", 1.0 + 0.1 * i});
+        session.update();
+        // The whole run takes seconds; a busy machine may take a while to give the processor back.
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, 500ms);
+        ASSERT_NE(session.under_way(), nullptr);
+    }
+}
+
+TEST(LiveSession, a_value_that_cannot_start_is_refused_at_once) {
+    Session session = test::session("ball_on_sine");
+    session.set_patience(0.0);
+    session.apply(command::Set{"y", -5.0});
+    EXPECT_NE(session.error(), "");
+    EXPECT_EQ(session.under_way(), nullptr);
+    EXPECT_EQ(session.run().q[1], 2.0);
+}
+
+TEST(LiveSession, shows_the_start_of_another_system_until_its_run_is_there) {
+    Session session = test::session("ball_on_sine");
+    session.set_patience(0.0);
+    session.apply(command::Seek{5.0});
+    session.apply(command::Open{"double_pendulum"});
+    EXPECT_EQ(session.description().coordinates[0].name, "theta1");
+    EXPECT_EQ(session.now().state.q.size(), session.run().q.size());
+    EXPECT_EQ(session.plots().size(), 4U);
+    for (int i = 0; i < 20000 && session.under_way() != nullptr; ++i) {
+        EXPECT_EQ(session.trajectory().end_time, 0.0);
+        EXPECT_EQ(session.now().state.q, session.run().q);
+        std::this_thread::sleep_for(1ms);
+        session.update();
+    }
+    EXPECT_EQ(to_text(session), to_text(test::session("double_pendulum")));
+}
+
+TEST(LiveSession, closes_in_the_middle_of_a_run) {
+    const auto begin = std::chrono::steady_clock::now();
+    {
+        Session session = test::session("ball_on_sine");
+        session.set_patience(0.02);
+        ask_for_a_long_run(session);
+        ASSERT_NE(session.under_way(), nullptr);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
+}
+
+}  // namespace
+}  // namespace achilles

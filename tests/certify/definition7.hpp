@@ -1,0 +1,38 @@
+// Def. 7 of the paper (THEORY section 3) written out once more, for any neighbourhood, to compare core/certify with.
+#pragma once
+
+#include <optional>
+
+#include "certify/range.hpp"
+#include "certify/truth.hpp"
+
+namespace achilles::test {
+
+class Definition7 {
+ public:
+    Definition7(const Model& model, const Run& run);
+
+    // What the bounds on time, position and velocity are per unit of the impact speed: eps_t/c1, eps_q'/c2, eps_v'/c3.
+    struct Factors {
+        double time, position, velocity;
+    };
+    // With the maxima over the neighbourhood of radii eps_q' and eps_v'; nothing where a_min > 0, e' < 1 is not proved.
+    std::optional<Factors> over(const Collision& collision, double eps_q, double eps_v);
+    // With the maxima replaced by the values at the restart: what the formula itself gives, however V is chosen.
+    Factors at(const Collision& collision);
+
+ private:
+    struct Maxima {
+        double a_min, a_max, beta, eta, zeta;
+    };
+    Factors factors(const Collision& collision, const Maxima& maxima);
+
+    std::size_t n_;
+    bool kinetic_;
+    double e_;
+    Range hddot_;
+    Evaluator<Interval> box_;
+    Evaluator<double> point_, surface_;
+};
+
+}  // namespace achilles::test

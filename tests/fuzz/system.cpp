@@ -1,0 +1,122 @@
+// libFuzzer: any bytes as a system file. It is refused with InputError, or derived, simulated for a short time and
+// written: then every state is finite and every text is what it claims to be.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "model/description.hpp"
+#include "model/model.hpp"
+#include "output/output.hpp"
+#include "require.hpp"
+#include "simulate/simulate.hpp"
+
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+
+namespace {
+
+using namespace achilles;
+using fuzz::require;
+
+// The time in which the motion changes as much as it is large, seen from its start.
+double own_time(const Model& model, const Run& run) {
+    auto flight = model.evaluator(model.flight(), run.parameters);
+    put(flight, State{run.q, run.v});
+    flight.run();
+    double size = 1e-3, rate = 1e-3;
+    for (Eigen::Index i = 0; i < run.q.size(); ++i) {
+        size = std::max({size, std::abs(run.q[i]), std::abs(run.v[i])});
+        rate = std::max({rate, std::abs(run.v[i]), std::abs(flight.output(static_cast<std::size_t>(i)))});
+    }
+    return size / rate;
+}
+
+// Short: a few impacts, and a time in which a motion cannot do much.
+Run short_run(const Model& model) {
+    Run run = model.default_run();
+    run.options.tolerance = std::max(run.options.tolerance, 1e-8);
+    run.options.max_impacts = std::min(run.options.max_impacts, 8);
+    const double time = own_time(model, run);
+    if (std::isfinite(time) && time > 0.0) run.options.end_time = std::min(run.options.end_time, 3.0 * time);
+    return run;
+}
+
+bool finite(const State& state) { return state.q.allFinite() && state.v.allFinite(); }
+
+void require_sound(const Trajectory& trajectory) {
+    require(!trajectory.phases.empty(), "a run has a phase");
+    require(std::isfinite(trajectory.end_time) && finite(trajectory.end), "the end is finite");
+    require(trajectory.end_time <= trajectory.run.options.end_time, "a run ends in time");
+    const bool reached = trajectory.outcome.kind == Outcome::Kind::end_time;
+    require(!reached || trajectory.end_time == trajectory.run.options.end_time, "the end time is reached");
+    require(reached || !trajectory.outcome.message.empty(), "a run that stops early says why");
+    double last = 0.0;
+    for (const Event& event : trajectory.events) {
+        require(event.t >= last && event.t <= trajectory.end_time, "events stand in time");
+        require(finite({event.q, event.v_before}) && finite({event.q, event.v_after}), "events are finite");
+        last = event.t;
+    }
+    for (const Sample& sample : Sampler(trajectory).all(1)) require(finite(sample.state), "samples are finite");
+
+    const auto json = nlohmann::json::parse(to_json(trajectory), nullptr, false);
+    require(!json.is_discarded(), "JSON is JSON");
+    for (const auto& x : json.at("end").at("q")) require(x.is_number(), "the end is written in numbers");
+    const std::string csv = to_csv(trajectory);
+    const std::string_view rows = std::string_view(csv).substr(csv.find('\n'));
+    require(rows.find("nan") == rows.npos && rows.find("inf") == rows.npos, "CSV has numbers only");
+    require(!summary(trajectory).empty(), "there is a summary");
+}
+
+// What stands between quotes on one line: places where expressions and names are, [begin, end).
+std::vector<std::pair<std::size_t, std::size_t>> strings_of(std::string_view text) {
+    std::vector<std::pair<std::size_t, std::size_t>> strings;
+    std::size_t open = text.npos;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\n') open = text.npos;
+        if (text[i] != '"') continue;
+        if (open != text.npos) strings.emplace_back(open, i);
+        open = open == text.npos ? i + 1 : text.npos;
+    }
+    return strings;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    try {
+        const auto model =
+            std::make_shared<const Model>(parse_system(std::string(reinterpret_cast<const char*>(data), size)));
+        const Run asked = model->default_run();
+        model->check(asked);
+        require_sound(simulate(model, short_run(*model)));
+    } catch (const InputError& error) {
+        require(error.what()[0] != '\0' && !error.message.empty(), "an error says what is wrong");
+    }
+    return 0;
+}
+
+// Bytes changed anywhere are mostly bad TOML; every other time a change stays inside one string.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
+    std::minstd_rand random(seed);
+    const auto strings = strings_of({reinterpret_cast<const char*>(data), size});
+    if (strings.empty() || random() % 2 == 0) return LLVMFuzzerMutate(data, size, most);
+    const auto [begin, end] = strings[random() % strings.size()];
+    std::vector<std::uint8_t> inner(data + begin, data + end);
+    inner.resize(inner.size() + (most - size));
+    inner.resize(LLVMFuzzerMutate(inner.data(), end - begin, inner.size()));
+    constexpr std::string_view words = "+-*/^()'. 0123456789";
+    for (std::uint8_t& byte : inner)
+        if (byte < 0x20 || byte > 0x7e || byte == '"' || byte == '\\')
+            byte = static_cast<std::uint8_t>(words[byte % words.size()]);
+    std::memmove(data + begin + inner.size(), data + end, size - end);
+    std::copy(inner.begin(), inner.end(), data + begin);
+    return size - (end - begin) + inner.size();
+}

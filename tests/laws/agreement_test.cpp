@@ -1,0 +1,47 @@
+// Executions that must agree: two tolerances, two re-initialisations, two runs of the same.
+#include "laws/laws.hpp"
+#include "output/output.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+namespace {
+
+class Agreement : public Law {};
+
+TEST_P(Agreement, TwoTolerancesAgree) {
+    auto run = predictable_run(GetParam());
+    run.options.tolerance = 1e-8;
+    const Trajectory loose = simulated(GetParam(), run);
+    run.options.tolerance = 1e-11;
+    const Trajectory tight = simulated(GetParam(), run);
+    EXPECT_LE(distance(loose.end, tight.end), 1e-5)
+        << "if the motion is chaotic, give the file an [extra] laws_end_time";
+    EXPECT_EQ(loose.phases.size(), tight.phases.size());
+}
+
+// What the euclidean restart adds is of the order of the impact speed at the cut, which eps bounds, and
+// grows with the motion: up to 28 eps (triple_pendulum) was measured.
+TEST_P(Agreement, KineticAndEuclideanAgreeAsEpsFalls) {
+    auto run = predictable_run(GetParam());
+    run.options.tolerance = 1e-12;
+    for (const double eps : {1e-3, 1e-5, 1e-7}) {
+        run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = eps;
+        run.options.truncation.reinitialization = Reinitialization::kinetic;
+        const Trajectory kinetic = simulated(GetParam(), run);
+        run.options.truncation.reinitialization = Reinitialization::euclidean;
+        const Trajectory euclidean = simulated(GetParam(), run);
+        EXPECT_LE(distance(kinetic.end, euclidean.end), 100.0 * eps) << "eps " << eps;
+    }
+}
+
+TEST_P(Agreement, TwoRunsAreTheSameBytes) {
+    Trajectory a = simulated(GetParam(), run_of(GetParam())), b = simulated(GetParam(), run_of(GetParam()));
+    a.statistics.seconds = b.statistics.seconds = 0.0;
+    EXPECT_EQ(to_json(a), to_json(b));
+    EXPECT_EQ(to_csv(a), to_csv(b));
+}
+
+INSTANTIATE_TEST_SUITE_P(Execution, Agreement, testing::ValuesIn(all_cases()), name_of);
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <regex>
+
+#include "core/systems.hpp"
+#include "laws/laws.hpp"
+
+namespace achilles::test {
+
+namespace {
+
+std::filesystem::path file_of(const std::string& system) { return source_file("assets/systems/" + system + ".toml"); }
+
+}  // namespace
+
+void PrintTo(const Case& one, std::ostream* out) { *out << one.system << ", " << to_text(one.method); }
+
+std::string name_of(const testing::TestParamInfo<Case>& info) {
+    return info.param.system + "_" + std::string(to_text(info.param.method));
+}
+
+std::vector<Method> all_methods() { return {Method::dopri5}; }
+
+std::vector<Case> all_cases() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    std::vector<Case> cases;
+    for (const Method method : all_methods())
+        for (const std::string& name : names) cases.push_back({name, method});
+    return cases;
+}
+
+std::shared_ptr<const Model> model_of(const std::string& system) {
+    static std::map<std::string, std::shared_ptr<const Model>> models;
+    auto& model = models[system];
+    if (!model) model = load(system);
+    return model;
+}
+
+Run run_of(const Case& one) {
+    auto run = model_of(one.system)->default_run();
+    run.options.method = one.method;
+    return run;
+}
+
+double predictable_until(const std::string& system) {
+    std::ifstream file(file_of(system));
+    const std::regex entry("laws_end_time *= *([0-9.]+)");
+    std::smatch found;
+    for (std::string line; std::getline(file, line);)
+        if (std::regex_search(line, found, entry)) return std::stod(found[1]);
+    return model_of(system)->default_run().options.end_time;
+}
+
+Run predictable_run(const Case& one) {
+    auto run = run_of(one);
+    run.options.end_time = std::min(run.options.end_time, predictable_until(one.system));
+    return run;
+}
+
+Trajectory simulated(const Case& one, const Run& run) {
+    Trajectory trajectory = simulate(model_of(one.system), run);
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    return trajectory;
+}
+
+double distance(const State& a, const State& b) {
+    double result = 0.0;
+    const auto compare = [&](const Vector& x, const Vector& y) {
+        for (Eigen::Index i = 0; i < x.size(); ++i)
+            result = std::max(result, std::abs(x[i] - y[i]) / std::max(1.0, std::abs(x[i])));
+    };
+    compare(a.q, b.q);
+    compare(a.v, b.v);
+    return result;
+}
+
+}  // namespace achilles::test

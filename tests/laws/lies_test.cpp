@@ -1,0 +1,98 @@
+// The laws, told lies: a falsified execution must violate the law it breaks.
+#include "laws/laws.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+namespace {
+
+Trajectory truth() {
+    const auto model = model_of("ball_on_sine");
+    auto run = model->default_run();
+    run.options.end_time = 5.0;  // a Zeno point at 2.7, a release at 3.7
+    return simulate(model, run);
+}
+
+Event& first(Trajectory& trajectory, Event::Kind kind) {
+    for (Event& event : trajectory.events)
+        if (event.kind == kind) return event;
+    throw std::logic_error("no such event");
+}
+
+// The constant coefficient of coordinate or rate i in the piece after the first impact.
+double& coefficient(Trajectory& trajectory, std::size_t i) {
+    const double t = trajectory.events.front().t;
+    for (const Piece& piece : trajectory.pieces)
+        if (piece.start >= t) return trajectory.coefficients[piece.first + i];
+    throw std::logic_error("no such piece");
+}
+
+TEST(Lies, TheTruthViolatesNothing) {
+    const Trajectory trajectory = truth();
+    for (const auto& law : {energy, gap, phases, contact_force}) EXPECT_TRUE(law(trajectory).empty());
+}
+
+TEST(Lies, Energy) {
+    Trajectory fast = truth();
+    coefficient(fast, 2) += 1e-6;
+    EXPECT_FALSE(energy(fast).empty());
+    Trajectory lively = truth();
+    first(lively, Event::Kind::impact).v_after[1] += 1e-12;
+    EXPECT_FALSE(energy(lively).empty());
+    Trajectory dull = truth();
+    first(dull, Event::Kind::impact).v_after[1] -= 1e-12;
+    EXPECT_FALSE(energy(dull).empty());
+}
+
+TEST(Lies, Gap) {
+    Trajectory low = truth();
+    coefficient(low, 1) -= 1e-11;
+    EXPECT_FALSE(gap(low).empty());
+}
+
+TEST(Lies, Phases) {
+    const auto lie = [](const char* name, void (*change)(Trajectory&)) {
+        Trajectory trajectory = truth();
+        change(trajectory);
+        EXPECT_FALSE(phases(trajectory).empty()) << name;
+    };
+    lie("an impact is left out", [](Trajectory& t) { t.events.erase(t.events.begin() + 1); });
+    lie("a Zeno point is left out", [](Trajectory& t) {
+        const auto at = &first(t, Event::Kind::zeno) - t.events.data();
+        t.events.erase(t.events.begin() + at);
+    });
+    lie("a release is left out", [](Trajectory& t) {
+        const auto at = &first(t, Event::Kind::release) - t.events.data();
+        t.events.erase(t.events.begin() + at);
+    });
+    lie("two impacts change places", [](Trajectory& t) { std::swap(t.events[0], t.events[1]); });
+    lie("phases leave a hole", [](Trajectory& t) { t.phases[1].start += 1e-9; });
+    lie("two phases of one kind", [](Trajectory& t) { t.phases[1].kind = Phase::Kind::hybrid; });
+    lie("the end is missing", [](Trajectory& t) { t.phases.back().end -= 1e-9; });
+    lie("another velocity after an impact", [](Trajectory& t) { t.events[0].v_after[0] += 1e-12; });
+    lie("an impact above the surface", [](Trajectory& t) { t.events[0].q[1] += 1e-11; });
+    lie("an impact that leaves", [](Trajectory& t) { std::swap(t.events[0].v_before, t.events[0].v_after); });
+    lie("a Zeno point outside its interval",
+        [](Trajectory& t) { first(t, Event::Kind::zeno).certificate->zeno_high = 2.725; });
+    lie("a Zeno point without proof",
+        [](Trajectory& t) { first(t, Event::Kind::zeno).certificate->certified = false; });
+    lie("a Zeno point that still moves away", [](Trajectory& t) { first(t, Event::Kind::zeno).v_after[1] += 1e-11; });
+    lie("a jump at a release", [](Trajectory& t) { first(t, Event::Kind::release).v_before[0] += 1e-15; });
+}
+
+TEST(Lies, ContactForce) {
+    Trajectory early = truth();
+    Event& release = first(early, Event::Kind::release);
+    const State before = Sampler(early).at(release.t - 1e-9).state;
+    release.q = before.q;
+    release.v_after = before.v;
+    EXPECT_FALSE(contact_force(early).empty());
+    // A contact phase said to last into the flight.
+    Trajectory late = truth();
+    for (Piece& piece : late.pieces)
+        if (piece.start >= late.phases[1].end) piece.contact = true;
+    late.phases[1].end += 0.3;
+    EXPECT_FALSE(contact_force(late).empty());
+}
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,98 @@
+// The Zeno lens: an evenly spaced row of equal arcs.
+#include "figure/lens.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/systems.hpp"
+#include "figure/figure.hpp"
+
+namespace achilles {
+namespace {
+
+std::size_t first_zeno(const Trajectory& trajectory) {
+    const auto is_zeno = [](const Event& e) { return e.kind == Event::Kind::zeno; };
+    return static_cast<std::size_t>(std::find_if(trajectory.events.begin(), trajectory.events.end(), is_zeno) -
+                                    trajectory.events.begin());
+}
+
+Trajectory run_of(const std::string& system, double eps, double e = 0.5) {
+    const auto model = test::load(system);
+    auto run = model->default_run();
+    for (std::size_t i = 0; i < run.parameters.size(); ++i)
+        if (model->description().parameters[i].name == "e") run.parameters[i] = e;
+    run.options.truncation = {eps, eps, eps, Conditions::paper, Reinitialization::kinetic};
+    return simulate(model, run);
+}
+
+TEST(ZenoLens, TheRowIsEvenAndTheArcsAreEqual) {
+    for (const std::string system : {"ball_on_sine", "double_pendulum"}) {
+        const Trajectory trajectory = run_of(system, 1e-9);
+        const auto lens = Lens::at(trajectory, first_zeno(trajectory));
+        ASSERT_TRUE(lens);
+        EXPECT_DOUBLE_EQ(lens->spacing(), std::log10(2.0));
+        const Panel panel = lens->panel(lens->cut() - 1.0, lens->cut() + 1.0, light_theme());
+        const auto& impacts = panel.markers[0].points;
+        ASSERT_GE(impacts.size(), 6u);
+        for (std::size_t i = 1; i < impacts.size(); ++i)
+            EXPECT_NEAR(impacts[i].x - impacts[i - 1].x, lens->spacing(), 1e-5) << system << " impact " << i;
+        // The tops of the run's own arcs and of those beyond the cut.
+        double own = 0.0, limit = 0.0;
+        for (const Point& point : panel.curves[0].points) own = std::max(own, point.y);
+        for (const Point& point : panel.curves[1].points) limit = std::max(limit, point.y);
+        EXPECT_NEAR(own, limit, 1e-4 * limit) << system;
+    }
+}
+
+// Flights longer than a millisecond show the run's gap, which must join its own cubic.
+TEST(ZenoLens, ShowsTheGapOfTheRun) {
+    const Trajectory trajectory = run_of("ball_on_sine", 1e-9);
+    const auto lens = Lens::at(trajectory, first_zeno(trajectory));
+    const Panel panel = lens->panel(lens->first(), lens->first() + 0.4, light_theme());
+    const Event& impact = trajectory.events[0];
+    Sampler sampler(trajectory);
+    const double t = 0.5 * (impact.t + trajectory.events[1].t);
+    const State state = sampler.at(t).state;
+    const double h = (state.q[1] - std::sin(state.q[0])) / std::pow(impact.impact_speed, 2);
+    EXPECT_NEAR(panel.curves[0].points[24].y, h, 1e-9 * h);
+}
+
+TEST(ZenoLens, GoesOnForEver) {
+    const Trajectory trajectory = run_of("ball_on_sine", 1e-6);
+    const auto lens = Lens::at(trajectory, first_zeno(trajectory));
+    ASSERT_TRUE(lens);
+    for (const double x : {50.0, 1e3, 1e6}) {
+        const Panel panel = lens->panel(x, x + 3.0, light_theme());
+        EXPECT_TRUE(panel.curves[0].points.empty());
+        EXPECT_NEAR(static_cast<double>(panel.markers[0].points.size()), 3.0 / lens->spacing(), 2.0);
+        for (const Point& point : panel.curves[1].points) {
+            EXPECT_TRUE(std::isfinite(point.x) && std::isfinite(point.y));
+            EXPECT_GE(point.y, 0.0);
+        }
+    }
+}
+
+TEST(ZenoLens, HasNothingToShowWithoutARow) {
+    const Trajectory trajectory = run_of("ball_on_sine", 1e-6);
+    EXPECT_FALSE(Lens::at(trajectory, 0));       // an impact
+    EXPECT_FALSE(Lens::at(trajectory, 100000));  // no event
+    const Trajectory plastic = run_of("ball_on_sine", 1e-6, 0.0);
+    EXPECT_FALSE(Lens::at(plastic, first_zeno(plastic)));
+}
+
+// The interval begins where the certificate says.
+TEST(ZenoLens, MarksTheCutAndTheCertifiedInterval) {
+    const Trajectory trajectory = run_of("double_pendulum", 1e-6);
+    const std::size_t event = first_zeno(trajectory);
+    const auto lens = Lens::at(trajectory, event);
+    ASSERT_TRUE(lens && lens->interval());
+    const Event& zeno = trajectory.events[event];
+    EXPECT_DOUBLE_EQ(*lens->interval(), -std::log10(zeno.t - zeno.certificate->zeno_low));
+    EXPECT_DOUBLE_EQ(lens->cut(), -std::log10(zeno.t - zeno.truncation->t));
+    EXPECT_GT(*lens->interval(), lens->cut());
+}
+
+}  // namespace
+}  // namespace achilles
