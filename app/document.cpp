@@ -120,6 +120,10 @@ void save(Document& document, const std::string& file, bool overwrite) {
     files.add(file);
     files.put(file, document.text);
     files.commit();
+    mark_saved(document, file);
+}
+
+void mark_saved(Document& document, const std::string& file) {
     document.file = document.name = document.source = file;
     document.saved = document.text;
 }

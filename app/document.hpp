@@ -31,6 +31,8 @@ Document open_document(const std::string& name, const std::filesystem::path& fil
 // Writes the text to a file, whole or not at all, which then is the document's. Another file than the document's own is
 // written over only with `overwrite`. Throws InputError.
 void save(Document& document, const std::string& file, bool overwrite);
+// As after save(), which did not happen here.
+void mark_saved(Document& document, const std::string& file);
 
 // The run of a model derived from an edited text: what the text says, but where a value stands in the text as before,
 // what a slider or the command line made of it. `before` is the text that `run` belongs to, as it was read.

@@ -7,11 +7,11 @@
 
 #include "assets.hpp"
 #include "commands/commands.hpp"
+#include "image/png_notes.hpp"
 #include "journal.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
-#include "write_files.hpp"
 
 namespace achilles {
 
@@ -31,31 +31,39 @@ std::vector<SystemEntry> known_systems() {
     return entries;
 }
 
-// The system that is asked for; else the paper's first example, or whatever there is.
-std::string first_system(const ExploreOptions& options) {
-    if (options.system) return *options.system;
+// Where none is asked for: the paper's first example, or whatever there is.
+std::string first_system() {
     const std::vector<std::string> names = system_names();
     if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
     const std::string usual = "ball_on_sine";
     return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
 }
 
-std::vector<Command> journal_of(const ExploreOptions& options) {
-    return options.journal.empty() ? std::vector<Command>{} : read_journal(options.journal);
-}
-
 // What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
 // hand; the others are shown when they are there.
 constexpr double frame_patience = 1.0 / 40.0;
 
-// The session that the command line asks for.
-Session open_session(const ExploreOptions& options, Patience patience) {
-    const std::string name = first_system(options);
-    const auto finish = [overrides = options.overrides](SystemDescription& description) {
+// The session that the command line asks for, with systems from where the library finds them.
+Session open_session(const std::string& name, SystemDescription first, const ExploreOptions& options, Library library,
+                     Patience patience) {
+    library.finish = [overrides = options.overrides](SystemDescription& description) {
         apply(overrides, description.options);
     };
-    return {name, open_system(find_system(name), options.settings, options.overrides),
-            Library{[](const std::string& system) { return find_system(system); }, finish}, patience};
+    return {name, adjusted(std::move(first), options.settings, options.overrides), std::move(library), patience};
+}
+
+// A picture's systems. What its journal saves is written only when it is made for the first time.
+Library library_of(Studio& studio) {
+    Library library;
+    library.open = [&studio](const std::string& name) {
+        const std::filesystem::path path(name);
+        const bool is_path = path.has_parent_path() || path.extension() == ".toml";
+        const std::string text = studio.inputs().text(name);
+        return Document{name, is_path ? name : "", name, text, text, {}};
+    };
+    if (studio.reproduces())
+        library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
+    return library;
 }
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
@@ -132,9 +140,14 @@ class Clock {
 }  // namespace
 
 int explore(const ExploreOptions& options) {
-    const std::vector<Command> journal = journal_of(options);
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = read_journal(options.journal);
+    const std::string name = options.system ? *options.system : first_system();
+    Library library;
+    library.find = find_system;
     // A journal tells what was done after each run: then every run is waited for.
-    Session session = open_session(options, journal.empty() ? Patience(frame_patience) : Patience());
+    Session session = open_session(name, read_system(find_system(name)), options, std::move(library),
+                                   journal.empty() ? Patience(frame_patience) : Patience());
     PanelState state = panel_state(true);
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
@@ -168,17 +181,23 @@ int explore(const ExploreOptions& options) {
     return reached_end;
 }
 
-int screenshot(const ScreenshotOptions& options) {
-    OutputFiles files;
-    files.add(options.out);
-    const std::vector<Command> journal = journal_of(options);
-    Session session = open_session(options, {});
+int screenshot(const ScreenshotOptions& options, Studio& studio) {
+    studio.add(options.out);
+    Inputs& inputs = studio.inputs();
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
+    const std::string name = options.system        ? *options.system
+                             : studio.reproduces() ? inputs.first_system()
+                                                   : first_system();
+    Session session = open_session(name, inputs.system(name), options, library_of(studio), {});
     for (const Command& command : journal) session.apply(command);
     PanelState state = panel_state(false);
-    Offscreen surface(surface_options(options));
-    const Image image = surface.frame([&] { explorer(session, state); }, 3);
-    files.put(options.out, png_bytes(image));
-    files.commit();
+    studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
+        Offscreen surface(surface_options(options));
+        const Image image = surface.frame([&] { explorer(session, state); }, 3);
+        return with_notes(png_bytes(image), notes);
+    });
+    studio.commit();
     return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "overrides.hpp"
+#include "studio.hpp"
 
 namespace achilles {
 
@@ -25,6 +26,6 @@ struct ScreenshotOptions : ExploreOptions {
 
 // Both return the exit status (INTERFACE section 2). Throw InputError for bad input.
 int explore(const ExploreOptions& options);
-int screenshot(const ScreenshotOptions& options);
+int screenshot(const ScreenshotOptions& options, Studio& studio);
 
 }  // namespace achilles

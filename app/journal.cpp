@@ -1,7 +1,5 @@
 #include "journal.hpp"
 
-#include <sstream>
-
 namespace achilles {
 
 std::vector<Command> parse_journal(std::string_view text, const std::string& name) {
@@ -17,17 +15,14 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
+std::string journal_file(const std::filesystem::path& file) {
+    std::string text = read_text(file);
+    if (text.size() > largest_file) throw InputError(file.string(), {}, "this is too large for a journal");
+    return text;
+}
+
 std::vector<Command> read_journal(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream text;
-    // A directory opens, but does not read.
-    if (!stream || !(text << stream.rdbuf())) {
-        std::error_code ignored;
-        const bool is_empty =
-            std::filesystem::is_regular_file(file, ignored) && std::filesystem::is_empty(file, ignored);
-        if (!is_empty) throw InputError(file.string(), {}, "the journal cannot be read");
-    }
-    return parse_journal(text.str(), file.string());
+    return parse_journal(journal_file(file), file.string());
 }
 
 std::string journal_text(const std::vector<Command>& commands) {

@@ -13,6 +13,7 @@ namespace achilles {
 
 // Throw InputError with file, line and column.
 std::vector<Command> parse_journal(std::string_view text, const std::string& name = "<journal>");
+std::string journal_file(const std::filesystem::path& file);  // its text
 std::vector<Command> read_journal(const std::filesystem::path& file);
 
 std::string journal_text(const std::vector<Command>& commands);

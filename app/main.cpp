@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <new>
 
 #include "assets.hpp"
 #include "commands/commands.hpp"
 #include "expression/nearest.hpp"
 #include "model/description.hpp"
 #include "output/output.hpp"
+#include "studio.hpp"
 
 namespace achilles {
 
@@ -63,8 +65,9 @@ int run(std::vector<std::string> words) {
     int status = reached_end;
     add_explore(program, status);
     add_simulate(program, status);
-    add_paper(program, status);
-    add_screenshot(program, status);
+    Studio studio(words);
+    add_pictures(program, status, studio);
+    add_reproduce(program, status);
     add_list(program, status);
     try {
         put_default_command(program, words);
@@ -89,6 +92,8 @@ int main(int argc, char** argv) {
     } catch (const achilles::InputError& error) {
         // A message about a place in a file starts with that place, so that editors find it.
         fmt::print(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
+    } catch (const std::bad_alloc&) {
+        std::fputs("achilles: there is not enough memory for this\n", stderr);
     } catch (const std::exception& error) {
         fmt::print(stderr, "achilles: {}\n", error.what());
     }

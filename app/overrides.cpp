@@ -35,12 +35,16 @@ void apply(const OptionOverrides& overrides, Options& options) {
     put_positive(truncation.eps_t, overrides.eps_t, "--eps-t");
 }
 
-SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                              const OptionOverrides& overrides) {
-    SystemDescription description = read_system(file);
+SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
+                           const OptionOverrides& overrides) {
     for (const std::string& setting : settings) assign(description, setting);
     apply(overrides, description.options);
     return description;
+}
+
+SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                              const OptionOverrides& overrides) {
+    return adjusted(read_system(file), settings, overrides);
 }
 
 }  // namespace achilles

@@ -24,7 +24,9 @@ struct OptionOverrides {
 // Puts them over the options of a system just read. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);
 
-// A system file with --set and the options over it, ready for Model.
+// A system with --set and the options over it, ready for Model; from its description, or its file.
+SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
+                           const OptionOverrides& overrides);
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides);
 

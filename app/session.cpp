@@ -162,7 +162,8 @@ std::optional<Sample> Session::pinned_now() const {
 }
 
 void Session::perform(const command::Open& command) {
-    begin_document(open_document(command.system, library_.find(command.system)));
+    begin_document(library_.open ? library_.open(command.system)
+                                 : open_document(command.system, library_.find(command.system)));
 }
 
 void Session::perform(const command::New&) { begin_document(new_document()); }
@@ -194,7 +195,10 @@ void Session::perform(const command::Text& command) {
 
 void Session::perform(const command::Save& command) {
     const std::string before = document_.source;
-    save(document_, command.file, command.overwrite);
+    if (library_.save)
+        library_.save(document_, command.file, command.overwrite);
+    else
+        save(document_, command.file, command.overwrite);
     if (document_.source != before) read_document();  // under its new name
 }
 

@@ -20,10 +20,12 @@
 
 namespace achilles {
 
-// How a session finds the systems that `open` names. Both throw InputError.
+// How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
 struct Library {
-    std::function<std::filesystem::path(const std::string& system)> find;  // its file
-    std::function<void(SystemDescription&)> finish;  // what the command line puts over the file; may be empty
+    std::function<std::filesystem::path(const std::string& system)> find{};  // its file
+    std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
+    std::function<Document(const std::string& system)> open{};                                // empty: from its file
+    std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
 };
 
 // Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default

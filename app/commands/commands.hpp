@@ -8,13 +8,19 @@ class App;
 
 namespace achilles {
 
-// Exit statuses.
-constexpr int reached_end = 0, bad_input = 2, stopped_early = 3;
+class Studio;
+
+// Exit statuses. made_differently: `reproduce` could, but the bytes are not the same.
+constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_early = 3;
 
 void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
-void add_paper(CLI::App& program, int& status);
-void add_screenshot(CLI::App& program, int& status);
+// Those that make pictures.
+void add_figure(CLI::App& program, int& status, Studio& studio);
+void add_paper(CLI::App& program, int& status, Studio& studio);
+void add_screenshot(CLI::App& program, int& status, Studio& studio);
+void add_pictures(CLI::App& program, int& status, Studio& studio);  // all of them
+void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 
 }  // namespace achilles

@@ -81,16 +81,16 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     add_number(command, "--eps-t", overrides.eps_t, "time, s");
 }
 
-void add_scale_option(CLI::App& command, double& scale) {
+void add_scale_option(CLI::App& command, double& scale, const std::string& about) {
     const auto take_scale = [&scale](const std::string& text) {
         scale = number_from("--scale", text);
         if (!(scale >= 0.25 && scale <= 8.0))
             throw InputError("--scale " + text, {}, "the scale must lie in [0.25, 8]");
     };
-    command.add_option_function<std::string>("--scale", take_scale, "of text and strokes (default 1)")->type_name("S");
+    command.add_option_function<std::string>("--scale", take_scale, about)->type_name("S");
 }
 
-void add_size_options(CLI::App& command, int& width, int& height, double& scale) {
+void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about) {
     const auto take_size = [&width, &height](const std::string& text) {
         const std::size_t x = text.find('x');
         const auto w = parse<int>(std::string_view(text).substr(0, x));
@@ -101,9 +101,12 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale)
         width = *w;
         height = *h;
     };
-    command.add_option_function<std::string>("--size", take_size, fmt::format("pixels (default {}x{})", width, height))
-        ->type_name("WxH");
-    add_scale_option(command, scale);
+    const std::string size = fmt::format("pixels (default {}x{})", width, height);
+    command.add_option_function<std::string>("--size", take_size, about.empty() ? size : about)->type_name("WxH");
+    if (about.empty())
+        add_scale_option(command, scale);
+    else
+        add_scale_option(command, scale, about);
 }
 
 }  // namespace achilles

@@ -17,10 +17,10 @@ namespace achilles {
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
 
 // --scale S.
-void add_scale_option(CLI::App& command, double& scale);
+void add_scale_option(CLI::App& command, double& scale, const std::string& about = "of text and strokes (default 1)");
 
-// --size WxH and --scale S.
-void add_size_options(CLI::App& command, int& width, int& height, double& scale);
+// --size WxH and --scale S. `about` replaces what they say of themselves.
+void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});
 
 // A decimal number, all of it; strtod and with it CLI11 would take more (hexadecimal, "nan"). Throws InputError.
 double number_from(const std::string& option, std::string_view text);

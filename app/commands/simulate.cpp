@@ -19,6 +19,8 @@ struct Arguments {
     std::string system, json, csv;
     std::vector<std::string> settings;
     OptionOverrides overrides;
+    int width = 0, height = 0;  // common options (INTERFACE section 2) that mean nothing here
+    double scale = 1.0;
 };
 
 int run(const Arguments& arguments) {
@@ -55,6 +57,7 @@ void add_simulate(CLI::App& program, int& status) {
     command->add_option("--json", arguments->json, "where to write the trajectory as JSON; - is standard output")
         ->type_name("F");
     command->add_option("--csv", arguments->csv, "where to write it as CSV")->type_name("F");
+    add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures; no effect here");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = run(*arguments); });
 }

@@ -79,13 +79,6 @@ bool moved(Slider& slider, PanelState& state) {
 }
 
 // A typographer's unit: m/s^2 becomes m/s\u00b2.
-std::string pretty_unit(std::string unit) {
-    for (const auto& [plain, raised] : {std::pair{"^2", "\u00b2"}, std::pair{"^3", "\u00b3"}})
-        for (std::size_t at = unit.find(plain); at != std::string::npos; at = unit.find(plain))
-            unit.replace(at, 2, raised);
-    return unit;
-}
-
 // "double pendulum" for the file double_pendulum.toml: short enough for the column, whatever the title.
 std::string short_name(const std::string& system) {
     std::string name = std::filesystem::path(system).stem().string();
@@ -135,7 +128,7 @@ void parameters(const Session& session, PanelState& state, Commands& commands) {
         const double factor = is_angle ? degrees_per_radian : 1.0;
         Slider slider{typeset_name(p.name),
                       "set " + p.name,
-                      is_angle ? "\u00b0" : pretty_unit(p.unit),
+                      is_angle ? "\u00b0" : typeset_unit(p.unit),
                       p.about.empty() ? p.name : p.name + ": " + p.about,
                       session.run().parameters[i] * factor,
                       p.range[0] * factor,
@@ -152,7 +145,7 @@ void start_value(const Session& session, std::size_t i, bool is_rate, PanelState
     const auto& range = is_rate ? c.rate_range : c.range;
     const Vector& values = is_rate ? session.run().v : session.run().q;
     const std::string name = is_rate ? c.name + "'" : c.name;
-    std::string unit = is_angle ? "\u00b0" : pretty_unit(c.unit);
+    std::string unit = is_angle ? "\u00b0" : typeset_unit(c.unit);
     if (is_rate && !unit.empty()) unit += "/s";
     Slider slider{typeset_name(name) + "(0)",
                   "set " + name,

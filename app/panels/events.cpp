@@ -138,7 +138,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
     ImGui::AlignTextToFramePadding();
-    for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t [s]"},
+    for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t (s)"},
                                    std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
         if (!with_state && at >= speed_at) continue;  // a certificate stands there
         if (at != number_at) ImGui::SameLine();

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figure/axes.hpp"
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
-#include "paint/axes.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
 

@@ -106,9 +106,9 @@ struct SystemDescription {
 // The most bytes of a file: thousands of points of a polyline fit, and whatever else it holds is refused in a second.
 inline constexpr std::size_t largest_file = std::size_t{4} << 20;
 
-// The text of a system file. Throws InputError if there is none to read. Of a file that is too large it is only so much
-// that parse_system will say so.
-std::string read_text(const std::filesystem::path& file);
+// What a file holds. Throws InputError if there is none to read. Of a file that is too large it is only so much that
+// the size tells: parse_system will say so.
+std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
 // Reads a file, and all its expressions to see whether they can be. Throws InputError where there is nothing to read
 // (no file, no TOML), else InputErrors: all mistakes.
 SystemDescription read_system(const std::filesystem::path& file);

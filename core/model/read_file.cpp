@@ -1,4 +1,4 @@
-// Reading a system file from disk.
+// Reading from disk.
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-std::string read_text(const std::filesystem::path& file) {
+std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     const std::string name = file.string();
     const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
     const auto reason = [] { return std::generic_category().message(errno); };
@@ -25,7 +25,7 @@ std::string read_text(const std::filesystem::path& file) {
     char block[1 << 16];
     while (const std::size_t count = std::fread(block, 1, sizeof block, open.get())) {
         text.append(block, count);
-        if (text.size() > largest_file) break;  // /dev/zero has no end
+        if (text.size() > largest) break;  // /dev/zero has no end
     }
     if (std::ferror(open.get()) != 0) throw refuse(reason());
     return text;

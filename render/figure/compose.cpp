@@ -73,7 +73,7 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
         units = units || !c.unit.empty();
         const bool is_rate = text == c.name + "'";
         if (text != c.name && !is_rate) continue;
-        result.unit = c.unit == "rad" ? "deg" : c.unit;
+        result.unit = c.unit == "rad" ? "\u00B0" : typeset_unit(c.unit);
         if (c.unit == "rad") result.factor = 180.0 / std::numbers::pi;
         if (is_rate && !result.unit.empty()) result.unit += "/s";
     }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace achilles {
@@ -50,6 +51,7 @@ struct Axis {
     double low = 0.0, high = 1.0;
     bool logarithmic = false;
     std::vector<Tick> ticks;
+    bool labelled = true;  // false: ticks alone, because another panel beside this one shows the same axis
 };
 
 struct Panel {
@@ -59,12 +61,20 @@ struct Panel {
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     bool legend = false;
+    bool legend_above = false;  // in a line above the plot area, where it covers nothing; else in a corner of it:
     std::array<double, 2> legend_at{1.0, 1.0};  // corner of the plot area: (0,0) bottom left, (1,1) top right
+};
+
+// A line of a legend: a stroke or a marker and its meaning.
+struct Key {
+    std::string label;
+    std::variant<Stroke, Markers> sign;
 };
 
 struct Figure {
     int columns = 1;
     std::vector<Panel> panels;  // row by row
+    std::vector<Key> keys;      // a legend above all panels; empty: none
     Color background{255, 255, 255, 255};
     Color ink{30, 30, 30, 255};  // axes and text
     Color grid{225, 225, 225, 255};

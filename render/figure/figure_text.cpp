@@ -13,8 +13,8 @@ namespace {
 std::string color_text(const Color& c) { return fmt::format("#{:02x}{:02x}{:02x}{:02x}", c.r, c.g, c.b, c.a); }
 
 std::string axis_text(const char* name, const Axis& axis) {
-    std::string text = fmt::format("  {} \"{}\" [{:.9g}, {:.9g}]{}:", name, axis.label, axis.low, axis.high,
-                                   axis.logarithmic ? " log" : "");
+    std::string text = fmt::format("  {} \"{}\" [{:.9g}, {:.9g}]{}{}:", name, axis.label, axis.low, axis.high,
+                                   axis.logarithmic ? " log" : "", axis.labelled ? "" : " labelled below");
     for (const Tick& tick : axis.ticks)
         if (!tick.label.empty()) text += fmt::format(" {}", tick.label);
     return text + "\n";
@@ -54,9 +54,12 @@ const char* shape_text(Markers::Shape shape) {
 
 std::string to_text(const Figure& figure) {
     std::string text = fmt::format("figure columns {} background {}\n", figure.columns, color_text(figure.background));
+    for (const Key& key : figure.keys) text += fmt::format("key \"{}\"\n", key.label);
     for (const Panel& panel : figure.panels) {
         text += fmt::format("panel \"{}\"{}{}\n", panel.title, panel.equal_axes ? " equal" : "",
-                            panel.legend ? " legend" : "");
+                            !panel.legend        ? ""
+                            : panel.legend_above ? " legend above"
+                                                 : " legend");
         text += axis_text("x", panel.x) + axis_text("y", panel.y);
         for (const Curve& curve : panel.curves)
             text +=

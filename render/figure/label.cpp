@@ -9,7 +9,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 34> letters{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 34> signs{
     {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},   {"eta", "η"},
      {"theta", "θ"}, {"iota", "ι"},  {"kappa", "κ"}, {"lambda", "λ"},  {"mu", "μ"},      {"nu", "ν"},     {"xi", "ξ"},
      {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},     {"chi", "χ"},    {"psi", "ψ"},
@@ -33,23 +33,96 @@ std::size_t end_of_number(std::string_view text, std::size_t i) {
 
 }  // namespace
 
-std::string typeset_name(std::string_view name) {
-    const std::size_t primes_at = std::min(name.find('\''), name.size());
-    const std::size_t primes = name.size() - primes_at;
-    std::string_view word = name.substr(0, primes_at);
-    std::size_t digits_at = word.size();
-    while (digits_at > 1 && is_digit(word[digits_at - 1])) --digits_at;
-    const std::string_view digits = word.substr(digits_at);
-    word = word.substr(0, digits_at);
-    while (!digits.empty() && word.size() > 1 && word.back() == '_') word.remove_suffix(1);
-    const auto found =
-        std::find_if(letters.begin(), letters.end(), [&](const auto& entry) { return entry.first == word; });
-    std::string text(found == letters.end() ? word : found->second);
-    if (primes == 1) text += "\u0307";
-    if (primes == 2) text += "\u0308";
+namespace {
+
+// theta1'' is the letter theta, the index 1 and two primes; x_ball has an index of letters.
+struct Name {
+    explicit Name(std::string_view text) {
+        const std::size_t primes_at = std::min(text.find('\''), text.size());
+        primes = text.size() - primes_at;
+        word = text.substr(0, primes_at);
+        std::size_t digits_at = word.size();
+        while (digits_at > 1 && is_digit(word[digits_at - 1])) --digits_at;
+        digits = word.substr(digits_at);
+        word = word.substr(0, digits_at);
+        while (!digits.empty() && word.size() > 1 && word.back() == '_') word.remove_suffix(1);
+    }
+    std::string_view word, digits;
+    std::size_t primes;
+};
+
+std::string sign_of(std::string_view word) {
+    const auto found = std::find_if(signs.begin(), signs.end(), [&](const auto& entry) { return entry.first == word; });
+    return std::string(found == signs.end() ? word : found->second);
+}
+
+std::string dots_of(const Name& name) { return name.primes == 1 ? "\u0307" : name.primes == 2 ? "\u0308" : ""; }
+
+std::string index_of(std::string_view digits) {
+    std::string text;
     for (const char digit : digits)
         text += std::string("\u2080").replace(2, 1, 1, static_cast<char>(0x80 + (digit - '0')));
     return text;
+}
+
+// Unicode's italic alphabets: where each begins, and what its first letter is.
+struct Alphabet {
+    char32_t italic, first;
+    char32_t count;
+};
+constexpr std::array<Alphabet, 5> alphabets{{{0x1D434, 'A', 26},
+                                             {0x1D44E, 'a', 26},
+                                             {0x210E, 'h', 1},  // older than the rest, whose place for it is empty
+                                             {0x1D6E2, 0x0391, 25},
+                                             {0x1D6FC, 0x03B1, 25}}};
+
+// A word of one letter in italics; longer ones, and the number pi, stay upright.
+std::string italic(const std::string& word) {
+    const std::vector<Letter> all = letters(word);
+    if (all.size() != 1 || word == "\u03C0") return word;
+    const char32_t code = all[0].code;
+    if (code == 'h') return utf8(0x210E);
+    for (const Alphabet& alphabet : alphabets)
+        if (code >= alphabet.first && code < alphabet.first + alphabet.count)
+            return utf8(alphabet.italic + (code - alphabet.first));
+    return word;
+}
+
+// A name in a label: x_ball has an index of letters.
+std::string variable(std::string_view text) {
+    const Name name(text);
+    const std::size_t bar = name.word.find('_');
+    if (bar == 0 || bar == std::string_view::npos || bar + 1 == name.word.size())
+        return italic(sign_of(name.word)) + dots_of(name) + index_of(name.digits);
+    const std::string index = sign_of(name.word.substr(bar + 1)) + std::string(name.digits);
+    return italic(sign_of(name.word.substr(0, bar))) + dots_of(name) + "_{" + index + "}";
+}
+
+constexpr std::array<std::string_view, 10> powers{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
+                                                  "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+
+// Where a whole power that begins at i ('^' and digits alone) ends; i if there is none.
+std::size_t end_of_power(std::string_view text, std::size_t i) {
+    std::size_t end = i + 1;
+    while (text[i] == '^' && end < text.size() && is_digit(text[end])) ++end;
+    const bool whole =
+        end > i + 1 && (end == text.size() || (text[end] != '.' && text[end] != 'e' && text[end] != 'E'));
+    return whole ? end : i;
+}
+
+}  // namespace
+
+std::string utf8(char32_t c) {
+    const auto tail = [c](int shift) { return static_cast<char>(0x80 | (c >> shift & 0x3F)); };
+    if (c < 0x80) return {static_cast<char>(c)};
+    if (c < 0x800) return {static_cast<char>(0xC0 | c >> 6), tail(0)};
+    if (c < 0x10000) return {static_cast<char>(0xE0 | c >> 12), tail(6), tail(0)};
+    return {static_cast<char>(0xF0 | c >> 18), tail(12), tail(6), tail(0)};
+}
+
+std::string typeset_name(std::string_view text) {
+    const Name name(text);
+    return sign_of(name.word) + dots_of(name) + index_of(name.digits);
 }
 
 std::string typeset(std::string_view expression) {
@@ -60,10 +133,14 @@ std::string typeset(std::string_view expression) {
         if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
             while (end < expression.size() && is_name_part(expression[end])) ++end;
             while (end < expression.size() && expression[end] == '\'') ++end;
-            text += typeset_name(expression.substr(i, end - i));
+            text += variable(expression.substr(i, end - i));
         } else if (is_digit(c) || c == '.') {
             end = end_of_number(expression, i);
             for (const char part : expression.substr(i, end - i)) text += part == '-' ? "\u2212" : std::string(1, part);
+        } else if (end_of_power(expression, i) > i) {
+            end = end_of_power(expression, i);
+            for (const char digit : expression.substr(i + 1, end - i - 1))
+                text += powers[static_cast<std::size_t>(digit - '0')];
         } else {
             ++end;
             text += c == '*' ? "\u00B7" : c == '-' ? "\u2212" : std::string(1, c);
@@ -73,8 +150,93 @@ std::string typeset(std::string_view expression) {
     return text;
 }
 
+std::string typeset_unit(std::string_view unit) {
+    std::string text;
+    for (std::size_t i = 0; i < unit.size();) {
+        const std::size_t end = end_of_power(unit, i);
+        for (std::size_t k = i + 1; k < end; ++k) text += powers[static_cast<std::size_t>(unit[k] - '0')];
+        if (end == i) text += unit[i] == '*' ? "\u00B7" : std::string(1, unit[i]);
+        i = std::max(end, i + 1);
+    }
+    return text;
+}
+
 std::string with_unit(const std::string& label, const std::string& unit) {
-    return unit.empty() ? label : label + " [" + unit + "]";
+    return unit.empty() ? label : label + " (" + unit + ")";
+}
+
+namespace {
+
+// The next code point.
+char32_t next_code_point(std::string_view text, std::size_t& at) {
+    constexpr char32_t replacement = 0xFFFD;
+    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+    const unsigned lead = byte(at++);
+    if (lead < 0x80) return lead;
+    const std::size_t more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
+    if (more == 0) return replacement;
+    char32_t value = lead & (0x3FU >> more);
+    for (std::size_t i = 0; i < more; ++i) {
+        if ((byte(at + i) & 0xC0U) != 0x80U) return replacement;
+        value = value << 6 | (byte(at + i) & 0x3FU);
+    }
+    at += more;
+    return value;
+}
+
+}  // namespace
+
+bool is_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t begin = i;
+        const char32_t code = next_code_point(text, i);
+        const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+        // Written anew it must be the same: that refuses what is broken, too long for its code, or out of range.
+        if (is_surrogate || code > 0x10FFFF || (code & 0xFFFE) == 0xFFFE || utf8(code) != text.substr(begin, i - begin))
+            return false;
+    }
+    return true;
+}
+
+namespace {
+
+// The plain letter behind one of Unicode's own styles.
+Letter plain(char32_t c) {
+    for (const Alphabet& alphabet : alphabets)
+        if (c >= alphabet.italic && c < alphabet.italic + alphabet.count)
+            return {alphabet.first + (c - alphabet.italic), true, 0, 0};
+    if (c >= 0x2080 && c <= 0x2089) return {'0' + (c - 0x2080), false, -1, 0};
+    if (c == 0x00B9) return {'1', false, 1, 0};
+    if (c == 0x00B2 || c == 0x00B3) return {'2' + (c - 0x00B2), false, 1, 0};
+    if (c == 0x2070 || (c >= 0x2074 && c <= 0x2079)) return {'0' + (c - 0x2070), false, 1, 0};
+    if (c == 0x207A || c == 0x207B) return {c == 0x207A ? U'+' : U'\u2212', false, 1, 0};
+    return {c, false, 0, 0};
+}
+
+}  // namespace
+
+std::vector<Letter> letters(std::string_view label) {
+    std::vector<Letter> result;
+    int script = 0;  // inside braces
+    for (std::size_t i = 0; i < label.size();) {
+        const char c = label[i];
+        if (script == 0 && (c == '_' || c == '^') && i + 1 < label.size() && label[i + 1] == '{' &&
+            label.find('}', i) != std::string_view::npos) {
+            script = c == '_' ? -1 : 1;
+            i += 2;
+        } else if (script != 0 && c == '}') {
+            script = 0;
+            ++i;
+        } else {
+            Letter letter = plain(next_code_point(label, i));
+            const bool dot = letter.code == 0x0307 || letter.code == 0x0308;
+            if (dot && !result.empty()) result.back().dots = letter.code == 0x0307 ? 1 : 2;
+            if (dot) continue;
+            if (script != 0) letter.script = script;
+            result.push_back(letter);
+        }
+    }
+    return result;
 }
 
 }  // namespace achilles

@@ -11,12 +11,14 @@ namespace achilles {
 
 struct Image {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> rgb;  // top row first, 3 bytes a pixel
+    std::vector<std::uint8_t> rgb;      // top row first, 3 bytes a pixel
+    std::vector<std::uint8_t> alpha{};  // a byte a pixel, 255 is opaque; empty: all are
     friend bool operator==(const Image&, const Image&) = default;
 };
 
 // Throw std::runtime_error with the path and the reason.
 void write_png(const Image& image, const std::filesystem::path& file);
+// Without its transparency.
 Image read_png(const std::filesystem::path& file);
 // The PNG file as bytes.
 std::string png_bytes(const Image& image);

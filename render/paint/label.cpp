@@ -5,29 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figure/label.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
 
 namespace {
-
-constexpr unsigned one_dot = 0x0307, two_dots = 0x0308, replacement = 0xFFFD;
-
-// The next code point; what is no UTF-8 becomes the replacement sign, a byte at a time.
-unsigned next_code_point(const std::string& text, std::size_t& at) {
-    const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-    const unsigned lead = byte(at++);
-    if (lead < 0x80) return lead;
-    const std::size_t more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
-    if (more == 0) return replacement;
-    unsigned value = lead & (0x3FU >> more);
-    for (std::size_t i = 0; i < more; ++i) {
-        if ((byte(at + i) & 0xC0U) != 0x80U) return replacement;
-        value = value << 6 | (byte(at + i) & 0x3FU);
-    }
-    at += more;
-    return value <= 0xFFFF ? value : replacement;  // ImGui's letters have 16 bits
-}
 
 // A frame of reference for a line of text: where it starts and which way it runs.
 struct Baseline {
@@ -38,64 +21,84 @@ struct Baseline {
     }
 };
 
-void paint_glyph(ImDrawList* list, const ImFontGlyph& glyph, const Baseline& line, float along, float zoom,
-                 ImU32 color) {
+// A letter with its font, size and place: `along` the line, `down` from its top.
+struct Set {
+    const ImFontGlyph* glyph;
+    float zoom, along, down, base, slant;  // base: of its base line from the top of the letters
+    float advance() const { return glyph->AdvanceX * zoom; }
+};
+
+void paint_glyph(ImDrawList* list, const Set& set, const Baseline& line, ImU32 color) {
+    const ImFontGlyph& glyph = *set.glyph;
     if (glyph.Visible == 0) return;
-    const float left = along + glyph.X0 * zoom, right = along + glyph.X1 * zoom;
-    const float top = glyph.Y0 * zoom, bottom = glyph.Y1 * zoom;
+    const float left = set.along + glyph.X0 * set.zoom, right = set.along + glyph.X1 * set.zoom;
+    const float top = glyph.Y0 * set.zoom, bottom = glyph.Y1 * set.zoom;
+    // Italics lean about their base line.
+    const float over = (set.base - top) * set.slant, under = (set.base - bottom) * set.slant;
     list->PrimReserve(6, 4);
-    list->PrimQuadUV(line.at(left, top), line.at(right, top), line.at(right, bottom), line.at(left, bottom),
+    list->PrimQuadUV(line.at(left + over, set.down + top), line.at(right + over, set.down + top),
+                     line.at(right + under, set.down + bottom), line.at(left + under, set.down + bottom),
                      {glyph.U0, glyph.V0}, {glyph.U1, glyph.V0}, {glyph.U1, glyph.V1}, {glyph.U0, glyph.V1}, color);
 }
 
-// Dots over the letter before, drawn as discs: the font's own combining dots touch the taller Greek letters.
-void paint_dots(ImDrawList* list, const ImFontGlyph& letter, const Baseline& line, float along, float size, float zoom,
-                unsigned sign, ImU32 color) {
-    const float middle = along + (letter.X0 + letter.X1) / 2.0F * zoom;
+// Dots over a letter, drawn as discs: the font's own combining dots touch the taller Greek letters.
+void paint_dots(ImDrawList* list, const Set& set, const Baseline& line, float size, int dots, ImU32 color) {
     const float radius = std::max(size * 0.066F, 0.8F);
-    const float height = letter.Y0 * zoom - 1.9F * radius;
-    const float apart = sign == two_dots ? size * 0.13F : 0.0F;
+    const float height = set.glyph->Y0 * set.zoom - 1.9F * radius;
+    const float middle =
+        set.along + (set.glyph->X0 + set.glyph->X1) / 2.0F * set.zoom + (set.base - height) * set.slant;
+    const float apart = dots == 2 ? size * 0.13F : 0.0F;
     for (const float shift : {-apart, apart}) {
-        list->AddCircleFilled(line.at(middle + shift, height), radius, color, 12);
+        list->AddCircleFilled(line.at(middle + shift, set.down + height), radius, color, 12);
         if (apart == 0.0F) break;
     }
+}
+
+const ImFontGlyph* glyph_of(const ImFont* font, char32_t code) {
+    // ImGui's letters have 16 bits.
+    return font->FindGlyph(static_cast<ImWchar>(code <= 0xFFFF ? code : 0xFFFD));
+}
+
+// Sets one letter after the other; returns the length of the line.
+template <class Draw>
+float set_line(const std::string& label, float size, const Draw& draw) {
+    const std::vector<Letter> line = letters(label);
+    float along = 0.0F;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const Letter& letter = line[i];
+        const float own_size = letter.script == 0 ? size : size * script_size;
+        ImFont* font = font_for(double{own_size});
+        Set set{glyph_of(font, letter.code), own_size / font->FontSize, along, 0.0F, 0.0F, 0.0F};
+        set.base = font->Ascent * set.zoom;
+        if (letter.script != 0) {
+            const float shift = letter.script < 0 ? index_drop : -power_rise;
+            set.down = std::round(font_for(double{size})->Ascent * size / font_for(double{size})->FontSize - set.base +
+                                  shift * size);
+        }
+        if (letter.italic) set.slant = italic_slant;
+        draw(letter, set);
+        along += set.advance();
+    }
+    return along;
 }
 
 }  // namespace
 
 float label_width(const std::string& label, float size) {
-    const ImFont* font = font_for(double{size});
-    const float zoom = size / font->FontSize;
-    float width = 0.0F;
-    for (std::size_t i = 0; i < label.size();) {
-        const unsigned c = next_code_point(label, i);
-        if (c != one_dot && c != two_dots) width += font->FindGlyph(static_cast<ImWchar>(c))->AdvanceX * zoom;
-    }
-    return width;
+    return set_line(label, size, [](const Letter&, const Set&) {});
 }
 
 float paint_label(ImDrawList* list, float x, float y, const std::string& label, Color color, float size, int angle) {
-    ImFont* font = font_for(double{size});
-    const float zoom = size / font->FontSize;
     // On whole pixels letters keep the shape they were made with.
     const Baseline line{{std::round(x), std::round(y)}, angle != 90};
     const ImU32 ink = IM_COL32(color.r, color.g, color.b, color.a);
-    list->PushTextureID(font->ContainerAtlas->TexID);
-    float along = 0.0F, letter_at = 0.0F;
-    const ImFontGlyph* letter = nullptr;
-    for (std::size_t i = 0; i < label.size();) {
-        const unsigned c = next_code_point(label, i);
-        if (c == one_dot || c == two_dots) {
-            if (letter != nullptr) paint_dots(list, *letter, line, letter_at, size, zoom, c, ink);
-            continue;
-        }
-        letter = font->FindGlyph(static_cast<ImWchar>(c));
-        letter_at = along;
-        paint_glyph(list, *letter, line, along, zoom, ink);
-        along += letter->AdvanceX * zoom;
-    }
+    list->PushTextureID(font_for(double{size})->ContainerAtlas->TexID);
+    const float length = set_line(label, size, [&](const Letter& letter, const Set& set) {
+        paint_glyph(list, set, line, ink);
+        if (letter.dots > 0) paint_dots(list, set, line, size, letter.dots, ink);
+    });
     list->PopTextureID();
-    return along;
+    return length;
 }
 
 ScreenStroke screen_stroke(const Stroke& stroke, double scale) {

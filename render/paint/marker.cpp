@@ -2,7 +2,6 @@
 
 #include <imgui.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -12,41 +11,46 @@ namespace achilles {
 namespace {
 
 // A regular polygon, its first corner at the given angle from straight up.
-std::vector<ImVec2> polygon(const Point& center, double radius, int corners, double first_angle) {
-    std::vector<ImVec2> points;
+std::vector<Point> polygon(const Point& center, double radius, int corners, double first_angle) {
+    std::vector<Point> points;
     for (int i = 0; i < corners; ++i) {
         const double angle = first_angle + 2.0 * std::numbers::pi * i / corners;
-        points.emplace_back(static_cast<float>(center.x + radius * std::sin(angle)),
-                            static_cast<float>(center.y - radius * std::cos(angle)));
+        points.push_back({center.x + radius * std::sin(angle), center.y - radius * std::cos(angle)});
     }
     return points;
 }
 
+}  // namespace
+
 // Shapes of about equal weight: a diamond as wide as a square would look smaller.
-std::vector<ImVec2> corners(Markers::Shape shape, const Point& center, double size) {
-    switch (shape) {
+std::vector<Point> corners(const Mark& mark) {
+    switch (mark.shape) {
         case Markers::Shape::square:
-            return polygon(center, size / std::numbers::sqrt2, 4, std::numbers::pi / 4.0);
+            return polygon(mark.at, mark.size / std::numbers::sqrt2, 4, std::numbers::pi / 4.0);
         case Markers::Shape::triangle:
-            return polygon({center.x, center.y + size * 0.1}, size * 0.68, 3, 0.0);
+            return polygon({mark.at.x, mark.at.y + mark.size * 0.1}, mark.size * 0.68, 3, 0.0);
         case Markers::Shape::diamond:
-            return polygon(center, size * 0.68, 4, 0.0);
+            return polygon(mark.at, mark.size * 0.68, 4, 0.0);
         case Markers::Shape::circle:
         case Markers::Shape::bar:
             break;
     }
-    return polygon(center, size / 2.0, 24, 0.0);
+    return polygon(mark.at, mark.size / 2.0, 24, 0.0);
 }
 
-}  // namespace
-
-void paint_marker(ImDrawList* list, const Markers& style, const Point& pixel, double scale) {
-    const std::vector<ImVec2> points = corners(style.shape, pixel, style.size * scale);
+void paint_marker(ImDrawList* list, const Mark& mark) {
+    std::vector<ImVec2> points;
+    for (const Point& p : corners(mark)) points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
     const int count = static_cast<int>(points.size());
     const auto color = [](Color c) { return IM_COL32(c.r, c.g, c.b, c.a); };
-    if (style.fill.a > 0) list->AddConvexPolyFilled(points.data(), count, color(style.fill));
-    if (style.edge.a > 0)
-        list->AddPolyline(points.data(), count, color(style.edge), ImDrawFlags_Closed, static_cast<float>(scale));
+    if (mark.fill.a > 0) list->AddConvexPolyFilled(points.data(), count, color(mark.fill));
+    if (mark.edge.a > 0)
+        list->AddPolyline(points.data(), count, color(mark.edge), ImDrawFlags_Closed,
+                          static_cast<float>(mark.edge_width));
+}
+
+void paint_marker(ImDrawList* list, const Markers& style, const Point& pixel, double scale) {
+    paint_marker(list, Mark{style.shape, pixel, style.fill, style.edge, style.size * scale, scale});
 }
 
 }  // namespace achilles

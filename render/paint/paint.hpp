@@ -1,15 +1,11 @@
 // Strokes only: a figure onto an ImGui draw list. The painter has no memory and decides nothing but where pixels go.
 #pragma once
 
-#include "figure/figure.hpp"
+#include "figure/sheet.hpp"
 
 struct ImDrawList;
 
 namespace achilles {
-
-struct Rectangle {
-    float x = 0, y = 0, width = 0, height = 0;  // pixels
-};
 
 // Draws the whole figure into the area; scale multiplies text sizes and stroke widths.
 void paint(const Figure& figure, ImDrawList* list, Rectangle area, double scale = 1.0);

@@ -90,10 +90,16 @@ void Canvas::resize(int width, int height) {
 }
 
 void Canvas::draw(const ImDrawData& data, const float (&clear)[3]) {
+    draw_over(data, clear[0], clear[1], clear[2], 1.0F);
+}
+
+void Canvas::draw_over_nothing(const ImDrawData& data) { draw_over(data, 0.0F, 0.0F, 0.0F, 0.0F); }
+
+void Canvas::draw_over(const ImDrawData& data, float red, float green, float blue, float alpha) {
     resize(static_cast<int>(data.DisplaySize.x), static_cast<int>(data.DisplaySize.y));
     set_state();
     gl_.Scissor(0, 0, target_.width, target_.height);
-    gl_.ClearColor(clear[0], clear[1], clear[2], 1.0F);
+    gl_.ClearColor(red, green, blue, alpha);
     gl_.Clear(GL_COLOR_BUFFER_BIT);
     for (int i = 0; i < data.CmdListsCount; ++i) draw_list(*data.CmdLists[i]);
 }
@@ -143,13 +149,23 @@ void Canvas::draw_triangles(const ImDrawCmd& command) {
                                offset(command.IdxOffset * sizeof(ImDrawIdx)), static_cast<GLint>(command.VtxOffset));
 }
 
-Image Canvas::read() const {
-    Image image{target_.width, target_.height, {}};
-    image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+Image Canvas::read(bool transparent) const {
+    Image image{target_.width, target_.height, {}, {}};
+    const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+    image.rgb.resize(3 * pixels);
     if (image.rgb.empty()) return image;  // nothing was drawn yet
     gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target_.framebuffer);
     gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     gl_.ReadPixels(0, 0, image.width, image.height, GL_RGB, GL_UNSIGNED_BYTE, image.rgb.data());
+    if (!transparent) return image;
+    image.alpha.resize(pixels);
+    gl_.ReadPixels(0, 0, image.width, image.height, GL_ALPHA, GL_UNSIGNED_BYTE, image.alpha.data());
+    // Drawn over nothing, colours come out multiplied by their alpha.
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+        const int alpha = image.alpha[i / 3];
+        if (alpha > 0)
+            image.rgb[i] = static_cast<std::uint8_t>(std::min(255, (image.rgb[i] * 255 + alpha / 2) / alpha));
+    }
     return image;
 }
 

@@ -22,14 +22,16 @@ class Canvas {
 
     // Uploads the font atlas of the current ImGui context; again after it was rebuilt.
     void load_fonts();
-    // Draws the frame over the opaque colour. Throws std::runtime_error if the frame is too large.
+    // Draws the frame over the opaque colour, or over nothing. Throws std::runtime_error if the frame is too large.
     void draw(const ImDrawData& data, const float (&clear)[3]);
-    // The last frame.
-    Image read() const;
+    void draw_over_nothing(const ImDrawData& data);
+    // The last frame; `transparent`: with its alpha.
+    Image read(bool transparent = false) const;
     // Copies the last frame to the context's own framebuffer, where a window shows it.
     void show() const;
 
  private:
+    void draw_over(const ImDrawData& data, float red, float green, float blue, float alpha);
     void resize(int width, int height);
     void draw_list(const ImDrawList& list);
     void draw_triangles(const ImDrawCmd& command);

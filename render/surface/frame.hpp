@@ -19,6 +19,7 @@ struct SurfaceOptions {
     double figure_text_size = 14.0;   // pixels at scale 1, of figures: their text is made for this size, not stretched
     bool dark = false;                // ImGui's colours
     int curve_fineness = 1;           // 2: curves are drawn at twice the size and averaged down; finer, slower
+    bool transparent = false;         // pictures keep what nothing was drawn on clear
     std::filesystem::path fonts;      // folder that holds DejaVuSans.ttf and DejaVuSansMono.ttf
 };
 

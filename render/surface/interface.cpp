@@ -9,6 +9,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "figure/label.hpp"
+
 namespace achilles {
 
 namespace {
@@ -149,7 +151,8 @@ void Interface::build_fonts(double scale) {
     };
     // The first is the interface's own.
     std::vector<double> sizes;
-    for (const double size : {options_.text_size, options_.figure_text_size}) {
+    for (const double size :
+         {options_.text_size, options_.figure_text_size, options_.figure_text_size * double{script_size}}) {
         const double pixels = std::max(std::round(size * scale), 4.0);
         if (std::find(sizes.begin(), sizes.end(), pixels) == sizes.end()) sizes.push_back(pixels);
     }

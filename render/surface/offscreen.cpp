@@ -7,13 +7,14 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 #include "surface/draw_data.hpp"
 #include "surface/interface.hpp"
+#include "surface/memory_context.hpp"
 
 namespace achilles {
 
@@ -38,8 +39,7 @@ const OsMesa& os_mesa() {
     static const OsMesa loaded = [] {
         // Never closed: its compiler keeps threads and exit handlers.
         void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr)
-            throw std::runtime_error("drawing without a window needs libOSMesa.so.8; the package libosmesa6 has it");
+        if (library == nullptr) throw std::runtime_error("libOSMesa.so.8 is missing");
         OsMesa mesa{};
         find(library, "OSMesaCreateContextAttribs", mesa.create);
         find(library, "OSMesaDestroyContext", mesa.destroy);
@@ -48,6 +48,28 @@ const OsMesa& os_mesa() {
         return mesa;
     }();
     return loaded;
+}
+
+// OSMesa, or EGL where Debian no longer has it; both draw the same bytes. ACHILLES_OFFSCREEN=osmesa or egl insists.
+MemoryContext memory_context() {
+    const char* const given = std::getenv("ACHILLES_OFFSCREEN");
+    const std::string wanted = given == nullptr ? "" : given;
+    if (wanted == "osmesa") return os_mesa_context();
+    if (wanted == "egl") return egl_context();
+    if (!wanted.empty()) throw std::runtime_error("ACHILLES_OFFSCREEN must be osmesa or egl, not '" + wanted + "'");
+    std::string missing;
+    try {
+        return os_mesa_context();
+    } catch (const std::runtime_error& error) {
+        missing = error.what();
+    }
+    try {
+        return egl_context();
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error("drawing without a window needs OSMesa or EGL, but " + missing + ", and " +
+                                 error.what() +
+                                 "\nthe package libosmesa6 has the first, libegl1 with libgl1-mesa-dri the second");
+    }
 }
 
 // Letters in the middle of a frame would depend on a clock; every frame takes this long.
@@ -61,24 +83,39 @@ void check_size(int width, int height) {
 
 }  // namespace
 
+MemoryContext os_mesa_context() {
+    constexpr std::array attributes{OSMESA_FORMAT,
+                                    static_cast<int>(OSMESA_RGBA),
+                                    OSMESA_PROFILE,
+                                    OSMESA_CORE_PROFILE,
+                                    OSMESA_CONTEXT_MAJOR_VERSION,
+                                    3,
+                                    OSMESA_CONTEXT_MINOR_VERSION,
+                                    3,
+                                    0};
+    const OsMesa& library = os_mesa();
+    const OSMesaContext made = library.create(attributes.data(), nullptr);
+    if (made == nullptr) throw std::runtime_error("libOSMesa.so.8 cannot make an OpenGL 3.3 context");
+    MemoryContext context;
+    context.owned =
+        std::shared_ptr<void>(made, [&library](void* ended) { library.destroy(static_cast<OSMesaContext>(ended)); });
+    // OSMesa wants a picture of its own; we draw into a texture.
+    const auto buffer = std::make_shared<std::array<unsigned char, 4>>();
+    context.make_current = [&library, made, buffer] {
+        library.make_current(made, buffer->data(), GL_UNSIGNED_BYTE, 1, 1);
+    };
+    context.release = [&library] { library.make_current(nullptr, nullptr, 0, 0, 0); };
+    context.address = [&library](const char* name) { return reinterpret_cast<void*>(library.address(name)); };
+    return context;
+}
+
 struct Offscreen::Implementation {
     explicit Implementation(const SurfaceOptions& surface) : options(surface), interface(surface) {
         check_size(surface.width, surface.height);
-        constexpr std::array attributes{OSMESA_FORMAT,
-                                        static_cast<int>(OSMESA_RGBA),
-                                        OSMESA_PROFILE,
-                                        OSMESA_CORE_PROFILE,
-                                        OSMESA_CONTEXT_MAJOR_VERSION,
-                                        3,
-                                        OSMESA_CONTEXT_MINOR_VERSION,
-                                        3,
-                                        0};
-        context.reset(os_mesa().create(attributes.data(), nullptr));
-        if (context == nullptr) throw std::runtime_error("libOSMesa.so.8 cannot make an OpenGL 3.3 context");
+        context = memory_context();
         const Interface::Active active(interface);
         const Current current(*this);
-        canvas.emplace([](const char* name) { return reinterpret_cast<void*>(os_mesa().address(name)); },
-                       surface.curve_fineness);
+        canvas.emplace(context.address, surface.curve_fineness);
         canvas->load_fonts();
     }
     ~Implementation() {
@@ -86,14 +123,13 @@ struct Offscreen::Implementation {
         canvas.reset();
     }
 
-    // OSMesa and a window's driver share one notion of a current context, so ours is current only while we use it.
+    // Mesa's drivers share one notion of a current context with a window's, so ours is current only while we use it.
     struct Current {
-        explicit Current(Implementation& owner) {
-            os_mesa().make_current(owner.context.get(), owner.buffer.data(), GL_UNSIGNED_BYTE, 1, 1);
-        }
-        ~Current() { os_mesa().make_current(nullptr, nullptr, 0, 0, 0); }
+        explicit Current(Implementation& owner) : context(owner.context) { context.make_current(); }
+        ~Current() { context.release(); }
         Current(const Current&) = delete;
         Current& operator=(const Current&) = delete;
+        MemoryContext& context;
     };
 
     const ImDrawData& advance(const FrameFunction& draw, const Input& input) {
@@ -103,11 +139,7 @@ struct Offscreen::Implementation {
 
     SurfaceOptions options;
     Interface interface;
-    struct Destroy {
-        void operator()(OSMesaContext made) const { os_mesa().destroy(made); }
-    };
-    std::unique_ptr<std::remove_pointer_t<OSMesaContext>, Destroy> context;
-    std::array<unsigned char, 4> buffer{};  // OSMesa wants one; we draw into a texture
+    MemoryContext context;
     std::optional<Canvas> canvas;
 };
 
@@ -126,8 +158,13 @@ Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input
     const Interface::Active active(implementation_->interface);
     const ImDrawData& data = implementation_->advance(draw, held);
     const Implementation::Current current(*implementation_);
-    implementation_->canvas->draw(data, implementation_->interface.background());
-    return implementation_->canvas->read();
+    Canvas& canvas = *implementation_->canvas;
+    const bool transparent = implementation_->options.transparent;
+    if (transparent)
+        canvas.draw_over_nothing(data);
+    else
+        canvas.draw(data, implementation_->interface.background());
+    return canvas.read(transparent);
 }
 
 void Offscreen::step(const FrameFunction& draw, const Input& input) {

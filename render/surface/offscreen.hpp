@@ -1,4 +1,5 @@
-// Frames without a display: Mesa's software renderer in memory. The only file that knows OSMesa.
+// Frames without a display: Mesa's software renderer in memory, by OSMesa or, where that is missing, by EGL. Only
+// offscreen.cpp includes OSMesa, only egl.cpp EGL.
 #pragma once
 
 #include <memory>
@@ -10,8 +11,8 @@ namespace achilles {
 
 class Offscreen {
  public:
-    // Loads libOSMesa at run time. Throws std::runtime_error naming the package if it is missing, or what is out of
-    // limits.
+    // Loads the library at run time. Throws std::runtime_error naming the packages if both are missing, or what is out
+    // of limits.
     explicit Offscreen(const SurfaceOptions& options);
     ~Offscreen();
     Offscreen(const Offscreen&) = delete;

@@ -76,11 +76,11 @@ const Refusal refusals[] = {
     {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; did you mean 'simulate'?\n"
-     "the commands are: explore, simulate, paper, screenshot, list\n"},
+     "the commands are: explore, simulate, figure, paper, screenshot, reproduce, list\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
     {"no_system", "simulate", "achilles: SYSTEM is required" + more},
-    {"missing_journal", "screenshot --out a.png --journal none", "none: the journal cannot be read\n"},
+    {"missing_journal", "screenshot --out a.png --journal none", "none: there is no such file\n"},
     {"screenshot_without_a_place", "screenshot ball_on_sine",
      "achilles: --out is required\n'achilles screenshot --help' tells more\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
@@ -210,8 +210,8 @@ TEST(Cli, AssetsCanBeElsewhere) {
 TEST(Cli, HelpAndVersion) {
     const Folder folder;
     EXPECT_EQ(folder.run("--version").out, "achilles 0.1.0\n");
-    for (const char* arguments :
-         {"--help", "simulate --help", "paper --help", "list --help", "explore --help", "screenshot --help"}) {
+    for (const char* arguments : {"--help", "simulate --help", "paper --help", "list --help", "explore --help",
+                                  "screenshot --help", "figure --help", "reproduce --help"}) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 0) << arguments;
         EXPECT_NE(answer.out.find("Usage: achilles"), std::string::npos) << arguments;
@@ -297,8 +297,8 @@ TEST(Cli, ScreenshotDrawsWhatTheJournalLeadsTo) {
     ASSERT_EQ(folder.run("screenshot --journal tour.journal" + size + "tour.png").status, 0);
     const Answer standard = folder.run("screenshot --journal tour.journal" + size + "-");
     EXPECT_EQ(standard.out, content(folder.path() / "tour.png"));
-    EXPECT_EQ(content(folder.path() / "start.png"), content(folder.path() / "named.png"));
-    EXPECT_NE(content(folder.path() / "start.png"), content(folder.path() / "tour.png"));
+    EXPECT_EQ(read_png(folder.path() / "start.png"), read_png(folder.path() / "named.png"));
+    EXPECT_NE(read_png(folder.path() / "start.png"), read_png(folder.path() / "tour.png"));
     const Image image = read_png(folder.path() / "tour.png");
     EXPECT_EQ(image.width, 1280);
     EXPECT_EQ(image.height, 800);

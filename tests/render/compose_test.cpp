@@ -24,12 +24,16 @@ TEST(Labels, NamesBecomeSymbols) {
     EXPECT_EQ(typeset_name("L12"), "L₁₂");
     EXPECT_EQ(typeset_name("phi_2"), "φ₂");
     EXPECT_EQ(typeset_name("energy"), "energy");
-    EXPECT_EQ(typeset("m*g*y - theta1'^2"), "m·g·y − θ\u0307₁^2");
-    EXPECT_EQ(typeset("2.5*x1"), "2.5·x₁");
-    EXPECT_EQ(typeset("1e3*x - 2.5E-2*e1"), "1e3·x − 2.5E−2·e₁");
-    EXPECT_EQ(typeset("2*e"), "2·e");
+    EXPECT_EQ(typeset("m*g*y - theta1'^2"), "𝑚·𝑔·𝑦 − 𝜃\u0307₁²");
+    EXPECT_EQ(typeset("2.5*x1"), "2.5·𝑥₁");
+    EXPECT_EQ(typeset("1e3*x - 2.5E-2*e1"), "1e3·𝑥 − 2.5E−2·𝑒₁");
+    EXPECT_EQ(typeset("2*e"), "2·𝑒");
+    EXPECT_EQ(typeset("sin(x_ball)^12/(2*pi) + (x')^2.5"), "sin(𝑥_{ball})¹²/(2·π) + (𝑥\u0307)^2.5");
+    EXPECT_EQ(typeset("h + _1*v_max2 - mass"), "ℎ + _1·𝑣_{max2} − mass");
+    EXPECT_EQ(typeset_unit("kg*m^2/s^2"), "kg·m²/s²");
+    EXPECT_EQ(typeset_unit("m^0.5^"), "m^0.5^");
     EXPECT_EQ(with_unit("h", ""), "h");
-    EXPECT_EQ(with_unit("h", "m"), "h [m]");
+    EXPECT_EQ(with_unit("h", "m"), "h (m)");
 }
 
 std::string labels(double low, double high, double margin = 0.0, int most = 6) {
@@ -39,6 +43,20 @@ std::string labels(double low, double high, double margin = 0.0, int most = 6) {
     for (const Tick& tick : axis.ticks)
         if (!tick.label.empty()) text += (text.empty() ? "" : " ") + tick.label;
     return text;
+}
+
+TEST(Label, is_taken_apart_into_letters) {
+    const auto one = [](const char* label) { return letters(label).at(0); };
+    EXPECT_EQ(one("𝜃\u0308"), (Letter{U'θ', true, 0, 2}));
+    EXPECT_EQ(one("ℎ"), (Letter{'h', true, 0, 0}));
+    EXPECT_EQ(one("𝑧"), (Letter{'z', true, 0, 0}));
+    EXPECT_EQ(one("𝛺"), (Letter{U'Ω', true, 0, 0}));
+    EXPECT_EQ(one("₇"), (Letter{'7', false, -1, 0}));
+    EXPECT_EQ(one("⁻"), (Letter{U'−', false, 1, 0}));
+    EXPECT_EQ(letters("τ_{∞}b"), (std::vector<Letter>{{U'τ', false, 0, 0}, {U'∞', false, -1, 0}, {'b', false, 0, 0}}));
+    EXPECT_EQ(letters("a_{b").size(), 4u);  // nothing that ends: as it stands
+    EXPECT_EQ(letters("\xff\xce").size(), 2u);
+    EXPECT_TRUE(letters("\u0307").empty());
 }
 
 TEST(Ticks, AreRoundAndHaveTheFewestDigits) {
@@ -110,7 +128,7 @@ TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
     }
     EXPECT_EQ(figure.panels[0].x.low, 0.0);
     EXPECT_EQ(figure.panels[0].x.high, 20.0);
-    EXPECT_EQ(figure.panels[0].x.label, "t [s]");
+    EXPECT_EQ(figure.panels[0].x.label, "𝑡 (s)");
     EXPECT_EQ(to_text(figure), to_text(compose(trajectory, model->description().views, light_theme(), 2)));
 }
 
@@ -140,7 +158,7 @@ TEST(Composing, AnglesAreShownInDegrees) {
     const std::vector<Sample> samples = plot_samples(trajectory);
     const Panel panel =
         compose(trajectory, samples, PreparedView(*model, model->description().views[0]), light_theme());
-    EXPECT_EQ(panel.y.label, "θ₁ [deg]");
+    EXPECT_EQ(panel.y.label, "𝜃₁ (°)");
     EXPECT_NEAR(panel.curves[0].points[0].y, 30.0, 1e-12);
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
     EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);

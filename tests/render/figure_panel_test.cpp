@@ -97,10 +97,10 @@ TEST(Panels, OfSeveralCurvesHaveALegendAndHues) {
     const Panel panel = Motion(ball(a_view("t", "\"x\", \" y \", \"y'\""))).panel();
     ASSERT_EQ(panel.curves.size(), 6u);
     EXPECT_TRUE(panel.legend);
-    EXPECT_EQ(panel.curves[0].label, "x");
+    EXPECT_EQ(panel.curves[0].label, "𝑥");
     EXPECT_EQ(panel.curves[1].label, "");  // the same quantity in contact
-    EXPECT_EQ(panel.curves[2].label, "y");
-    EXPECT_EQ(panel.curves[4].label, "y\u0307");
+    EXPECT_EQ(panel.curves[2].label, "𝑦");
+    EXPECT_EQ(panel.curves[4].label, "𝑦\u0307");
     EXPECT_EQ(panel.curves[0].stroke.color, panel.curves[1].stroke.color);
     EXPECT_NE(panel.curves[0].stroke.color, panel.curves[2].stroke.color);
 }

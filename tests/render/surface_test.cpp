@@ -44,6 +44,42 @@ TEST(Offscreen, draws_the_same_bytes_every_time) {
     EXPECT_EQ(b.frame(everything, 3), first);
 }
 
+TEST(Offscreen, draws_the_same_bytes_by_osmesa_and_by_egl) {
+    std::vector<Image> images;
+    for (const char* library : {"osmesa", "egl", "osmesa"}) {
+        setenv("ACHILLES_OFFSCREEN", library, 1);
+        SurfaceOptions options = support::options();
+        options.curve_fineness = 2;
+        Offscreen surface(options);
+        images.push_back(surface.frame(everything, 3));
+    }
+    setenv("ACHILLES_OFFSCREEN", "mesa", 1);
+    EXPECT_EQ(complaint([] { Offscreen(support::options()); }), "ACHILLES_OFFSCREEN must be osmesa or egl, not 'mesa'");
+    unsetenv("ACHILLES_OFFSCREEN");
+    EXPECT_EQ(images[0], images[1]);
+    EXPECT_EQ(images[0], images[2]);
+}
+
+TEST(Offscreen, keeps_clear_what_nothing_was_drawn_on) {
+    SurfaceOptions options = support::options(200, 100);
+    options.transparent = true;
+    Offscreen surface(options);
+    const Image image = surface.frame([] {
+        ImGui::GetBackgroundDrawList()->AddRectFilled({0, 0}, {50, 100}, IM_COL32(200, 100, 50, 255));
+        ImGui::GetBackgroundDrawList()->AddRectFilled({50, 0}, {100, 100}, IM_COL32(200, 100, 50, 128));
+    });
+    ASSERT_EQ(image.alpha.size(), 20000u);
+    EXPECT_EQ(image.alpha[10], 255);
+    EXPECT_EQ(image.alpha[60], 128);
+    EXPECT_EQ(image.alpha[150], 0);
+    for (const std::size_t x : {10U, 60U}) {
+        EXPECT_NEAR(image.rgb[3 * x], 200, 1);
+        EXPECT_NEAR(image.rgb[3 * x + 1], 100, 1);
+        EXPECT_NEAR(image.rgb[3 * x + 2], 50, 1);
+    }
+    EXPECT_EQ(png_bytes(image).at(25), 6);  // colour type: RGBA
+}
+
 TEST(Offscreen, draws_the_same_bytes_with_any_number_of_threads) {
     const char* before = std::getenv("LP_NUM_THREADS");
     const std::string kept = before != nullptr ? before : "";

@@ -1,14 +1,14 @@
-// The axes of one panel: how much room they need around the plot area, and the strokes.
+// The axes of one panel: how much room they need around the plot area, and the strokes of box, ticks and labels.
 #pragma once
 
-#include "figure/figure.hpp"
-#include "paint/paint.hpp"
+#include "figure/sheet.hpp"
 
 namespace achilles {
 
 // The lengths a panel is built from, in pixels, all from the text size and the scale.
 struct Metrics {
-    Metrics(const Figure& style, double scale);
+    Metrics(const Figure& style, const Measure& width, double scale);
+    Measure width;
     float text;  // height of a line
     float tick;  // outside the box
     float minor_tick;
@@ -46,9 +46,9 @@ struct PanelMap {
     Point data(const Point& pixel) const { return {x.value(pixel.x), y.value(pixel.y)}; }
 };
 
-void paint_grid(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Metrics& metrics);
+void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& metrics);
 // Box, ticks, all labels and the title, in the room of the margins.
-void paint_axes(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle plot, const Margins& margins,
-                const Metrics& metrics);
+void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& margins,
+              const Metrics& metrics);
 
 }  // namespace achilles

@@ -1,0 +1,210 @@
+#include "figure/axes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace achilles {
+
+namespace {
+
+// A rectangle on whole pixels: sharp, where a smoothed line would be grey.
+void bar(Sheet& sheet, float x, float y, float width, float height, Color color) {
+    sheet.push_back(Fill{{x, y, width, height}, color});
+}
+
+float widest_label(const Axis& axis, const Metrics& m) {
+    float width = 0.0F;
+    for (const Tick& tick : axis.ticks) width = std::max(width, m.width(tick.label, m.text));
+    return width;
+}
+
+bool has_tick_labels(const Axis& axis) {
+    return axis.labelled &&
+           std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
+}
+
+// How near ticks may stand, as a share of the text.
+constexpr float closest_ticks = 0.38F;
+
+// A tick with its place on the screen.
+struct Placed {
+    const Tick* tick;
+    float at;       // the first pixel of its line
+    bool labelled;  // false also where its label would touch another
+};
+
+// Of ticks with labels `length` long only every second, third, ... keeps its label, as room demands; zero always does.
+void drop_labels(std::vector<Placed>& ticks, float length) {
+    std::vector<Placed*> labelled;
+    for (Placed& p : ticks)
+        if (p.labelled) labelled.push_back(&p);
+    float nearest = std::numeric_limits<float>::infinity();
+    std::size_t zero = 0;
+    for (std::size_t i = 0; i < labelled.size(); ++i) {
+        if (i > 0) nearest = std::min(nearest, std::abs(labelled[i]->at - labelled[i - 1]->at));
+        if (labelled[i]->tick->value == 0.0) zero = i;
+    }
+    const auto every = static_cast<std::size_t>(std::clamp(std::ceil(length / std::max(nearest, 1.0F)), 1.0F,
+                                                           std::max(static_cast<float>(labelled.size()), 1.0F)));
+    for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == zero % every;
+}
+
+// Ticks without labels go where they would be a comb.
+void drop_minor(std::vector<Placed>& ticks, float closest) {
+    bool crowded = false;
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+        crowded = crowded || (ticks[i].at - ticks[i - 1].at < closest && ticks[i - 1].at - ticks[i].at < closest);
+    if (!crowded) return;
+    std::erase_if(ticks, [](const Placed& p) { return p.tick->label.empty(); });
+}
+
+// The ticks within the plot's side, which runs from `from` to `to` in pixels.
+// `length`: of the labels along the axis. `closest`: how near ticks may be.
+std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
+                           float closest) {
+    std::vector<Placed> result;
+    for (const Tick& tick : axis.ticks) {
+        const double at = map(tick.value);
+        if (!(at >= from - 0.5 && at <= to + 0.5)) continue;
+        // Next to a corner a tick continues the box, rather than lie beside its line.
+        const auto first = static_cast<float>(std::round(at - line / 2.0));
+        const float snapped = first < from + line ? from - line : first > to - 2.0F * line ? to : first;
+        result.push_back({&tick, snapped, !tick.label.empty()});
+    }
+    drop_labels(result, length);
+    drop_minor(result, closest);
+    return result;
+}
+
+std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
+    return placed(panel.x, PanelMap(panel, plot).x, plot.x, plot.x + plot.width, m.line,
+                  widest_label(panel.x, m) + m.text * 0.7F, m.text * closest_ticks);
+}
+
+std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
+    return placed(panel.y, PanelMap(panel, plot).y, plot.y, plot.y + plot.height, m.line, m.text * 1.2F,
+                  m.text * closest_ticks);
+}
+
+// The size at which a label is at most `room` long.
+float fitting(const std::string& label, const Metrics& m, float room) {
+    const float width = m.width(label, m.text);
+    return width > room ? std::max(m.text * room / width, m.text * 0.5F) : m.text;
+}
+
+void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+           const Metrics& m) {
+    const float bottom = plot.y + plot.height + m.line;
+    const float below = bottom + m.tick + m.gap;
+    for (const Placed& p : ticks_x(panel, plot, m)) {
+        bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
+        if (p.labelled && panel.x.labelled)
+            sheet.push_back(Words{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
+    }
+    if (panel.x.label.empty() || !panel.x.labelled) return;
+    const float size = fitting(panel.x.label, m, plot.width + room.left + room.right);
+    const float half = m.width(panel.x.label, size) / 2.0F;
+    // Centred below the plot, but never beyond the panel.
+    const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
+    const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
+    sheet.push_back(
+        Words{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, panel.x.label, style.ink, size});
+}
+
+void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+           const Metrics& m) {
+    const float left = plot.x - m.line;
+    for (const Placed& p : ticks_y(panel, plot, m)) {
+        const float length = p.labelled ? m.tick : m.minor_tick;
+        bar(sheet, left - length, p.at, length, m.line, style.ink);
+        // Digits have no descenders: their middle is a little above the middle of the line.
+        if (p.labelled && panel.y.labelled)
+            sheet.push_back(Words{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F, p.tick->label,
+                                  style.ink, m.text});
+    }
+    if (panel.y.label.empty() || !panel.y.labelled) return;
+    const float size = fitting(panel.y.label, m, plot.height + room.top);
+    const float half = m.width(panel.y.label, size) / 2.0F;
+    // It ends above the line of the x axis' label.
+    const bool above = panel.x.label.empty() || !panel.x.labelled;
+    const float lowest = plot.y + plot.height + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
+    const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
+    sheet.push_back(Words{plot.x - room.left, at, 0.5F, panel.y.label, style.ink, size, true});
+}
+
+}  // namespace
+
+Metrics::Metrics(const Figure& style, const Measure& measure, double scale_)
+    : width(measure),
+      text(static_cast<float>(std::round(style.text_size * scale_))),
+      tick(static_cast<float>(std::round(5.0 * scale_))),
+      minor_tick(static_cast<float>(std::round(3.0 * scale_))),
+      gap(static_cast<float>(std::round(3.0 * scale_))),
+      line(static_cast<float>(std::max(std::round(scale_), 1.0))),
+      scale(scale_) {}
+
+Margins margins(const Panel& panel, const Metrics& m) {
+    Margins room;
+    room.left = m.line + m.tick;
+    if (has_tick_labels(panel.y)) room.left += m.gap + widest_label(panel.y, m);
+    if (!panel.y.label.empty() && panel.y.labelled) room.left += m.text * 1.1F + 2.0F * m.gap;
+    room.bottom = m.line + m.tick;
+    if (has_tick_labels(panel.x)) room.bottom += m.gap + m.text;
+    if (!panel.x.label.empty() && panel.x.labelled) room.bottom += m.text * 1.1F + m.gap;
+    // The outermost labels stand out by half their size.
+    room.right = std::max(widest_label(panel.x, m) / 2.0F, m.line);
+    room.left = std::max(room.left, room.right);
+    room.top = panel.title.empty() ? m.text * 0.55F : m.text * 1.45F;
+    room.bottom = std::max(room.bottom, m.text * 0.55F);
+    return {std::ceil(room.left), std::ceil(room.right), std::ceil(room.top), std::ceil(room.bottom)};
+}
+
+Margins both(const Margins& a, const Margins& b) {
+    return {std::max(a.left, b.left), std::max(a.right, b.right), std::max(a.top, b.top), std::max(a.bottom, b.bottom)};
+}
+
+AxisMap::AxisMap(const Axis& axis, double from, double to) : logarithmic_(axis.logarithmic), from_(from) {
+    low_ = logarithmic_ ? std::log10(axis.low) : axis.low;
+    factor_ = (to - from) / ((logarithmic_ ? std::log10(axis.high) : axis.high) - low_);
+}
+
+double AxisMap::operator()(double value) const {
+    return from_ + ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
+}
+
+double AxisMap::value(double pixel) const {
+    const double value = low_ + (pixel - from_) / factor_;
+    return logarithmic_ ? std::pow(10.0, value) : value;
+}
+
+PanelMap::PanelMap(const Panel& panel, Rectangle plot)
+    : x(panel.x, plot.x, double{plot.x} + plot.width), y(panel.y, double{plot.y} + plot.height, plot.y) {}
+
+void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    if (style.grid.a == 0) return;
+    // Not beside the box, which has lines of its own.
+    for (const Placed& p : ticks_x(panel, plot, m))
+        if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
+            bar(sheet, p.at, plot.y, m.line, plot.height, style.grid);
+    for (const Placed& p : ticks_y(panel, plot, m))
+        if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
+            bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
+}
+
+void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+              const Metrics& m) {
+    const float width = plot.width + 2.0F * m.line;
+    bar(sheet, plot.x - m.line, plot.y - m.line, width, m.line, style.ink);
+    bar(sheet, plot.x - m.line, plot.y + plot.height, width, m.line, style.ink);
+    bar(sheet, plot.x - m.line, plot.y, m.line, plot.height, style.ink);
+    bar(sheet, plot.x + plot.width, plot.y, m.line, plot.height, style.ink);
+    lay_x(panel, style, sheet, plot, room, m);
+    lay_y(panel, style, sheet, plot, room, m);
+    if (panel.title.empty()) return;
+    const float size = fitting(panel.title, m, plot.width + room.right);
+    sheet.push_back(Words{plot.x - m.line, plot.y - m.line - m.gap - m.text, 0.0F, panel.title, style.ink, size});
+}
+
+}  // namespace achilles

@@ -1,0 +1,291 @@
+#include "figure/layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "figure/axes.hpp"
+
+namespace achilles {
+
+namespace {
+
+Rectangle on_pixels(Rectangle r) {
+    const float x = std::round(r.x), y = std::round(r.y);
+    return {x, y, std::max(std::round(r.x + r.width) - x, 1.0F), std::max(std::round(r.y + r.height) - y, 1.0F)};
+}
+
+// Shrinks the plot area until one unit is the same length on both axes; its middle stays.
+Rectangle with_equal_units(const Panel& panel, Rectangle plot) {
+    const double wide = panel.x.high - panel.x.low, high = panel.y.high - panel.y.low;
+    const double unit = std::min(plot.width / wide, plot.height / high);
+    if (!panel.equal_axes || !(unit > 0.0) || !std::isfinite(unit) || !std::isfinite(high)) return plot;
+    const auto width = static_cast<float>(unit * wide), height = static_cast<float>(unit * high);
+    return on_pixels({plot.x + (plot.width - width) / 2.0F, plot.y + (plot.height - height) / 2.0F, width, height});
+}
+
+void lay_bars(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
+    for (const Point& point : markers.points) {
+        const double x = map.x(point.x);
+        if (!(x >= plot.x && x <= plot.x + plot.width)) continue;
+        const float at = static_cast<float>(std::round(x - m.line / 2.0));
+        sheet.push_back(Fill{{at, plot.y, m.line, plot.height}, markers.fill});
+    }
+}
+
+Mark mark(const Markers& markers, const Point& at, const Metrics& m) {
+    return {markers.shape, at, markers.fill, markers.edge, markers.size * m.scale, m.scale};
+}
+
+void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
+    Point last{std::numeric_limits<double>::infinity(), 0.0};
+    for (const Point& point : markers.points) {
+        const Point at = map(point);
+        // Whole or not at all: half a marker at the rim would be another shape.
+        if (!(at.x >= plot.x && at.x <= plot.x + plot.width && at.y >= plot.y && at.y <= plot.y + plot.height))
+            continue;
+        // Impacts crowd before a Zeno point; what would cover the last one exactly is not drawn again.
+        if (std::hypot(at.x - last.x, at.y - last.y) < 0.05) continue;
+        sheet.push_back(mark(markers, at, m));
+        last = at;
+    }
+}
+
+Stroke scaled(Stroke stroke, double scale) {
+    stroke.width *= scale;
+    for (double& length : stroke.dash) length *= scale;
+    return stroke;
+}
+
+void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    const PanelMap map(panel, plot);
+    for (const Markers& markers : panel.markers)
+        if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
+    for (const Curve& curve : panel.curves) {
+        Path path{{}, scaled(curve.stroke, m.scale), plot};
+        path.points.reserve(curve.points.size());
+        for (const Point& point : curve.points) path.points.push_back(map(point));
+        sheet.push_back(std::move(path));
+    }
+    for (const Markers& markers : panel.markers)
+        if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
+}
+
+std::vector<Key> keys_of(const Panel& panel) {
+    std::vector<Key> keys;
+    for (const Curve& curve : panel.curves)
+        if (!curve.label.empty()) keys.push_back({curve.label, curve.stroke});
+    for (const Markers& markers : panel.markers)
+        if (!markers.label.empty()) keys.push_back({markers.label, markers});
+    return keys;
+}
+
+// The sign of a key in `length` pixels from x on, its middle at height y.
+void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, const Metrics& m) {
+    if (const auto* stroke = std::get_if<Stroke>(&key.sign)) {
+        const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
+        sheet.push_back(Path{{{x, y}, {x + length, y}}, scaled(*stroke, m.scale), around});
+        return;
+    }
+    const Markers& markers = std::get<Markers>(key.sign);
+    if (markers.shape == Markers::Shape::bar)
+        sheet.push_back(
+            Fill{{std::round(x + (length - m.line) / 2.0F), y - m.text * 0.45F, m.line, m.text * 0.9F}, markers.fill});
+    else
+        sheet.push_back(mark(markers, {x + length / 2.0F, y}, m));
+}
+
+// A legend in the corner that the panel names.
+void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    const std::vector<Key> keys = keys_of(panel);
+    if (keys.empty()) return;
+    const float pad = std::round(m.text * 0.45F), inset = std::round(m.text * 0.6F);
+    const float room_x = plot.width - 2.0F * inset, room_y = plot.height - 2.0F * inset;
+    float longest = 0.0F;
+    for (const Key& key : keys) longest = std::max(longest, m.width(key.label, m.text));
+    const auto rows = static_cast<float>(keys.size());
+    const float wanted_x = 3.0F * pad + 2.0F * m.text + longest, wanted_y = 2.0F * pad + rows * 1.3F * m.text;
+    // In a small panel the legend shrinks rather than hide the data, as long as it can be read; without room it goes.
+    constexpr float largest_share = 0.3F, readable_pixels = 11.0F;
+    const float smallest = std::clamp(readable_pixels / m.text, 0.6F, 1.0F);
+    const float share = std::sqrt(largest_share * plot.width * plot.height / (wanted_x * wanted_y));
+    const float zoom = std::min({1.0F, room_x / wanted_x, room_y / wanted_y, std::max(share, smallest)});
+    if (zoom < smallest) return;
+    const float text = m.text * zoom, row = 1.3F * text, sample = 2.0F * text;
+    const Rectangle box =
+        on_pixels({plot.x + inset + static_cast<float>(panel.legend_at[0]) * (room_x - wanted_x * zoom),
+                   plot.y + inset + static_cast<float>(1.0 - panel.legend_at[1]) * (room_y - wanted_y * zoom),
+                   wanted_x * zoom, wanted_y * zoom});
+    sheet.push_back(Fill{box, style.grid});
+    sheet.push_back(Fill{{box.x + m.line, box.y + m.line, box.width - 2.0F * m.line, box.height - 2.0F * m.line},
+                         style.background});
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const float y = box.y + pad * zoom + (static_cast<float>(i) + 0.5F) * row;
+        lay_sign(keys[i], sheet, box.x + pad * zoom, std::round(y), sample, m);
+        sheet.push_back(
+            Words{box.x + 2.0F * pad * zoom + sample, y - text / 2.0F, 0.0F, keys[i].label, style.ink, text});
+    }
+}
+
+// Keys in lines beside one another, as few lines as the room allows, and those about equally long.
+struct KeyLines {
+    KeyLines(const std::vector<Key>& wanted, float room, const Metrics& m) : keys(wanted), lines(fill(room, m)) {
+        for (float narrower = longest() - m.text; narrower > m.text; narrower -= m.text) {
+            const std::vector<Line> even = fill(narrower, m);
+            if (even.size() > lines.size()) break;
+            lines = even;
+        }
+    }
+    float height(const Metrics& m) const { return static_cast<float>(lines.size()) * row(m); }
+    float longest() const {
+        float most = 0.0F;
+        for (const Line& line : lines) most = std::max(most, line.length);
+        return most;
+    }
+    // From the top on; `anchor` 0.5: centred about x, 1: ending there.
+    void lay(Sheet& sheet, float x, float y, float anchor, const Figure& style, const Metrics& m) const {
+        std::size_t next = 0;
+        for (const Line& line : lines) {
+            float at = std::round(x - anchor * line.length);
+            for (std::size_t i = 0; i < line.count; ++i, ++next) {
+                lay_sign(keys[next], sheet, at, std::round(y + row(m) / 2.0F), sign(keys[next], m), m);
+                sheet.push_back(Words{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F, keys[next].label,
+                                      style.ink, m.text});
+                at += sample(keys[next], m) + m.width(keys[next].label, m.text) + between(m);
+            }
+            y += row(m);
+        }
+    }
+
+ private:
+    struct Line {
+        std::size_t count;
+        float length;
+    };
+    // One key after the other, a new line where the room ends; a single key may be longer.
+    std::vector<Line> fill(float room, const Metrics& m) const {
+        std::vector<Line> filled;
+        for (const Key& key : keys) {
+            const float length = sample(key, m) + m.width(key.label, m.text);
+            if (filled.empty() || filled.back().length + between(m) + length > room) filled.push_back({0, 0.0F});
+            Line& line = filled.back();
+            line.length += length + (line.count > 0 ? between(m) : 0.0F);
+            ++line.count;
+        }
+        return filled;
+    }
+    static float sign(const Key& key, const Metrics& m) {
+        return std::round((std::holds_alternative<Stroke>(key.sign) ? 2.2F : 0.8F) * m.text);
+    }
+    static float sample(const Key& key, const Metrics& m) { return sign(key, m) + std::round(0.4F * m.text); }
+    static float between(const Metrics& m) { return std::round(1.4F * m.text); }
+    static float row(const Metrics& m) { return std::round(1.35F * m.text); }
+
+    std::vector<Key> keys;
+    std::vector<Line> lines;
+};
+
+// The legend above the plot, ending at its right side; the title stands to its left where there is room, else above.
+float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
+    if (!panel.legend || !panel.legend_above) return 0.0F;
+    const KeyLines keys(keys_of(panel), plot_width, m);
+    const float title = panel.title.empty() ? 0.0F : m.width(panel.title, m.text) + m.text;
+    const float spare = title + keys.longest() <= plot_width ? m.text * 1.35F : 0.0F;
+    return std::max(keys.height(m) - spare, 0.0F);
+}
+
+// The panel with its plot area given.
+Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+                 const Metrics& m) {
+    const Rectangle inner = with_equal_units(panel, plot);
+    if (style.background.a > 0) sheet.push_back(Fill{inner, style.background});
+    lay_grid(panel, style, sheet, inner, m);
+    lay_data(panel, sheet, inner, m);
+    lay_axes(panel, style, sheet, inner, room, m);
+    if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
+    if (panel.legend && panel.legend_above) {
+        const KeyLines keys(keys_of(panel), inner.width, m);
+        keys.lay(sheet, inner.x + inner.width, inner.y - m.gap - keys.height(m), 1.0F, style, m);
+    }
+    return inner;
+}
+
+// Where the plot areas of a figure go: all of one size, in line, with the room the fullest panel of each column and row
+// needs.
+struct Grid {
+    Grid(const Figure& figure, Rectangle area, const Metrics& m) {
+        const auto columns = static_cast<std::size_t>(std::max(figure.columns, 1));
+        const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
+        across.resize(columns);
+        down.resize(rows);
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const Margins room = margins(figure.panels[i], m);
+            across[i % columns] = both(across[i % columns], room);
+            down[i / columns] = both(down[i / columns], room);
+        }
+        const float pad = std::round(m.text * 0.7F), between = m.text;
+        float width = area.width - 2.0F * pad - between * static_cast<float>(columns - 1);
+        float height = area.height - 2.0F * pad - between * static_cast<float>(rows - 1);
+        for (const Margins& room : across) width -= room.left + room.right;
+        width = std::floor(width / static_cast<float>(columns));
+        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+            const float needed = margins(figure.panels[i], m).top + room_of_legend(figure.panels[i], width, m);
+            down[i / columns].top = std::max(down[i / columns].top, needed);
+        }
+        for (const Margins& room : down) height -= room.top + room.bottom;
+        height = std::floor(height / static_cast<float>(rows));
+        float x = area.x + pad, y = area.y + pad;
+        for (const Margins& room : across) {
+            xs.push_back(x + room.left);
+            x += room.left + width + room.right + between;
+        }
+        for (const Margins& room : down) {
+            ys.push_back(y + room.top);
+            y += room.top + height + room.bottom + between;
+        }
+        size = {0.0F, 0.0F, width, height};
+    }
+    std::vector<Margins> across, down;  // of columns, left and right count; of rows, top and bottom
+    std::vector<float> xs, ys;
+    Rectangle size;
+};
+
+}  // namespace
+
+Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double scale) {
+    Sheet sheet;
+    if (figure.background.a > 0) sheet.push_back(Fill{area, figure.background});
+    if (figure.panels.empty()) return sheet;
+    const Metrics m(figure, width, scale);
+    const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
+    if (!figure.keys.empty()) {
+        const float top = std::round(m.text * 0.5F), height = keys.height(m);
+        keys.lay(sheet, area.x + area.width / 2.0F, area.y + top, 0.5F, figure, m);
+        area.y += top + height;
+        area.height -= top + height;
+    }
+    const Grid grid(figure, area, m);
+    // Too small for anything but labels.
+    if (grid.size.width < m.text || grid.size.height < m.text) return sheet;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        const std::size_t column = i % grid.xs.size(), row = i / grid.xs.size();
+        const Margins room{grid.across[column].left, grid.across[column].right, grid.down[row].top,
+                           grid.down[row].bottom};
+        lay_at(figure.panels[i], figure, sheet,
+               on_pixels({grid.xs[column], grid.ys[row], grid.size.width, grid.size.height}), room, m);
+    }
+    return sheet;
+}
+
+Rectangle layout(const Panel& panel, const Figure& style, const Measure& width, Rectangle area, double scale,
+                 Sheet& sheet) {
+    const Metrics m(style, width, scale);
+    Margins room = margins(panel, m);
+    room.top += room_of_legend(panel, area.width - room.left - room.right, m);
+    const Rectangle plot{area.x + room.left, area.y + room.top, area.width - room.left - room.right,
+                         area.height - room.top - room.bottom};
+    if (plot.width < m.text || plot.height < m.text) return {plot.x, plot.y, 0.0F, 0.0F};
+    return lay_at(panel, style, sheet, on_pixels(plot), room, m);
+}
+
+}  // namespace achilles

@@ -1,0 +1,23 @@
+// A figure for print: the views of a run as lettered panels, with one legend above them all and every axis labelled
+// once.
+#pragma once
+
+#include "figure/compose.hpp"
+
+namespace achilles {
+
+struct PublicationStyle {
+    int columns = 0;           // 0: one for up to three views over the same axis, two up to six, else three
+    bool transparent = false;  // no background
+};
+
+// Throws InputError for a view that cannot be evaluated.
+Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
+
+// Takes the labels off the x axes of every row whose panels all stand on others with the same axes.
+void share_axes(Figure& figure);
+
+// Text and strokes of a figure are made for a page about as wide as this many pixels; --scale 1 is that size.
+constexpr double publication_scale = 1.4;
+
+}  // namespace achilles

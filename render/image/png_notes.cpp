@@ -1,0 +1,123 @@
+#include "image/png_notes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+
+#include "figure/label.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
+constexpr std::size_t header_size = 12 + 13;  // of the first chunk, IHDR, with length, name and check sum
+constexpr std::size_t longest_chunk = 0x7FFFFFFF, longest_keyword = 79;
+
+// CRC-32 as PNG wants it (ISO 3309): polynomial 0xEDB88320, the lowest bit first.
+std::uint32_t check_sum(std::string_view bytes) {
+    static const auto table = [] {
+        std::array<std::uint32_t, 256> made{};
+        for (std::uint32_t n = 0; n < made.size(); ++n) {
+            made[n] = n;
+            for (int bit = 0; bit < 8; ++bit) made[n] = made[n] >> 1 ^ ((made[n] & 1U) != 0 ? 0xEDB88320U : 0U);
+        }
+        return made;
+    }();
+    std::uint32_t sum = 0xFFFFFFFFU;
+    for (const char c : bytes) sum = table[(sum ^ static_cast<unsigned char>(c)) & 0xFFU] ^ sum >> 8;
+    return ~sum;
+}
+
+std::string big_endian(std::uint32_t value) {
+    return {static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+            static_cast<char>(value)};
+}
+
+// At least four bytes are there.
+std::uint32_t big_endian(std::string_view bytes) {
+    std::uint32_t value = 0;
+    for (const char c : bytes.substr(0, 4)) value = value << 8 | static_cast<unsigned char>(c);
+    return value;
+}
+
+bool is_ascii(std::string_view text) {
+    return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+std::string chunk(const Note& note) {
+    const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
+    if (note.keyword.empty() || note.keyword.size() > longest_keyword ||
+        !std::all_of(note.keyword.begin(), note.keyword.end(), is_printable))
+        throw std::runtime_error("'" + note.keyword + "' is no keyword for a note in a PNG file");
+    if (note.text.find('\0') != std::string::npos || !is_utf8(note.text))
+        throw std::runtime_error("only UTF-8 text without zero bytes can stand in a PNG file");
+    const std::string_view zeros("\0\0\0\0\0", 5);
+    // iTXt: keyword, end, not compressed (2 bytes), no language, no translated keyword, text.
+    const std::string body = is_ascii(note.text) ? "tEXt" + note.keyword + std::string(zeros.substr(0, 1)) + note.text
+                                                 : "iTXt" + note.keyword + std::string(zeros) + note.text;
+    if (body.size() - 4 > longest_chunk) throw std::runtime_error("a note is too long for a PNG file");
+    return big_endian(static_cast<std::uint32_t>(body.size() - 4)) + body + big_endian(check_sum(body));
+}
+
+// What stands before the next zero byte, which is taken off together with it.
+std::string_view take_word(std::string_view& bytes) {
+    const std::size_t end = bytes.find('\0');
+    if (end == std::string_view::npos) throw std::runtime_error("the PNG file is damaged: a text chunk has no keyword");
+    const std::string_view word = bytes.substr(0, end);
+    bytes.remove_prefix(end + 1);
+    return word;
+}
+
+std::string utf8_of_latin1(std::string_view text) {
+    std::string result;
+    for (const char c : text) result += utf8(static_cast<unsigned char>(c));
+    return result;
+}
+
+void read_text(std::string_view data, Notes& notes) {
+    const std::string keyword(take_word(data));
+    notes.push_back({keyword, utf8_of_latin1(data)});
+}
+
+void read_international_text(std::string_view data, Notes& notes) {
+    const std::string keyword(take_word(data));
+    if (data.size() < 2) throw std::runtime_error("the PNG file is damaged: a text chunk is too short");
+    const bool compressed = data[0] != 0;
+    data.remove_prefix(2);
+    take_word(data);                                                 // the language
+    take_word(data);                                                 // the keyword in it
+    if (!compressed) notes.push_back({keyword, std::string(data)});  // we write no compressed ones
+}
+
+}  // namespace
+
+std::string with_notes(std::string_view png, const Notes& notes) {
+    const std::size_t begin = signature.size() + header_size;
+    if (png.size() < begin || png.substr(0, signature.size()) != signature)
+        throw std::runtime_error("notes need a PNG file to stand in");
+    std::string result(png.substr(0, begin));
+    for (const Note& note : notes) result += chunk(note);
+    return result.append(png.substr(begin));
+}
+
+Notes png_notes(std::string_view png) {
+    if (png.substr(0, signature.size()) != signature) throw std::runtime_error("this is no PNG file");
+    png.remove_prefix(signature.size());
+    Notes notes;
+    for (;;) {
+        if (png.size() < 12) throw std::runtime_error("the PNG file is cut off");
+        const std::size_t length = big_endian(png);
+        if (length > png.size() - 12) throw std::runtime_error("the PNG file is cut off");
+        const std::string_view body = png.substr(4, 4 + length), name = body.substr(0, 4);
+        if (check_sum(body) != big_endian(png.substr(8 + length)))
+            throw std::runtime_error("the PNG file is damaged: a check sum is wrong");
+        if (name == "IEND") return notes;
+        if (name == "tEXt") read_text(body.substr(4), notes);
+        if (name == "iTXt") read_international_text(body.substr(4), notes);
+        png.remove_prefix(12 + length);
+    }
+}
+
+}  // namespace achilles

@@ -1,0 +1,220 @@
+#include "paint/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include "figure/label.hpp"
+#include "figure/layout.hpp"
+#include "image/xml.hpp"
+#include "paint/font_file.hpp"
+#include "paint/marker.hpp"
+#include "surface/polyline.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Curves keep to this distance, in pixels: finer than any print.
+constexpr double thinning_tolerance = 0.01;
+
+// Two decimals, no trailing zeros, no "-0".
+std::string number(double x) {
+    std::string text = fmt::format("{:.2f}", x);
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text == "-0" ? "0" : text;
+}
+
+std::string color(const char* attribute, Color c) {
+    std::string text = fmt::format(" {}=\"#{:02x}{:02x}{:02x}\"", attribute, c.r, c.g, c.b);
+    if (c.a < 255) text += fmt::format(" {}-opacity=\"{}\"", attribute, number(c.a / 255.0));
+    return text;
+}
+
+// Letters of one kind in a row.
+struct Span {
+    std::string text;
+    bool italic = false;
+    int script = 0;
+    double dx = 0.0;  // before it, from where the last one ended
+    double up = 0.0;  // of its base line
+    bool same_kind(const Letter& letter) const { return italic == letter.italic && script == letter.script; }
+};
+
+// Writes the items of a sheet, one after the other.
+class Writer {
+ public:
+    explicit Writer(const FontFile& font) : font_(font) {}
+
+    void operator()(const Fill& fill) {
+        const Rectangle& r = fill.area;
+        body_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"{}/>\n", number(r.x), number(r.y),
+                             number(r.width), number(r.height), color("fill", fill.color));
+    }
+
+    void operator()(const Path& path) {
+        const Stroke& stroke = path.stroke;
+        if (!(stroke.width > 0.0) || stroke.color.a == 0) return;
+        const std::vector<Point> points = thinned(nearby(path), thinning_tolerance);
+        if (points.empty()) return;
+        body_ += fmt::format("<g clip-path=\"url(#{})\"{} stroke-width=\"{}\">\n", clip(path.clip),
+                             color("stroke", stroke.color), number(stroke.width));
+        double length = 0.0;  // so far, along the curve: dashes do not begin anew after a break
+        for (auto begin = points.begin(); begin != points.end();) {
+            const auto end = std::find_if_not(begin, points.end(), is_finite);
+            if (begin != end) write_piece(begin, end, stroke, length);
+            begin = end == points.end() ? end : end + 1;
+        }
+        body_ += "</g>\n";
+    }
+
+    void operator()(const Mark& mark) {
+        const std::string look =
+            color("fill", mark.fill) +
+            (mark.edge.a > 0 ? color("stroke", mark.edge) + " stroke-width=\"" + number(mark.edge_width) + "\"" : "");
+        if (mark.shape == Markers::Shape::circle) {
+            body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>\n", number(mark.at.x), number(mark.at.y),
+                                 number(mark.size / 2.0), look);
+            return;
+        }
+        body_ += "<path d=\"M";
+        for (const Point& p : corners(mark)) body_ += number(p.x) + "," + number(p.y) + " ";
+        body_ += "Z\"" + look + "/>\n";
+    }
+
+    void operator()(const Words& words) {
+        const std::vector<Letter> line = letters(words.label);
+        if (line.empty()) return;
+        const double em = font_.em() * double{words.size}, base = font_.base() * double{words.size};
+        const char* const anchor = words.anchor == 0.5F ? " text-anchor=\"middle\"" : " text-anchor=\"end\"";
+        const std::string place =
+            words.upwards
+                ? fmt::format("transform=\"translate({} {}) rotate(-90)\"", number(words.x + base), number(words.y))
+                : fmt::format("x=\"{}\" y=\"{}\"", number(words.x), number(words.y + base));
+        body_ += fmt::format("<text {} font-size=\"{}\"{}{}>", place, number(em), words.anchor == 0.0F ? "" : anchor,
+                             color("fill", words.color));
+        write_spans(spans(line, em), em);
+        body_ += "</text>\n";
+    }
+
+    const std::string& body() const { return body_; }
+    std::string clips() const {
+        std::string text;
+        for (const auto& [box, name] : clips_)
+            text += fmt::format("<clipPath id=\"{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n",
+                                name, number(std::get<0>(box)), number(std::get<1>(box)), number(std::get<2>(box)),
+                                number(std::get<3>(box)));
+        return text;
+    }
+
+ private:
+    using Points = std::vector<Point>::const_iterator;
+
+    // Renderers count in single precision: what is far outside is cut away.
+    static std::vector<Point> nearby(const Path& path) {
+        constexpr double far = 1e5;
+        const auto is_near = [](const Point& p) {
+            return !is_finite(p) || (std::abs(p.x) < far && std::abs(p.y) < far);
+        };
+        if (std::all_of(path.points.begin(), path.points.end(), is_near)) return path.points;
+        return cut(path.points, {-far, -far, far, far}, {}, 0.0);
+    }
+
+    void write_piece(Points begin, Points end, const Stroke& stroke, double& length) {
+        body_ += "<path d=\"M";
+        for (Points p = begin; p != end; ++p) body_ += (p == begin ? "" : " ") + number(p->x) + "," + number(p->y);
+        body_ += "\"";
+        if (!stroke.dash.empty()) {
+            // Strokes have round ends, which stick out by half their width: the dashes are that much shorter.
+            body_ += " stroke-dasharray=\"";
+            for (std::size_t i = 0; i < stroke.dash.size(); ++i)
+                body_ += (i == 0 ? "" : ",") +
+                         number(std::max(stroke.dash[i] + (i % 2 == 0 ? -1.0 : 1.0) * stroke.width, 0.0));
+            body_ += fmt::format("\" stroke-dashoffset=\"{}\"", number(length - stroke.width / 2.0));
+        }
+        body_ += "/>\n";
+        for (Points p = begin; p + 1 < end; ++p) length += std::hypot((p + 1)->x - p->x, (p + 1)->y - p->y);
+    }
+
+    const std::string& clip(const Rectangle& r) {
+        std::string& name = clips_[{r.x, r.y, r.width, r.height}];
+        if (name.empty()) name = fmt::format("plot{}", clips_.size());
+        return name;
+    }
+
+    // Dots are letters of their own, put over the middle of the one they belong to.
+    std::vector<Span> spans(const std::vector<Letter>& line, double em) const {
+        std::vector<Span> result;
+        double dx = 0.0;
+        for (const Letter& letter : line) {
+            const double size = letter.script == 0 ? em : em * double{script_size};
+            const double shift = letter.script < 0 ? -double{index_drop} : letter.script > 0 ? double{power_rise} : 0.0;
+            if (result.empty() || !result.back().same_kind(letter) || dx != 0.0)
+                result.push_back({"", letter.italic, letter.script, dx, shift * em / font_.em()});
+            result.back().text += utf8(letter.code);
+            dx = 0.0;
+            if (letter.dots == 0) continue;
+            const char32_t sign = letter.dots == 1 ? 0x02D9 : 0x00A8;
+            const FontFile::Glyph &below = font_.glyph(letter.code), &dot = font_.glyph(sign);
+            const double rise = (below.top - dot.bottom) * size + dot_gap * em;
+            const double lean = letter.italic ? double{italic_slant} * (dot.top * em + rise) : 0.0;
+            const double back = (below.left + below.right) / 2.0 * size + lean - (dot.left + dot.right) / 2.0 * em -
+                                below.advance * size;
+            result.push_back({utf8(sign), false, 0, back, result.back().up + rise});
+            dx = -back - dot.advance * em;
+        }
+        return result;
+    }
+
+    void write_spans(const std::vector<Span>& spans, double em) {
+        double up = 0.0;
+        for (const Span& span : spans) {
+            std::string look;
+            if (span.dx != 0.0) look += fmt::format(" dx=\"{}\"", number(span.dx));
+            if (std::abs(span.up - up) > 1e-9) look += fmt::format(" dy=\"{}\"", number(up - span.up));
+            if (span.script != 0) look += fmt::format(" font-size=\"{}\"", number(em * double{script_size}));
+            if (span.italic) look += " font-style=\"italic\"";
+            up = span.up;
+            body_ += look.empty() ? xml_escaped(span.text)
+                                  : fmt::format("<tspan{}>{}</tspan>", look, xml_escaped(span.text));
+        }
+    }
+
+    static constexpr double dot_gap = 0.08;  // between a letter and its dots, of the em
+
+    const FontFile& font_;
+    std::string body_;
+    std::map<std::tuple<float, float, float, float>, std::string> clips_;
+};
+
+}  // namespace
+
+std::string svg(const Figure& figure, int width, int height, double scale, const std::filesystem::path& fonts,
+                const Notes& notes) {
+    const FontFile font(fonts);
+    const auto measure = [&font](const std::string& label, float size) { return font.width(label, size); };
+    const Rectangle area{0.0F, 0.0F, static_cast<float>(width), static_cast<float>(height)};
+    Writer writer(font);
+    for (const auto& item : layout(figure, measure, area, scale)) std::visit(writer, item);
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n",
+        width, height);
+    for (const Note& note : notes)
+        if (note.keyword == "Title") text += "<title>" + xml_escaped(note.text) + "</title>\n";
+    text += xml_notes(notes);
+    text += "<defs>\n" + writer.clips() + "</defs>\n";
+    text +=
+        "<g font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linecap=\"round\" "
+        "stroke-linejoin=\"round\" xml:space=\"preserve\">\n";
+    return text + writer.body() + "</g>\n</svg>\n";
+}
+
+Notes svg_notes(std::string_view text) { return xml_notes_of(text); }
+
+}  // namespace achilles

@@ -1,0 +1,21 @@
+// A figure as SVG: the same sheet as in a PNG, with text as text. And the notes such a file carries.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "figure/figure.hpp"
+#include "image/note.hpp"
+
+namespace achilles {
+
+// The file's text. `fonts`: the folder of the font that decides how much room a label gets. Throws std::runtime_error
+// if the font is missing, or a note holds what XML cannot (control characters, broken UTF-8).
+std::string svg(const Figure& figure, int width, int height, double scale, const std::filesystem::path& fonts,
+                const Notes& notes);
+
+// The notes that svg() put into a text, in order. Throws std::runtime_error that says what is wrong.
+Notes svg_notes(std::string_view text);
+
+}  // namespace achilles

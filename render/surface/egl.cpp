@@ -1,0 +1,104 @@
+// Offscreen drawing by EGL on Mesa's surfaceless platform, the successor of OSMesa. The only file that includes EGL.
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <dlfcn.h>
+
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "surface/memory_context.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Loaded by hand like OSMesa: a machine without it gets a sentence, and the window chooses its own.
+struct Egl {
+    decltype(&eglGetProcAddress) address;
+    decltype(&eglInitialize) initialize;
+    decltype(&eglBindAPI) bind_api;
+    decltype(&eglCreateContext) create_context;
+    decltype(&eglDestroyContext) destroy_context;
+    decltype(&eglMakeCurrent) make_current;
+    EGLDisplay display = EGL_NO_DISPLAY;
+};
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+    function = reinterpret_cast<Function>(dlsym(library, name));
+    if (function == nullptr) throw std::runtime_error(std::string("libEGL.so.1 lacks ") + name);
+}
+
+// A variable of the environment as long as this lives; one that the user has set stays.
+class Variable {
+ public:
+    Variable(const char* name, const char* value) : name_(name), ours_(std::getenv(name) == nullptr) {
+        if (ours_) setenv(name, value, 0);
+    }
+    ~Variable() {
+        if (ours_) unsetenv(name_);
+    }
+    Variable(const Variable&) = delete;
+    Variable& operator=(const Variable&) = delete;
+
+ private:
+    const char* name_;
+    bool ours_;
+};
+
+const Egl& egl() {
+    static const Egl loaded = [] {
+        void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);  // never closed, as OSMesa
+        if (library == nullptr) throw std::runtime_error("libEGL.so.1 is missing");
+        Egl egl{};
+        find(library, "eglGetProcAddress", egl.address);
+        find(library, "eglInitialize", egl.initialize);
+        find(library, "eglBindAPI", egl.bind_api);
+        find(library, "eglCreateContext", egl.create_context);
+        find(library, "eglDestroyContext", egl.destroy_context);
+        find(library, "eglMakeCurrent", egl.make_current);
+        const auto display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.address("eglGetPlatformDisplayEXT"));
+        if (display == nullptr) throw std::runtime_error("libEGL.so.1 knows no platforms");
+        // A graphics card would draw other bytes.
+        const Variable software("LIBGL_ALWAYS_SOFTWARE", "true");
+        egl.display = display(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+        if (egl.display == EGL_NO_DISPLAY || egl.initialize(egl.display, nullptr, nullptr) == EGL_FALSE)
+            throw std::runtime_error("libEGL.so.1 cannot draw without a surface");
+        return egl;
+    }();
+    return loaded;
+}
+
+}  // namespace
+
+MemoryContext egl_context() {
+    const Egl& library = egl();
+    constexpr std::array<EGLint, 7> attributes{
+        EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    EGLContext made = EGL_NO_CONTEXT;
+    if (library.bind_api(EGL_OPENGL_API) == EGL_TRUE)
+        made = library.create_context(library.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    if (made == EGL_NO_CONTEXT) throw std::runtime_error("libEGL.so.1 cannot make an OpenGL 3.3 context");
+    const auto bind = [&library](EGLContext context) {
+        library.bind_api(EGL_OPENGL_API);  // of this thread
+        if (library.make_current(library.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
+            throw std::runtime_error("libEGL.so.1 cannot use its OpenGL context in this thread");
+    };
+    MemoryContext context;
+    context.owned =
+        std::shared_ptr<void>(made, [&library](void* ended) { library.destroy_context(library.display, ended); });
+    context.make_current = [bind, made] { bind(made); };
+    // Must not throw: it ends scopes. What cannot be released was not ours.
+    context.release = [&library] {
+        library.bind_api(EGL_OPENGL_API);
+        library.make_current(library.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    };
+    context.address = [&library](const char* name) { return reinterpret_cast<void*>(library.address(name)); };
+    return context;
+}
+
+}  // namespace achilles

@@ -1,0 +1,21 @@
+// A context of OpenGL 3.3 core that draws in memory, by Mesa's software renderer: as much of one as Offscreen needs.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "surface/gl.hpp"
+
+namespace achilles {
+
+struct MemoryContext {
+    std::shared_ptr<void> owned;                  // the context ends with it
+    std::function<void()> make_current, release;  // current for the calling thread, and no more
+    AddressFunction address;
+};
+
+// All throw std::runtime_error that names the library if it is missing, or what else is.
+MemoryContext os_mesa_context();  // by libOSMesa (offscreen.cpp)
+MemoryContext egl_context();      // by libEGL without a surface (egl.cpp)
+
+}  // namespace achilles

@@ -1,0 +1,263 @@
+// Pictures that know where they come from: made again from what they carry, whatever became of the files.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "app/program.hpp"
+#include "image/image.hpp"
+#include "image/png_notes.hpp"
+#include "origin.hpp"
+#include "paint/svg.hpp"
+
+namespace achilles::test {
+namespace {
+
+// A ball on a floor, with what could get lost on the way: carriage returns, letters beyond Latin-1, marks of XML.
+const std::string drop =
+    "title = \"Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \\\"so\\\"\"\r\n# ]]> 'x'\r\n"
+    "[[coordinate]]\nname = \"y\"\nstart = 1.0\nunit = \"m\"\n[[parameter]]\nname = \"g\"\nvalue = 9.81\n"
+    "[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"g*y\"\n[[constraint]]\ngap = \"y\"\nrestitution = 0.5\n"
+    "[run]\nend_time = 5.0\n";
+
+const std::string arguments = "figure ./drop.toml --set g=3 --set \"y'=0.5\" --size 400x300 --out ";
+
+TEST(Origin, ACommandLineKeepsItsWords) {
+    const std::vector<std::string> words{"figure", "a b'c.toml", "--out",   "x.png", "--set",     "x'=1.5",
+                                         "",       "--size=3x4", "--out=y", "a\nb",  "\xCE\xB8=1"};
+    const std::string text = command_line(words);
+    EXPECT_EQ(text, "achilles figure 'a b'\\''c.toml' --set 'x'\\''=1.5' '' --size=3x4 'a\nb' '\xCE\xB8=1'");
+    EXPECT_EQ(words_of(text), (std::vector<std::string>{"figure", "a b'c.toml", "--set", "x'=1.5", "", "--size=3x4",
+                                                        "a\nb", "\xCE\xB8=1"}));
+    EXPECT_EQ(command_line({"figure", "--", "--out"}), "achilles figure -- --out");
+    for (const char* damaged : {"", "rm -rf", "achilles 'a", "achilles  a", "achilles a'b'", "achilles $(x)"})
+        EXPECT_THROW(words_of(damaged), std::runtime_error) << damaged;
+}
+
+class Reproduced : public testing::TestWithParam<std::string> {};
+
+TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    const std::string picture = "picture." + GetParam();
+    ASSERT_EQ(folder.run(arguments + picture).status, 0);
+    const std::string bytes = content(folder.path() / picture);
+
+    const Origin origin = origin_of(bytes);
+    EXPECT_EQ(origin.software, "Achilles 0.1.0");
+    EXPECT_EQ(origin.command, "achilles figure ./drop.toml --set g=3 --set 'y'\\''=0.5' --size 400x300");
+    ASSERT_EQ(origin.sources.size(), 1u);
+    EXPECT_EQ(origin.sources[0].name, "./drop.toml");
+    EXPECT_EQ(origin.sources[0].text, drop);
+
+    folder.put("drop.toml", "title = \"another\"\n");
+    const Answer altered = folder.run("reproduce " + picture + " --out again");
+    EXPECT_EQ(altered.status, 0) << altered.err;
+    EXPECT_EQ(altered.out, origin.command + "\n");
+    EXPECT_EQ(content(folder.path() / "again"), bytes);
+    std::filesystem::remove(folder.path() / "drop.toml");
+    EXPECT_EQ(folder.run("reproduce " + picture + " --out -").out, bytes);
+    const Answer compared = folder.run("reproduce " + picture);
+    EXPECT_EQ(compared.status, 0) << compared.err;
+    EXPECT_EQ(compared.err, "");
+    EXPECT_EQ(folder.files().size(), 2u);
+}
+
+TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    ASSERT_EQ(folder.run(arguments + "a." + GetParam()).status, 0);
+    const std::string bytes = content(folder.path() / ("a." + GetParam()));
+    std::string all;
+    for (const Note& note : is_png(bytes) ? png_notes(bytes) : svg_notes(bytes))
+        all += note.keyword + ": " + note.text + "\n";
+    for (const char* part : {"Title: Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \"so\"\n", "Software: Achilles 0.1.0\n",
+                             "Achilles Parameters: g = 3, y(0) = 1, y'(0) = 0.5\n",
+                             "Achilles Options: tolerance 1e-10, method dopri5, end time 5, ",
+                             "Achilles Certificates: Zeno point at t = ", ": tau_inf in [", "outcome: end time"})
+        EXPECT_NE(all.find(part), std::string::npos) << part << all;
+}
+
+TEST_P(Reproduced, ADifferenceIsTold) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    const std::string picture = "a." + GetParam();
+    ASSERT_EQ(folder.run(arguments + picture).status, 0);
+    const std::string bytes = content(folder.path() / picture);
+    if (is_png(bytes)) {
+        // Another version, and check sums that are right.
+        Notes notes = png_notes(bytes);
+        notes[1].text = "Achilles 0.0.9";
+        folder.put(picture, with_notes(bytes.substr(0, 33) + bytes.substr(bytes.find("IDAT") - 4), notes));
+    } else {
+        std::string other = bytes;
+        other.replace(other.find("Achilles 0.1.0"), 14, "Achilles 0.0.9");
+        folder.put(picture, other);
+    }
+    const Answer answer = folder.run("reproduce " + picture + " --out again");
+    EXPECT_EQ(answer.status, 1);
+    EXPECT_EQ(answer.err,
+              "achilles: " + picture +
+                  ": made again it has other bytes (it was made by Achilles 0.0.9, this is Achilles 0.1.0)\n");
+    EXPECT_EQ(content(folder.path() / "again"), bytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Origin, Reproduced, testing::Values("png", "svg"));
+
+TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
+    const Folder folder;
+    ASSERT_EQ(folder.run("paper --scale 0.5").status, 0);
+    folder.put("drop.toml", drop);
+    folder.put("tour.journal",
+               "open ./drop.toml\r\nset g 2 # Gr\xC3\xB6\xC3\x9F"
+               "e\nopen nowhere\nopen none.toml\nseek 0.4\n");
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
+    std::filesystem::remove(folder.path() / "drop.toml");
+    std::filesystem::remove(folder.path() / "tour.journal");
+    std::filesystem::create_directory(folder.path() / "assets");
+    const auto fonts = std::filesystem::path(ACHILLES_BINARY_DIR) / "assets/fonts";
+    std::filesystem::create_directory_symlink(fonts, folder.path() / "assets/fonts");
+    for (const std::string picture : {"achilles-paper/fig4d.png", "achilles-paper/fig4.png", "s.png"}) {
+        // Assets without systems: nothing is left to read but the picture.
+        const Answer answer = folder.run("reproduce " + picture + " --out again.png", "ACHILLES_ASSETS=assets");
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        EXPECT_EQ(content(folder.path() / "again.png"), content(folder.path() / picture)) << picture;
+    }
+    EXPECT_EQ(folder.run("reproduce achilles-paper/fig4.png").out, "achilles paper --scale 0.5\n");
+}
+
+// A picture may come from anybody: what its journal saves is not saved again.
+TEST(Reproduce, AJournalThatSavesWritesNothing) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    folder.put("other.toml", "mine");
+    folder.put("tour.journal",
+               "open ./drop.toml\nopen drop.toml\nsave copy.toml\nsave other.toml overwrite\nopen copy.toml\n");
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
+    EXPECT_EQ(content(folder.path() / "other.toml"), drop);
+    folder.put("other.toml", "mine");
+    std::filesystem::remove(folder.path() / "copy.toml");
+    const Answer answer = folder.run("reproduce s.png");
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    EXPECT_EQ(content(folder.path() / "other.toml"), "mine");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "copy.toml"));
+}
+
+TEST(Reproduce, ARunThatStoppedEarlyIsThatAgain) {
+    const Folder folder;
+    ASSERT_EQ(folder.run("figure ball_on_sine --max-impacts 3 --out a.svg").status, 3);
+    EXPECT_EQ(folder.run("reproduce a.svg").status, 3);
+}
+
+// Whatever the file holds: status 2, its name, one sentence, nothing written.
+TEST(Reproduce, RefusesWhatItCannotTrust) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
+    ASSERT_EQ(folder.run(arguments + "a.svg").status, 0);
+    const std::string png = content(folder.path() / "a.png"), svg = content(folder.path() / "a.svg");
+    const std::string bare = png.substr(0, 33) + png.substr(png.find("IDAT") - 4);
+    std::string flipped = png;
+    flipped[200] = static_cast<char>(flipped[200] ^ 1);
+    const auto with = [&](const Notes& notes) { return with_notes(bare, notes); };
+    const Note command{"Achilles Command", "achilles figure ./drop.toml"};
+    const std::pair<std::string, std::string> cases[] = {
+        {"", "x: this is neither a PNG nor an SVG file\n"},
+        {"GIF89a", "x: this is neither a PNG nor an SVG file\n"},
+        {png.substr(0, 9000), "x: the PNG file is cut off\n"},
+        {png.substr(0, 5), "x: this is no PNG file\n"},
+        {flipped, "x: the PNG file is damaged: a check sum is wrong\n"},
+        {bare, "x: this picture does not tell where it comes from\n"},
+        {"<svg/>", "x: this picture does not tell where it comes from\n"},
+        {svg.substr(0, 1200), "x: its notes are cut off\n"},
+        {with({{"Achilles Command", "rm -rf /"}}), "x: its origin names no command of achilles\n"},
+        {with({{"Achilles Command", "achilles list"}}),
+         "x: its command cannot be run here: A subcommand is required\nachilles list\n"},
+        {with({{"Achilles Command", "achilles reproduce a.png"}}),
+         "x: its command cannot be run here: A subcommand is required\nachilles reproduce a.png\n"},
+        {with({{"Achilles Command", "achilles figure 'a"}}),
+         "x: its origin is damaged: a word without end or beginning\n"},
+        {with({{"Achilles Command", "achilles figure ./drop.toml --out=b.png"}}),
+         "x: its command cannot be run here: --out: At Most 1 required but rec"},
+        {with({command}), "./drop.toml: the picture does not carry this file\nits origin is incomplete\n"},
+        {with({command, {"Achilles System", "./drop.toml title = 1"}}),
+         "x: its origin is damaged: a file without a name\n"},
+        {with({command, {"Achilles System", "./drop.toml\ntitle = \"x\""}}), "./drop.toml:1"},
+    };
+    for (const auto& [bytes, message] : cases) {
+        folder.put("x", bytes);
+        const Answer answer = folder.run("reproduce x --out again.png");
+        EXPECT_EQ(answer.status, 2) << message;
+        EXPECT_EQ(answer.err.substr(0, message.size()), message);
+        EXPECT_EQ(answer.out, "");
+        EXPECT_EQ(folder.files().size(), 4u) << message;
+    }
+    EXPECT_EQ(folder.run("reproduce none.png").err, "none.png: there is no such file\n");
+    EXPECT_EQ(folder.run("reproduce a.png --out none/a.png").status, 2);
+}
+
+TEST(Figure, RefusalsAreOneMessageAndLeaveNothing) {
+    const Folder folder;
+    const std::pair<std::string, std::string> cases[] = {
+        {"figure ball_on_sine --out a.jpg",
+         "--out a.jpg: this name says neither PNG nor SVG\nend it in .png or .svg, or add --format png or --format "
+         "svg\n"},
+        {"figure ball_on_sine --out a.png --view heigt",
+         "--view heigt: this system has no view 'heigt'; did you mean 'height'?\nits views are: horizontal, height, "
+         "gap, path, horizontal rate, contact force\n"},
+        {"figure ball_on_sine --out none/a.png", "none/a.png: the file cannot be written: No such file or directory\n"},
+        {"figure ball_on_sine --out a.svg --columns 0", "--columns 0: the panels stand in 1 to 20 columns\n"},
+        {"figure ball_on_sine --out /dev/full --format svg",
+         "/dev/full: the file cannot be written: No space left on device\n"},
+    };
+    for (const auto& [command, message] : cases) {
+        const Answer answer = folder.run(command);
+        EXPECT_EQ(answer.status, 2) << command;
+        EXPECT_EQ(answer.err, message);
+        EXPECT_TRUE(folder.files().empty());
+    }
+}
+
+TEST(Figure, IsOfTheSizeAskedForAndGoesToStandardOutput) {
+    const Folder folder;
+    ASSERT_EQ(folder.run("figure falling_rod --size 300x200 --transparent --out a.png").status, 0);
+    EXPECT_EQ(read_png(folder.path() / "a.png").width, 300);
+    EXPECT_EQ(folder.run("figure falling_rod --size 300x200 --transparent --out -").out,
+              content(folder.path() / "a.png"));
+    EXPECT_EQ(folder.run("figure falling_rod --view angle --format svg --out -").out.rfind("<?xml", 0), 0u);
+}
+
+// Libraries that are not there: the search path leads to empty files of their names first.
+TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
+    const Folder folder, without_first, without_both;
+    without_first.put("libOSMesa.so.8", "");
+    without_both.put("libOSMesa.so.8", "");
+    without_both.put("libEGL.so.1", "");
+    const std::string command = "figure ball_on_sine --size 600x400 --out ";
+    const auto hiding = [](const Folder& hidden) { return "LD_LIBRARY_PATH='" + hidden.path().string() + "'"; };
+    ASSERT_EQ(folder.run(command + "a.png").status, 0);
+    const Answer second = folder.run(command + "b.png", hiding(without_first));
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_EQ(content(folder.path() / "a.png"), content(folder.path() / "b.png"));
+    EXPECT_EQ(folder.run(command + "c.png", hiding(without_first) + " ACHILLES_OFFSCREEN=osmesa").status, 2);
+    const Answer neither = folder.run(command + "c.png", hiding(without_both));
+    EXPECT_EQ(neither.status, 2);
+    EXPECT_EQ(
+        neither.err,
+        "achilles: drawing without a window needs OSMesa or EGL, but libOSMesa.so.8 is missing, and libEGL.so.1 is "
+        "missing\nthe package libosmesa6 has the first, libegl1 with libgl1-mesa-dri the second\n");
+    EXPECT_EQ(folder.run(command + "c.svg", hiding(without_both)).status, 0);  // needs neither
+    EXPECT_EQ(folder.files().size(), 3u);
+}
+
+TEST(Figure, TooLittleMemoryIsAMessage) {
+    const Folder folder;
+    const Answer answer =
+        folder.run("figure ball_on_sine --view gap --size 16384x16384 --out a.png", "ulimit -v 1200000;");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_NE(answer.err.find("achilles: "), std::string::npos) << answer.err;
+    EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+    EXPECT_TRUE(folder.files().empty());
+}
+
+}  // namespace
+}  // namespace achilles::test

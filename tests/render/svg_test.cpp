@@ -1,0 +1,140 @@
+#include "paint/svg.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "image/xml.hpp"
+#include "paint/paint.hpp"
+#include "render/samples.hpp"
+#include "render/support.hpp"
+
+namespace achilles {
+namespace {
+
+const std::filesystem::path fonts = ACHILLES_BINARY_DIR "/assets/fonts";
+
+const Notes some_notes{{"Title", "θ & <friends>"}, {"Achilles Command", "achilles figure 'a \"b\".toml'\r\n\t]]>"}};
+
+std::string sample(int panels = 4) { return svg(samples::figure(panels), 900, 600, 1.0, fonts, some_notes); }
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+}
+
+// A file with this text, and the status of a shell command in which %s stands for its name.
+int status_of(const std::string& command, const std::filesystem::path& file, const std::string& text) {
+    std::ofstream(file, std::ios::binary) << text;
+    std::string full = command;
+    for (std::size_t at = full.find("%s"); at != std::string::npos; at = full.find("%s"))
+        full.replace(at, 2, file.string());
+    const int status = std::system(full.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(Svg, is_valid_xml) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "achilles_valid.svg";
+    EXPECT_EQ(status_of("xmllint --noout %s", file, sample()), 0);
+    EXPECT_NE(status_of("xmllint --noout %s 2>/dev/null", file, sample().substr(0, 20000)), 0);
+    std::filesystem::remove(file);
+}
+
+TEST(Svg, has_text_as_text) {
+    const std::string text = sample();
+    // Theta with its index, lowered by 0.13 of the line and set at 0.72 of its size.
+    EXPECT_NE(text.find(">θ<tspan dy=\"1.82\" font-size=\"8.66\">1</tspan><tspan dy=\"-1.82\"> [°]</tspan></text>"),
+              std::string::npos);
+    // A dot of its own over theta, and the way back.
+    EXPECT_NE(text.find(">θ<tspan dx=\""), std::string::npos);
+    EXPECT_EQ(count(text, "˙"), 1u);
+    EXPECT_EQ(count(text, "¨"), 1u);
+    EXPECT_EQ(count(text, "<text "), count(text, "</text>"));
+    EXPECT_NE(text.find("stroke-dasharray=\"5,6\""), std::string::npos);  // 7 on, 4 off, at width 2 with round ends
+    EXPECT_EQ(text.find("nan"), std::string::npos);
+    EXPECT_EQ(text.find("inf"), std::string::npos);
+}
+
+TEST(Svg, keeps_curves_within_a_hundredth_and_small) {
+    Figure figure = samples::figure(1);
+    Curve& curve = figure.panels[0].curves[0];
+    curve.points.clear();
+    for (int i = 0; i <= 200000; ++i) curve.points.push_back({i * 2.5e-5, 1.0 + std::sin(i * 1e-4)});
+    EXPECT_LT(svg(figure, 900, 600, 1.0, fonts, {}).size(), 30000u);
+}
+
+// Everything but words: glyphs are rasterised differently, which alone scores 0.16. What the words are is tested above.
+Figure without_words(Figure figure) {
+    for (Panel& panel : figure.panels) {
+        panel.title.clear();
+        for (Axis* axis : {&panel.x, &panel.y}) {
+            axis->label.clear();
+            for (Tick& tick : axis->ticks) tick.label.clear();
+        }
+        for (Curve& curve : panel.curves) curve.label.clear();
+        for (Markers& markers : panel.markers) markers.label.clear();
+    }
+    return figure;
+}
+
+// librsvg draws what we draw ourselves.
+TEST(Svg, looks_like_the_png) {
+    const auto file = std::filesystem::path(testing::TempDir()) / "achilles_look.svg";
+    const auto rendered = [&](const Figure& figure) {
+        const std::string text = svg(figure, 900, 600, 1.0, fonts, {});
+        EXPECT_EQ(status_of("rsvg-convert %s -o %s.png", file, text), 0);
+        return read_png(file.string() + ".png");
+    };
+    SurfaceOptions options = support::options(900, 600);
+    options.curve_fineness = 2;
+    Offscreen surface(options);
+    for (const int panels : {1, 2, 4}) {
+        const Figure figure = without_words(samples::figure(panels));
+        const Image ours = surface.frame([&] { paint(figure, ImGui::GetBackgroundDrawList(), {0, 0, 900, 600}); });
+        const double distance = worst_tile(rendered(figure), ours);
+        EXPECT_LT(distance, 0.015) << panels;
+        Figure lie = figure;
+        for (Point& p : lie.panels[0].curves[0].points) p.y += 0.01;
+        EXPECT_GT(worst_tile(rendered(lie), ours), 0.02) << panels;
+    }
+    std::filesystem::remove(file);
+    std::filesystem::remove(file.string() + ".png");
+}
+
+TEST(Svg, carries_notes) {
+    EXPECT_EQ(svg_notes(sample()), some_notes);
+    EXPECT_TRUE(svg_notes("<svg/>").empty());
+    EXPECT_TRUE(svg_notes("").empty());
+    for (const char* text : {"a\x01", "\xff", "\xed\xa0\x80", "\xc0\x80"})
+        EXPECT_THROW(xml_escaped(text), std::runtime_error) << text;
+}
+
+TEST(Svg, damaged_notes_are_refused_wherever_they_end) {
+    const std::string whole = xml_notes(some_notes);
+    const std::size_t first_line = whole.find('\n') + 1;
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        if (size < first_line)
+            EXPECT_TRUE(xml_notes_of(whole.substr(0, size)).empty()) << size;
+        else
+            EXPECT_THROW(xml_notes_of(whole.substr(0, size)), std::runtime_error) << size;
+    }
+    std::string unknown = whole;
+    unknown.replace(unknown.find("&amp;"), 5, "&bad;");
+    EXPECT_THROW(xml_notes_of(unknown), std::runtime_error);
+}
+
+TEST(Svg, survives_figures_that_make_no_sense) {
+    Figure nothing, empty = samples::figure(2);
+    nothing.columns = 0;
+    empty.panels[0].x.low = empty.panels[0].x.high = 1.0;
+    empty.panels[1].y.low = std::numeric_limits<double>::quiet_NaN();
+    for (const Figure& figure : {nothing, empty, samples::figure(6)})
+        for (const int size : {1, 60, 300})
+            EXPECT_EQ(svg(figure, size, size, 1.0, fonts, {}).find("nan"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace achilles
