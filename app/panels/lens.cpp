@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paint/axes.hpp"
+#include "figure/axes.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
