@@ -1,8 +1,12 @@
-// An expression as text that parse() reads back.
+// An expression as text that parse() reads back, or as LaTeX.
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 #include "expression/function_names.hpp"
 #include "expression/graph.hpp"
+#include "expression/notation.hpp"
 
 namespace achilles {
 
@@ -10,71 +14,172 @@ namespace {
 
 using Op = Operation;
 
-// How tightly a printed node holds together: sums 1, products 2, signs 3, powers 4, atoms 5.
-struct Printed {
-    std::string text;
-    int binding = 5;
-};
+constexpr bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-std::string inside(const Printed& part, int least) {
-    return part.binding < least ? fmt::format("({})", part.text) : part.text;
+constexpr std::array<std::string_view, 34> greek{
+    "alpha", "beta",  "gamma",  "delta", "epsilon", "zeta",  "eta",     "theta", "iota", "kappa", "lambda", "mu",
+    "nu",    "xi",    "pi",     "rho",   "sigma",   "tau",   "upsilon", "phi",   "chi",  "psi",   "omega",  "Gamma",
+    "Delta", "Theta", "Lambda", "Xi",    "Pi",      "Sigma", "Upsilon", "Phi",   "Psi",  "Omega"};
+
+// One run of letters: a Greek letter by its name, one letter as it is, a word upright.
+std::string latex_word(std::string_view word) {
+    if (std::find(greek.begin(), greek.end(), word) != greek.end()) return fmt::format("\\{}", word);
+    return word.size() <= 1 ? std::string(word) : fmt::format("\\mathit{{{}}}", word);
 }
 
-Printed print_number(const Rational& value) {
-    const bool fraction = boost::multiprecision::denominator(value) != 1;
-    return {value.str(), value < 0 ? 1 : fraction ? 2 : 5};
-}
-
-Printed print_node(Op operation, int exponent, const Printed& a, const Printed& b) {
-    switch (operation) {
-        case Op::add:
-            return {fmt::format("{} + {}", a.text, inside(b, 2)), 1};
-        case Op::subtract:
-            return {fmt::format("{} - {}", a.text, inside(b, 2)), 1};
-        case Op::multiply:
-            return {fmt::format("{}*{}", inside(a, 2), inside(b, 3)), 2};
-        case Op::divide:
-            return {fmt::format("{}/{}", inside(a, 2), inside(b, 4)), 2};
-        case Op::negate:
-            return {fmt::format("-{}", inside(a, 3)), 1};
-        case Op::power:
-            return {exponent < 0 ? fmt::format("{}^({})", inside(a, 5), exponent)
-                                 : fmt::format("{}^{}", inside(a, 5), exponent),
-                    4};
-        case Op::real_power:
-            return {fmt::format("{}^{}", inside(a, 5), inside(b, 5)), 4};
-        default:
-            break;
+// theta1 is \theta_{1}, m_t is m_{t}, x' is \dot{x}.
+std::string latex_name(std::string_view name) {
+    const std::size_t primes = name.size() - std::min(name.find('\''), name.size());
+    name.remove_suffix(primes);
+    std::string base, subscript;
+    for (std::size_t at = 0; at < name.size();) {
+        std::size_t end = at;
+        while (end < name.size() && is_letter(name[end]) == is_letter(name[at]) && name[end] != '_') ++end;
+        const std::string_view part = name.substr(at, end - at);
+        if (base.empty())
+            base = latex_word(part);
+        else if (!part.empty())
+            subscript += fmt::format("{}{}", subscript.empty() ? "" : ",", latex_word(part));
+        at = std::max(end, at + 1);
     }
-    for (const auto& [name, function] : functions)
-        if (function == operation) return {fmt::format("{}({})", name, a.text), 5};
-    return {};
+    if (primes > 0) base = fmt::format("\\{}{{{}}}", primes == 1 ? "dot" : "ddot", base);
+    return subscript.empty() ? base : fmt::format("{}_{{{}}}", base, subscript);
 }
+
+std::string latex_function(Op function, std::string_view name) {
+    switch (function) {
+        case Op::asin:
+        case Op::acos:
+        case Op::atan:
+            return fmt::format("\\arc{}", name.substr(1));
+        default:
+            return fmt::format("\\{}", name);
+    }
+}
+
+bool starts_with_digit(const std::string& text) { return !text.empty() && is_digit(text.front()); }
 
 }  // namespace
 
-std::string to_text(Expression expression, std::span<const std::string> names) {
+std::string inside(const Written& part, int least, Notation notation) {
+    if (part.binding >= least) return part.text;
+    const bool tall = notation == Notation::latex && part.text.find("\\frac") != std::string::npos;
+    return tall ? fmt::format("\\left({}\\right)", part.text) : fmt::format("({})", part.text);
+}
+
+Written write_number(const boost::multiprecision::cpp_rational& value, Notation notation) {
+    const auto top = numerator(value), bottom = denominator(value);
+    if (notation == Notation::text || bottom == 1) return {value.str(), value < 0 ? 1 : bottom != 1 ? 2 : 5, {}};
+    return {fmt::format("{}\\tfrac{{{}}}{{{}}}", value < 0 ? "-" : "", boost::multiprecision::cpp_int(abs(top)).str(),
+                        bottom.str()),
+            value < 0 ? 1 : 3,
+            {}};
+}
+
+Written write_name(std::string_view name, Notation notation) {
+    return {notation == Notation::text ? std::string(name) : latex_name(name), 5, {}};
+}
+
+Written write_sum(const Written& a, bool minus, const Written& b, Notation notation) {
+    return {fmt::format("{} {} {}", a.text, minus ? '-' : '+', inside(b, 2, notation)), 1, {}};
+}
+
+Written write_negated(const Written& a, Notation notation) {
+    return {fmt::format("-{}", inside(a, 3, notation)), 1, {}};
+}
+
+Written write_product(const Written& a, const Written& b, Notation notation) {
+    const std::string left = inside(a, 2, notation), right = inside(b, 3, notation);
+    if (notation == Notation::text) return {fmt::format("{}*{}", left, right), 2, {}};
+    return {fmt::format("{}{}{}", left, starts_with_digit(right) ? " \\cdot " : " ", right), 2, {}};
+}
+
+Written write_quotient(const Written& a, const Written& b, Notation notation) {
+    if (notation == Notation::latex) return {fmt::format("\\frac{{{}}}{{{}}}", a.text, b.text), 3, {}};
+    return {fmt::format("{}/{}", inside(a, 2, notation), inside(b, 4, notation)), 2, {}};
+}
+
+Written write_power(const Written& base, int exponent, Notation notation) {
+    if (notation == Notation::text)
+        return {
+            fmt::format(fmt::runtime(exponent < 0 ? "{}^({})" : "{}^{}"), inside(base, 5, notation), exponent), 4, {}};
+    if (base.head.empty() || exponent < 0) {
+        const std::string text = base.head.empty() ? inside(base, 5, notation) : fmt::format("({})", base.text);
+        return {fmt::format("{}^{{{}}}", text, exponent), 4, {}};
+    }
+    return {fmt::format("{}^{{{}}}{}", base.head, exponent, base.text.substr(base.head.size())), 4, {}};
+}
+
+Written write_real_power(const Written& base, const Written& exponent, Notation notation) {
+    if (notation == Notation::text)
+        return {fmt::format("{}^{}", inside(base, 5, notation), inside(exponent, 5, notation)), 4, {}};
+    const std::string text = base.head.empty() ? inside(base, 5, notation) : fmt::format("({})", base.text);
+    return {fmt::format("{}^{{{}}}", text, exponent.text), 4, {}};
+}
+
+Written write_function(Operation function, const Written& argument, Notation notation) {
+    for (const auto& [name, operation] : functions) {
+        if (operation != function) continue;
+        if (notation == Notation::text) return {fmt::format("{}({})", name, argument.text), 5, {}};
+        if (function == Op::sqrt) return {fmt::format("\\sqrt{{{}}}", argument.text), 5, {}};
+        const std::string head = latex_function(function, name);
+        // A name stands alone: \sin x. It may not follow directly where it begins with a letter.
+        const bool plain = argument.binding == 5 && argument.head.empty();
+        const std::string rest =
+            plain ? fmt::format(" {}", argument.text) : fmt::format("{}", inside({argument.text, 1, {}}, 5, notation));
+        return {head + rest, 5, head};
+    }
+    return {};
+}
+
+Written write(Expression expression, std::span<const std::string> names, Notation notation) {
     const Graph& graph = expression.graph();
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
-    std::vector<Printed> printed(needed.size());
+    std::vector<Written> written(needed.size());
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
         if (!needed[id]) continue;
         const Graph::Node& node = graph.node(id);
+        const bool leaf = is_leaf(node.operation);
+        const Written &a = written[leaf ? 0 : node.a], &b = written[is_binary(node.operation) ? node.b : 0];
         switch (node.operation) {
             case Op::number:
-                printed[id] = print_number(Builder::value({&expression.graph(), id}));
+                written[id] = write_number(Builder::value({&expression.graph(), id}), notation);
                 break;
             case Op::pi:
-                printed[id] = {"pi", 5};
+                written[id] = write_name("pi", notation);
                 break;
             case Op::symbol:
-                printed[id] = {node.a < names.size() ? names[node.a] : "?", 5};
+                written[id] = node.a < names.size() ? write_name(names[node.a], notation) : Written{"?", 5, {}};
+                break;
+            case Op::add:
+            case Op::subtract:
+                written[id] = write_sum(a, node.operation == Op::subtract, b, notation);
+                break;
+            case Op::multiply:
+                written[id] = write_product(a, b, notation);
+                break;
+            case Op::divide:
+                written[id] = write_quotient(a, b, notation);
+                break;
+            case Op::negate:
+                written[id] = write_negated(a, notation);
+                break;
+            case Op::power:
+                written[id] = write_power(a, node.exponent, notation);
+                break;
+            case Op::real_power:
+                written[id] = write_real_power(a, b, notation);
                 break;
             default:
-                printed[id] = print_node(node.operation, node.exponent, printed[node.a], printed[node.b]);
+                written[id] = write_function(node.operation, a, notation);
         }
     }
-    return printed[expression.id()].text;
+    return written[expression.id()];
+}
+
+std::string to_text(Expression expression, std::span<const std::string> names) {
+    return write(expression, names, Notation::text).text;
 }
 
 }  // namespace achilles
