@@ -68,6 +68,7 @@ int run(std::vector<std::string> words) {
     Studio studio(words);
     add_pictures(program, status, studio);
     add_reproduce(program, status);
+    add_check(program, status);
     add_list(program, status);
     try {
         put_default_command(program, words);

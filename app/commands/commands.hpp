@@ -22,5 +22,6 @@ void add_screenshot(CLI::App& program, int& status, Studio& studio);
 void add_pictures(CLI::App& program, int& status, Studio& studio);  // all of them
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
+void add_check(CLI::App& program, int& status);
 
 }  // namespace achilles

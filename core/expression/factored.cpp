@@ -1,6 +1,7 @@
 #include "expression/factored.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "expression/graph.hpp"
 
@@ -80,6 +81,14 @@ Factored factor(const Fraction& fraction, Algebra& algebra) {
     Splitter splitter(algebra, result);
     splitter.split(fraction.numerator, 1);
     splitter.split(fraction.denominator, -1);
+    // sqrt(u) u is sqrt(u)^3.
+    for (Factored::Factor& root : result.factors) {
+        const auto atom = root.base.atoms();
+        if (root.base.terms().size() != 1 || atom.size() != 1 || !algebra.square(atom[0])) continue;
+        for (Factored::Factor& other : result.factors)
+            if (other.base == *algebra.square(atom[0]) && (other.exponent > 0) == (root.exponent > 0))
+                root.exponent += 2 * std::exchange(other.exponent, 0);
+    }
     std::erase_if(result.factors, [](const Factored::Factor& factor) { return factor.exponent == 0; });
     return result;
 }

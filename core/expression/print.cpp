@@ -82,7 +82,8 @@ Written write_name(std::string_view name, Notation notation) {
 }
 
 Written write_sum(const Written& a, bool minus, const Written& b, Notation notation) {
-    return {fmt::format("{} {} {}", a.text, minus ? '-' : '+', inside(b, 2, notation)), 1, {}};
+    const bool bare = !minus && !b.text.starts_with('-');  // a + (b + c)
+    return {fmt::format("{} {} {}", a.text, minus ? '-' : '+', bare ? b.text : inside(b, 2, notation)), 1, {}};
 }
 
 Written write_negated(const Written& a, Notation notation) {

@@ -97,38 +97,51 @@ Writer::Piece Writer::collected(std::vector<Item> items, const Monomial& shared)
     return {number < 0, product(number, shared, &bracket)};
 }
 
+// Terms that should stand in one bracket, among those left: with the same rates; where that is so for all, with the
+// atom that stands in most of them, always to the same power. None: each for itself.
+std::vector<std::size_t> Writer::next_group(const std::vector<Item>& items,
+                                            const std::vector<std::size_t>& left) const {
+    const auto rates = [&](std::size_t item) {
+        Monomial powers = items[item].powers;
+        for (std::size_t i = 0; i < most_atoms; ++i)
+            if (i >= highest_.size() || !highest_[i]) powers[i] = 0;
+        return powers;
+    };
+    const bool same = std::all_of(left.begin(), left.end(), [&](std::size_t i) { return rates(i) == rates(left[0]); });
+    std::vector<std::size_t> best;
+    if (!same || left.size() < items.size()) {
+        for (const std::size_t first : left) {
+            std::vector<std::size_t> group;
+            std::copy_if(left.begin(), left.end(), std::back_inserter(group),
+                         [&](std::size_t i) { return rates(i) == rates(first); });
+            if (group.size() > 1 && group.size() < items.size()) return group;
+        }
+        if (!same) return {};
+    }
+    for (const std::size_t atom : order_) {
+        std::vector<std::size_t> group;
+        std::copy_if(left.begin(), left.end(), std::back_inserter(group),
+                     [&](std::size_t i) { return items[i].powers[atom] > 0; });
+        const bool linear = std::all_of(group.begin(), group.end(), [&](std::size_t i) {
+            return items[i].powers[atom] == items[group.front()].powers[atom];
+        });
+        if (linear && group.size() > std::max<std::size_t>(1, best.size())) best = group;
+    }
+    return best;
+}
+
 Written Writer::sum(std::vector<Item> items) const {
     std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return before(a, b); });
     std::vector<std::pair<std::size_t, Piece>> pieces;  // by the place of the first term
     std::vector<std::size_t> left(items.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
-    while (!left.empty()) {
-        // The atom that stands in most of the terms left.
-        std::size_t best = 0, most = 1;
-        for (const std::size_t atom : order_) {
-            const auto count = static_cast<std::size_t>(
-                std::count_if(left.begin(), left.end(), [&](std::size_t i) { return items[i].powers[atom] > 0; }));
-            if (count > most) {
-                best = atom;
-                most = count;
-            }
-        }
-        if (most == 1) break;
+    for (std::vector<std::size_t> group = next_group(items, left); !group.empty(); group = next_group(items, left)) {
         std::vector<Item> with;
-        std::vector<std::size_t> without;
-        std::size_t first = items.size();
-        for (const std::size_t i : left) {
-            if (items[i].powers[best] == 0) {
-                without.push_back(i);
-                continue;
-            }
-            first = std::min(first, i);
-            with.push_back(items[i]);
-        }
+        for (const std::size_t i : group) with.push_back(items[i]);
         Monomial shared = with.front().powers;
         for (const Item& item : with) shared = common(shared, item.powers);
-        pieces.emplace_back(first, collected(std::move(with), shared));
-        left = std::move(without);
+        pieces.emplace_back(group.front(), collected(std::move(with), shared));
+        std::erase_if(left, [&](std::size_t i) { return std::find(group.begin(), group.end(), i) != group.end(); });
     }
     for (const std::size_t i : left)
         pieces.emplace_back(i, Piece{items[i].number < 0, product(items[i].number, items[i].powers, nullptr)});
@@ -157,7 +170,19 @@ Written Writer::write(const Fraction& fraction, Algebra& algebra) const {
     return all.negative ? Written{fmt::format("-{}", inside(all.written, 2, notation_)), 1, {}} : all.written;
 }
 
-Written Writer::write(const Factored& factored) const {
+Written Writer::write(const Factored& given) const {
+    Factored factored = given;
+    if (factored.number < 0) {
+        // -(a - b) is b - a.
+        for (auto& [base, exponent] : factored.factors) {
+            const auto& all = base.terms();
+            const auto sign = [](const Multinomial::Term& term) { return term.coefficient < 0; };
+            if (exponent % 2 == 0 || all.size() == 1 || std::none_of(all.begin(), all.end(), sign)) continue;
+            base = -base;
+            factored.number = -factored.number;
+            break;
+        }
+    }
     struct Side {
         Monomial powers{};
         std::vector<Written> brackets;

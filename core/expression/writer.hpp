@@ -32,6 +32,7 @@ class Writer {
         Written written;
     };
     Written sum(std::vector<Item> items) const;
+    std::vector<std::size_t> next_group(const std::vector<Item>& items, const std::vector<std::size_t>& left) const;
     Written product(const Rational& number, const Monomial& powers, const Written* bracket) const;
     Piece collected(std::vector<Item> items, const Monomial& shared) const;
     int degree_of_highest(const Monomial& powers) const;

@@ -121,12 +121,38 @@ class Search {
         return fraction.numerator.terms().size() + fraction.denominator.terms().size();
     }
 
+    // What could not be solved for is used as it stands: multiples of h, hdot and hdot^2 are added to the numerator as
+    // long as that makes the whole shorter.
+    Fraction in_contact(Fraction hddot, const Solution& solution, Algebra& algebra) const {
+        const Multinomial h = algebra.simplify(on(e_.gap, solution)).numerator;
+        const Multinomial hdot = algebra.simplify(on(e_.hdot, solution)).numerator;
+        for (bool shorter = true; shorter;) {
+            shorter = false;
+            for (const Multinomial& zero : {h, hdot, algebra.reduced(power(hdot, 2, algebra.work()))}) {
+                const Fraction now = hddot;
+                for (const Multinomial::Term& of_zero : zero.terms()) {
+                    for (const Multinomial::Term& term : now.numerator.terms()) {
+                        const auto multiple = divide(Multinomial({term}), Multinomial({of_zero}), algebra.work());
+                        if (!multiple) continue;
+                        const Multinomial subtracted = times(zero, *multiple, algebra.work());
+                        const Fraction other = algebra.add(now, {-subtracted, now.denominator});
+                        if (length(other) < length(hddot)) {
+                            hddot = other;
+                            shorter = true;
+                        }
+                    }
+                }
+            }
+        }
+        return hddot;
+    }
+
     void consider(const Solution& solution, bool expand_angles) {
         if (work_ <= 0) return;
         auto algebra = std::make_unique<Algebra>(graph_, Work{std::min(work_, work_of_a_try)}, expand_angles);
         const long before = algebra->work().left;
         try {
-            const Fraction hddot = algebra->simplify(on(e_.hddot, solution));
+            const Fraction hddot = in_contact(algebra->simplify(on(e_.hddot, solution)), solution, *algebra);
             work_ -= before - algebra->work().left;
             if (best_ && length(best_->hddot) <= length(hddot)) return;
             best_.emplace();
@@ -140,6 +166,14 @@ class Search {
         } catch (const TooLarge&) {
             work_ = 0;
         }
+    }
+
+    static int sign_of(const Multinomial& base, int exponent, Positivity& positivity) {
+        const bool below = exponent < 0;
+        if (below && exponent % 2 == 0) return 1;
+        if (positivity.is_positive(base, below)) return 1;
+        if (positivity.is_positive(-base, below)) return exponent % 2 == 0 ? 1 : -1;
+        return 0;
     }
 
     // Is this odd power of a factor positive where M is positive definite? Then its sign is that of a leading minor of
@@ -165,21 +199,20 @@ class Search {
     void decide(ZenoCondition& zeno) const {
         Algebra& algebra = *zeno.algebra;
         algebra.work() = Work{work_of_a_try};
-        Positivity positivity(algebra, signs_);
+        std::set<std::size_t> dropped_for, known_for;  // atoms whose signs were used: for what is dropped, for the rest
         bool unknown = false;
         try {
             const Factored all = factor(zeno.hddot, algebra);
             zeno.positive.number = abs(all.number);
             zeno.decisive.number = all.number < 0 ? -1 : all.number == 0 ? 0 : 1;
             for (const auto& [base, exponent] : all.factors) {
+                Positivity positivity(algebra, signs_);
                 const bool below = exponent < 0, atom = base.terms().size() == 1;
-                int sign = 0;
-                if (below && exponent % 2 == 0) sign = 1;
-                if (sign == 0 && positivity.is_positive(base, below)) sign = 1;
-                if (sign == 0 && positivity.is_positive(-base, below)) sign = exponent % 2 == 0 ? 1 : -1;
+                bool definite = false;
+                int sign = sign_of(base, exponent, positivity);
                 if (sign == 0 && exponent % 2 != 0) {
                     sign = sign_by_definiteness(base, algebra, positivity);
-                    zeno.definite = zeno.definite || sign != 0;
+                    definite = sign != 0;
                 }
                 unknown = unknown || sign == 0;
                 // A single symbol above stays where it says what drives the motion: g sin(theta).
@@ -189,13 +222,17 @@ class Search {
                     zeno.positive.number = -zeno.positive.number;
                     zeno.decisive.number = -zeno.decisive.number;
                 }
+                if (sign != 0)
+                    (drop ? dropped_for : known_for).insert(positivity.used().begin(), positivity.used().end());
+                zeno.definite = zeno.definite || definite;
             }
         } catch (const TooLong&) {  // the condition stays as it is
             zeno.positive = Factored{};
             zeno.decisive = Factored{1, {{zeno.hddot.numerator, 1}, {zeno.hddot.denominator, -1}}};
             unknown = true;
         }
-        for (const std::size_t atom : positivity.used())
+        if (!unknown) dropped_for.merge(known_for);
+        for (const std::size_t atom : dropped_for)
             if (signs_(algebra.atom(atom)) != Sign::unknown) zeno.assumed.push_back(algebra.atom(atom));
         if (!unknown)
             zeno.verdict = zeno.decisive.number < 0 ? ZenoCondition::Verdict::always : ZenoCondition::Verdict::never;

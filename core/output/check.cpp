@@ -130,8 +130,7 @@ class Report {
 
     // The left hand side and what was found; where nothing was, what it would be simplified from.
     void formula(const Both& left, const std::optional<Fraction>& fraction, const Both& definition) {
-        if (fraction && terms(*fraction) <= most_terms)
-            return long_formula(page_, left, factor_or_sum(*fraction), writer_);
+        if (fraction && terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
         page_.formula(left, is_text() ? definition.text : definition.latex);
         const std::string why = fraction ? fmt::format("not written out: it has {} terms", terms(*fraction))
                                          : "not simplified: it takes too many operations";
@@ -158,7 +157,7 @@ class Report {
     }
 
     // A quotient too wide for a line is written as N/D with N and D below.
-    static void long_formula(Page& page, const Both& left, const Quotient& quotient, const Writer&) {
+    static void long_formula(Page& page, const Both& left, const Quotient& quotient) {
         const std::size_t length = visible_length(quotient.whole, page.notation()) + left.text.size() + 5;
         const bool tall = page.notation() == Notation::latex && !quotient.top.empty();
         const std::size_t across = tall ? std::max(visible_length(quotient.top, page.notation()),
@@ -196,13 +195,13 @@ class Report {
         const bool divided = !zeno.positive.factors.empty() || zeno.positive.number != 1;
         if (zeno.verdict == ZenoCondition::Verdict::depends) {
             if (divided) {
-                long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer), writer);
+                long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
                 reason(zeno, writer);
             }
             page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
             return;
         }
-        long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer), writer);
+        long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
         const std::string verdict = zeno.verdict == ZenoCondition::Verdict::always
                                         ? "hddot < 0 at every contact"
                                         : "hddot >= 0 at every contact: none of them ends in a Zeno point";

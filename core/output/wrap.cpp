@@ -1,6 +1,7 @@
 #include "output/wrap.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace achilles {
 
@@ -16,15 +17,22 @@ std::vector<Place> places(std::string_view formula) {
     constexpr int never = 1000;  // inside an argument of LaTeX, or what \left and \right hold together
     std::vector<Place> result;
     int depth = 0;
+    std::vector<int> brackets;
     for (std::size_t i = 0; i < formula.size(); ++i) {
         const char c = formula[i];
         const auto follows = [&](std::string_view word) {
             return i >= word.size() && formula.substr(i - word.size(), word.size()) == word;
         };
-        if (c == '(') depth += follows("\\left") ? never : 1;
-        if (c == ')') depth -= follows("\\right") ? never : 1;
-        if (c == '{') depth += never;
-        if (c == '}') depth -= never;
+        if (c == '(' || c == '{') {
+            // A function's argument stays together as well.
+            const bool function = i > 0 && std::isalnum(static_cast<unsigned char>(formula[i - 1])) != 0;
+            brackets.push_back(c == '{' || follows("\\left") || function ? never : 1);
+            depth += brackets.back();
+        }
+        if ((c == ')' || c == '}') && !brackets.empty()) {
+            depth -= brackets.back();
+            brackets.pop_back();
+        }
         const std::string_view sign = formula.substr(i, 3);
         if ((sign == " + " || sign == " - ") && depth < never) result.push_back({i, depth});
     }
@@ -54,7 +62,7 @@ std::vector<std::string> wrap(const std::string& formula, std::size_t width, Not
     if (visible_length(formula, notation) <= width) return {formula};
     const std::vector<Place> all = places(formula);
     // The least depth of brackets at which every part fits; the last otherwise.
-    constexpr int deepest = 3;
+    constexpr int deepest = 8;
     std::vector<std::string> parts;
     for (int depth = 0; depth <= deepest; ++depth) {
         parts.clear();
