@@ -178,13 +178,39 @@ Command read_save(const Line& line) {
     return command::Save{line.word(1).text, line.count() == 3};
 }
 
+template <bool pinned>
+Command read_pin(const Line& line) {
+    line.expect_arguments(0, 0, "it stands alone");
+    return command::Pin{pinned};
+}
+
 template <bool shown>
 Command read_show(const Line& line) {
-    const std::string usage = fmt::format("write: {} editor", line.word(0).text);
-    line.expect_arguments(1, 1, usage);
-    if (line.word(1).text != "editor")
-        throw line.error(line.word(1).column, fmt::format("there is no panel '{}'", line.word(1).text), usage);
-    return command::Show{shown};
+    line.expect_arguments(1, 1, fmt::format("write: {} editor", line.word(0).text));
+    return command::Show{line.word(1).text, shown};
+}
+
+Command read_start(const Line& line) {
+    const std::string usage = "write: start NAME VALUE NAME VALUE ...";
+    line.expect_arguments(2, 64, usage);
+    command::Start start;
+    for (std::size_t i = 1; i < line.count(); i += 2) {
+        if (i + 1 == line.count()) throw line.error(line.word(i).column, "this name has no value", usage);
+        start.values.emplace_back(line.word(i).text, line.number(i + 1));
+    }
+    return start;
+}
+
+Command read_look(const Line& line) {
+    const std::string usage = "write: look X Y WIDTH, or: look all";
+    if (line.count() == 2 && line.word(1).text == "all") return command::LookAll{};
+    line.expect_arguments(3, 3, usage);
+    return command::Look{line.number(1), line.number(2), line.number(3)};
+}
+
+Command read_step(const Line& line) {
+    line.expect_arguments(1, 1, "write: step 1, or: step -1");
+    return command::Step{line.whole_number(1)};
 }
 
 // The words from number `first` on.
@@ -235,13 +261,14 @@ Command read_curve(const Line& line) {
     return command::ShowCurve{line.whole_number(1), line.whole_number(2), read_switch(line, 3, usage)};
 }
 
-Command read_link(const Line& line) {
-    const std::string usage = "write: link on, or: link off";
+template <class Kind>
+Command read_on_off(const Line& line) {
+    const std::string usage = fmt::format("write: {0} on, or: {0} off", line.word(0).text);
     line.expect_arguments(1, 1, usage);
-    return command::Link{read_switch(line, 1, usage)};
+    return Kind{read_switch(line, 1, usage)};
 }
 
-constexpr std::array<Verb, 23> verbs{{{"open", read_open},
+constexpr std::array<Verb, 33> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -263,7 +290,17 @@ constexpr std::array<Verb, 23> verbs{{{"open", read_open},
                                       {"fit", read_fit},
                                       {"log", read_log},
                                       {"curve", read_curve},
-                                      {"link", read_link}}};
+                                      {"link", read_on_off<command::Link>},
+                                      {"start", read_start},
+                                      {"look", read_look},
+                                      {"speed", read_number<command::Speed>},
+                                      {"loop", read_on_off<command::Loop>},
+                                      {"step", read_step},
+                                      {"undo", read_alone<command::Undo>},
+                                      {"redo", read_alone<command::Redo>},
+                                      {"pin", read_pin<true>},
+                                      {"unpin", read_pin<false>},
+                                      {"lens", read_number<command::Lens>}}};
 
 const char* on_off(bool on) { return on ? "on" : "off"; }
 
@@ -292,7 +329,23 @@ struct Print {
     std::string operator()(const command::Save& c) const {
         return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
     }
-    std::string operator()(const command::Show& c) const { return c.editor ? "show editor" : "hide editor"; }
+    std::string operator()(const command::Show& c) const {
+        return fmt::format("{} {}", c.on ? "show" : "hide", quoted_where_needed(c.what));
+    }
+    std::string operator()(const command::Start& c) const {
+        std::string text = "start";
+        for (const auto& [name, value] : c.values) text += fmt::format(" {} {}", quoted_where_needed(name), value);
+        return text;
+    }
+    std::string operator()(const command::Look& c) const { return fmt::format("look {} {} {}", c.x, c.y, c.width); }
+    std::string operator()(const command::LookAll&) const { return "look all"; }
+    std::string operator()(const command::Speed& c) const { return fmt::format("speed {}", c.value); }
+    std::string operator()(const command::Loop& c) const { return fmt::format("loop {}", on_off(c.on)); }
+    std::string operator()(const command::Step& c) const { return fmt::format("step {}", c.events); }
+    std::string operator()(const command::Undo&) const { return "undo"; }
+    std::string operator()(const command::Redo&) const { return "redo"; }
+    std::string operator()(const command::Pin& c) const { return c.on ? "pin" : "unpin"; }
+    std::string operator()(const command::Lens& c) const { return fmt::format("lens {}", c.from); }
     std::string operator()(const command::Grid& c) const { return fmt::format("grid {} {}", c.columns, c.rows); }
     std::string operator()(const command::PlotView& c) const {
         std::string text = fmt::format("plot {} {}", c.plot, quoted_where_needed(c.x));

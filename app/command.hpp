@@ -7,6 +7,8 @@
 //     new                      text "title = \"A ball\"\n..."          show editor        hide editor
 //     save mine.toml           save mine.toml overwrite
 //     grid 3 2 (columns, rows) plot 1 t y gap     plot 2 x "x'^2 + y'^2"      link off
+//     start x 0.3 x' 1.5       look 2 0.5 8 (middle, width)   look all    speed 0.1    loop on     step -1
+//     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
 //     zoom 1 0 5 -1 2.5        fit 1              log 1 y on         curve 1 2 off
 //
 // Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes",
@@ -15,6 +17,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -81,8 +84,34 @@ struct Save {
     friend bool operator==(const Save&, const Save&) = default;
 };
 struct Show {
-    bool editor = true;  // in place of the sliders
+    std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force
+    bool on = true;
     friend bool operator==(const Show&, const Show&) = default;
+};
+
+struct Start {  // several values at once: the run in between might be none
+    std::vector<std::pair<std::string, double>> values;
+    friend bool operator==(const Start&, const Start&) = default;
+};
+struct Look {
+    double x = 0.0, y = 0.0, width = 1.0;  // of the world: the middle of the picture, and how much of it is seen
+    friend bool operator==(const Look&, const Look&) = default;
+};
+struct LookAll {
+    friend bool operator==(const LookAll&, const LookAll&) = default;
+};
+constexpr double slowest = 1e-3, fastest = 10.0;
+struct Speed {
+    double value = 1.0;  // seconds of the run in one of the player's, slowest to fastest
+    friend bool operator==(const Speed&, const Speed&) = default;
+};
+struct Loop {
+    bool on = true;  // at the end the player begins again
+    friend bool operator==(const Loop&, const Loop&) = default;
+};
+struct Step {
+    int events = 1;  // to the next event, or with -1 the one before
+    friend bool operator==(const Step&, const Step&) = default;
 };
 
 // The plots count from 1, row by row.
@@ -120,13 +149,30 @@ struct Link {
     friend bool operator==(const Link&, const Link&) = default;
 };
 
+struct Undo {
+    friend bool operator==(const Undo&, const Undo&) = default;
+};
+struct Redo {
+    friend bool operator==(const Redo&, const Redo&) = default;
+};
+struct Pin {
+    bool on = true;  // the present run stays beside those that follow
+    friend bool operator==(const Pin&, const Pin&) = default;
+};
+struct Lens {
+    double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens
+    friend bool operator==(const Lens&, const Lens&) = default;
+};
+
 }  // namespace command
 
 using Command =
     std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
                  command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select,
                  command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
-                 command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link>;
+                 command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link, command::Start,
+                 command::Look, command::LookAll, command::Speed, command::Loop, command::Step, command::Undo,
+                 command::Redo, command::Pin, command::Lens>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

@@ -53,7 +53,6 @@ Session open_session(const ExploreOptions& options, Patience patience) {
     const std::string name = first_system(options);
     const auto finish = [overrides = options.overrides](SystemDescription& description) {
         apply(overrides, description.options);
-        refuse_unavailable(description, overrides);
     };
     return {name, open_system(find_system(name), options.settings, options.overrides),
             Library{[](const std::string& system) { return find_system(system); }, finish}, patience};
@@ -158,7 +157,7 @@ int explore(const ExploreOptions& options) {
         session.update();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (session.playing())
-            play_on(session, clock.elapsed(), state.loop);
+            play_on(session, clock.elapsed());
         else
             clock.stop();
         for (const Command& command : explorer(session, state)) apply(command);

@@ -35,19 +35,11 @@ void apply(const OptionOverrides& overrides, Options& options) {
     put_positive(truncation.eps_t, overrides.eps_t, "--eps-t");
 }
 
-void refuse_unavailable(const SystemDescription& description, const OptionOverrides& overrides) {
-    const Options& options = description.options;
-    if (options.method == Method::taylor)
-        throw InputError(overrides.method ? std::string() : description.file, {},
-                         "the Taylor method is not available yet; use --method dopri5");
-}
-
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides) {
     SystemDescription description = read_system(file);
     for (const std::string& setting : settings) assign(description, setting);
     apply(overrides, description.options);
-    refuse_unavailable(description, overrides);
     return description;
 }
 

@@ -24,9 +24,6 @@ struct OptionOverrides {
 // Puts them over the options of a system just read. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);
 
-// Throws InputError where the options ask for what is not built yet; names the file if the file asked.
-void refuse_unavailable(const SystemDescription& description, const OptionOverrides& overrides);
-
 // A system file with --set and the options over it, ready for Model.
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides);

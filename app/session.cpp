@@ -46,11 +46,14 @@ InputError no_such_name(const SystemDescription& description, const std::string&
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
     : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {}
 
-Session::Motion::Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch)
-    : trajectory(simulate(system.model, run, watch)),
+Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
+                        Watch* watch)
+    : trajectory(simulate(of->model, run, watch)),
+      system(std::move(of)),
       sampler(trajectory),
       samples(plot_samples(trajectory)),
-      limits(system.mechanism.limits(trajectory, samples)),
+      limits(system->mechanism.limits(trajectory, samples)),
+      trail(trail_of(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
@@ -65,16 +68,97 @@ Session::Session(const std::string& name, const SystemDescription& first, Librar
 
 void Session::apply(const Command& command) {
     if (!patience_) receive(patience_);
+    const Moment before = moment();
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on must not wipe away what the last change of the run complained about.
-        const bool moves_time_only = std::holds_alternative<command::Seek>(command) ||
-                                     std::holds_alternative<command::Play>(command) ||
-                                     std::holds_alternative<command::Pause>(command);
+        const bool moves_time_only =
+            std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
+            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command);
         if (!moves_time_only) error_.clear();
+        remember(command, before);
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
+}
+
+namespace {
+
+template <class... Kinds>
+bool is_one_of(const Command& command) {
+    return (std::holds_alternative<Kinds>(command) || ...);
+}
+
+// Commands that undo takes back. More of the same kind and for the same thing, as a dragged slider gives, are one
+// change.
+bool is_change(const Command& command) {
+    return is_one_of<command::Open, command::New, command::Text, command::Start, command::Set, command::End,
+                     command::Tolerance, command::Eps, command::UseConditions, command::UseReinitialization,
+                     command::Grid, command::PlotView, command::Zoom, command::Fit, command::AxisScale,
+                     command::ShowCurve>(command);
+}
+
+bool goes_on(const Command& last, const Command& next) {
+    if (last.index() != next.index()) return false;
+    if (const auto* set = std::get_if<command::Set>(&next)) return std::get<command::Set>(last).name == set->name;
+    if (const auto* zoom = std::get_if<command::Zoom>(&next)) return std::get<command::Zoom>(last).plot == zoom->plot;
+    return is_one_of<command::Start, command::End, command::Tolerance, command::Eps>(next);
+}
+
+}  // namespace
+
+void Session::remember(const Command& command, const Moment& before) {
+    constexpr std::size_t most = 200;
+    if (!is_change(command)) {
+        // Something else was done in between: the next change is one of its own. (Seeking is part of dragging.)
+        if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
+        return;
+    }
+    if (!changed_by_ || !goes_on(*changed_by_, command)) undone_to_.push_back(before);
+    if (undone_to_.size() > most) undone_to_.erase(undone_to_.begin());
+    redone_to_.clear();
+    changed_by_ = command;
+}
+
+void Session::go_back(std::vector<Moment>& from, std::vector<Moment>& to) {
+    to.push_back(moment());
+    Moment back = std::move(from.back());
+    from.pop_back();
+    changed_by_.reset();
+    document_ = std::move(back.document);
+    placed_ = command::Seek{time_};
+    if (back.system != system_) return change_system(back.system, back.plots, back.run);
+    plots_ = back.plots;
+    rerun(back.run);
+}
+
+void Session::perform(const command::Undo&) {
+    if (undone_to_.empty()) throw refusal("there is nothing to undo");
+    go_back(undone_to_, redone_to_);
+}
+
+void Session::perform(const command::Redo&) {
+    if (redone_to_.empty()) throw refusal("there is nothing to do again");
+    go_back(redone_to_, undone_to_);
+}
+
+void Session::perform(const command::Pin& command) {
+    pinned_ = command.on ? motion_ : nullptr;
+    pinned_revision_ = -1;
+    compose_pinned();
+}
+
+void Session::compose_pinned() {
+    const bool same = pinned_ && pinned_->system == motion_->system;
+    if (!same) pinned_plots_.clear();
+    if (!same || pinned_revision_ == plots_.revision()) return;
+    pinned_revision_ = plots_.revision();
+    pinned_plots_ = plots_.compose(pinned_->trajectory, pinned_->samples, theme_);
+}
+
+std::optional<Sample> Session::pinned_now() const {
+    if (!pinned_ || pinned_->system != motion_->system) return std::nullopt;
+    return pinned_->sampler.at(std::min(time_, pinned_->trajectory.end_time));
 }
 
 void Session::perform(const command::Open& command) {
@@ -94,11 +178,12 @@ void Session::begin_document(Document document) {
         playing_ = false;
         selected_ = 0;
         time_ = 0.0;
+        scene_.forget_place();
         placed_.reset();
         change_system(system, Plots(system->model), system->model->default_run());
     } catch (const InputError& problem) {
         document_.problems = {problem};
-        shows_editor_ = true;
+        scene_.perform(command::Show{"editor", true});
     }
 }
 
@@ -108,18 +193,16 @@ void Session::perform(const command::Text& command) {
 }
 
 void Session::perform(const command::Save& command) {
+    const std::string before = document_.source;
     save(document_, command.file, command.overwrite);
-    read_document();  // under its new name
+    if (document_.source != before) read_document();  // under its new name
 }
-
-void Session::perform(const command::Show& command) { shows_editor_ = command.editor; }
 
 // The edited text takes effect if it is a system.
 void Session::read_document() {
     document_.problems.clear();
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
-        refuse_unavailable(description, {});
         const auto system = std::make_shared<const System>(document_.name, description);
         // Read once more as it stood there: the command line may have put other values over it.
         const SystemDescription before = parse_system(this->description().source_text, this->description().file);
@@ -148,16 +231,20 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     at_once.request_stop();
     Watch watch;
     watch.stop = at_once.get_token();
-    motion_ = std::make_shared<Motion>(*system_, run, plots_, theme_, &watch);
+    motion_ = std::make_shared<Motion>(system_, run, plots_, theme_, &watch);
     move_to(0.0);
 }
 
-void Session::perform(const command::Set& command) {
+void Session::perform(const command::Set& command) { perform(command::Start{{{command.name, command.value}}}); }
+
+void Session::perform(const command::Start& command) {
     Run changed = run();
-    double* const value = find_value(description(), changed, command.name);
-    if (value == nullptr) throw no_such_name(description(), command.name);
-    if (!std::isfinite(command.value)) throw refusal(fmt::format("'{}' must be finite", command.name));
-    *value = command.value;
+    for (const auto& [name, value] : command.values) {
+        double* const found = find_value(description(), changed, name);
+        if (found == nullptr) throw no_such_name(description(), name);
+        if (!std::isfinite(value)) throw refusal(fmt::format("'{}' must be finite", name));
+        *found = value;
+    }
     rerun(changed);
 }
 
@@ -232,7 +319,7 @@ void Session::rerun(const Run& run) {
     watch_ = watch;
     worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
-        return std::make_shared<Motion>(*system, run, plots, theme, watch.get());
+        return std::make_shared<Motion>(system, run, plots, theme, watch.get());
     });
     receive(patience_);
 }
@@ -244,6 +331,7 @@ void Session::receive(Patience patience) {
     motion_ = *motion;
     watch_.reset();
     compose_plots();  // they may have been changed meanwhile
+    compose_pinned();
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
     move_to(time_);
     if (placed_) apply(*std::exchange(placed_, std::nullopt));
@@ -263,24 +351,46 @@ std::vector<double> Session::values(std::size_t plot, const Sample& sample) cons
     return values_at(motion_->trajectory, sample, *plots_.list()[plot].prepared);
 }
 
-// How the run is looked at: nothing runs again.
-template <class PlotCommand>
-void Session::perform(const PlotCommand& command) {
-    plots_.perform(command);
-    compose_plots();
+// The next event after the present, or the last before it; beyond them the end and the start.
+void Session::perform(const command::Step& command) {
+    const auto& events = trajectory().events;
+    double time = time_;
+    for (int i = 0; i < std::abs(command.events); ++i) {
+        const auto later = std::upper_bound(events.begin(), events.end(), time,
+                                            [](double t, const Event& event) { return t < event.t; });
+        const auto here = std::lower_bound(events.begin(), events.end(), time,
+                                           [](const Event& event, double t) { return event.t < t; });
+        if (command.events > 0)
+            time = later != events.end() ? later->t : trajectory().end_time;
+        else
+            time = here != events.begin() ? std::prev(here)->t : 0.0;
+    }
+    move_to(time);
+    place(command::Seek{time});
+}
+
+template <class Other>
+void Session::perform(const Other& command) {
+    if constexpr (requires { scene_.perform(command); }) {
+        scene_.perform(command);
+    } else {
+        plots_.perform(command);
+        compose_plots();
+    }
 }
 
 void Session::compose_plots() {
     if (motion_->revision == plots_.revision()) return;
     motion_->revision = plots_.revision();
     motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
+    compose_pinned();
 }
 
-void play_on(Session& session, double seconds, bool loop) {
+void play_on(Session& session, double seconds) {
     if (!session.playing()) return;
-    session.apply(command::Seek{session.time() + seconds});
+    session.apply(command::Seek{session.time() + seconds * session.scene().speed()});
     if (session.time() < session.trajectory().end_time || session.under_way() != nullptr) return;
-    if (loop)
+    if (session.scene().loops())
         session.apply(command::Play{});  // at the end: once more
     else
         session.apply(command::Pause{});
@@ -298,7 +408,7 @@ std::string to_text(const Session& session) {
     }
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
-    text += to_text(session.plotted());
+    text += to_text(session.plotted()) + to_text(session.scene());
     if (!session.error().empty()) text += "error " + session.error() + "\n";
     if (session.document().is_changed()) text += "the text is not saved\n";
     for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());

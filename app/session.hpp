@@ -10,9 +10,11 @@
 
 #include "command.hpp"
 #include "document.hpp"
+#include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
 #include "plots.hpp"
+#include "scene.hpp"
 #include "simulate/simulate.hpp"
 #include "worker.hpp"
 
@@ -50,7 +52,8 @@ class Session {
 
     // The text that is edited; without problems it is the system that runs.
     const Document& document() const { return document_; }
-    bool shows_editor() const { return shows_editor_; }
+    bool shows_editor() const { return scene_.shows("editor"); }
+    const Scene& scene() const { return scene_; }
     const std::string& system() const { return system_->name; }  // as opened
     const std::shared_ptr<const Model>& model() const { return system_->model; }
     const SystemDescription& description() const { return system_->model->description(); }
@@ -60,6 +63,18 @@ class Session {
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return motion_->trajectory; }
     const Mechanism& mechanism() const { return system_->mechanism; }
+    // A run that was pinned, to compare with; null where there is none. Its plots are of what is plotted now, and empty
+    // where it is of another system.
+    const Trajectory* pinned() const { return pinned_ ? &pinned_->trajectory : nullptr; }
+    const std::vector<Panel>& pinned_plots() const { return pinned_plots_; }
+    // The pinned mechanism at the present time, of the same system; nothing otherwise.
+    std::optional<Sample> pinned_now() const;
+    bool can_undo() const { return !undone_to_.empty(); }
+    bool can_redo() const { return !redone_to_.empty(); }
+
+    // Its body along the run that is shown, a point a sample.
+    const Trail& trail() const { return motion_->trail; }
+    std::span<const Sample> samples() const { return motion_->samples; }
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return motion_->limits; }
     // What is plotted, and the plots, composed.
@@ -87,11 +102,14 @@ class Session {
     };
     // One run and what is shown of it.
     struct Motion {
-        Motion(const System& system, const Run& run, const Plots& plotted, const Theme& theme, Watch* watch);
+        Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
+               Watch* watch);
         Trajectory trajectory;
+        std::shared_ptr<const System> system;
         Sampler sampler;
         std::vector<Sample> samples;
         Drawing limits;
+        Trail trail;
         int revision = 0;  // of what is plotted
         std::vector<Panel> plots;
     };
@@ -110,9 +128,25 @@ class Session {
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
-    void perform(const command::Show& command);
-    template <class PlotCommand>
-    void perform(const PlotCommand& command);
+    void perform(const command::Start& command);
+    void perform(const command::Undo& command);
+    void perform(const command::Redo& command);
+    void perform(const command::Pin& command);
+    void perform(const command::Step& command);
+    // Everything else is about how the run is looked at.
+    template <class Other>
+    void perform(const Other& command);
+    // What a change may change.
+    struct Moment {
+        Document document;
+        std::shared_ptr<const System> system;
+        Plots plots;
+        Run run;
+    };
+    Moment moment() const { return {document_, system_, plots_, asked_}; }
+    void remember(const Command& command, const Moment& before);
+    void go_back(std::vector<Moment>& from, std::vector<Moment>& to);
+    void compose_pinned();
     void begin_document(Document document);
     void read_document();
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
@@ -126,9 +160,9 @@ class Session {
     Patience patience_;
     Theme theme_ = light_theme();
     Document document_;
-    bool shows_editor_ = false;
     std::shared_ptr<const System> system_;
     Plots plots_;
+    Scene scene_;
     Run asked_;
     std::shared_ptr<Motion> motion_;  // of this system; of another run than the one asked for while that is under way
     std::shared_ptr<const Watch> watch_;  // of the run under way
@@ -138,11 +172,16 @@ class Session {
     bool playing_ = false;
     int selected_ = 0;
     std::string error_;
+    std::vector<Moment> undone_to_, redone_to_;
+    std::optional<Command> changed_by_;  // the last change, which more of its kind go on with
+    std::shared_ptr<Motion> pinned_;
+    std::vector<Panel> pinned_plots_;
+    int pinned_revision_ = -1;
     Worker<std::shared_ptr<Motion>> worker_;
 };
 
-// Lets so much time pass for a session that plays. At the end it stops, or with `loop` begins again.
-void play_on(Session& session, double seconds, bool loop);
+// Lets so much time pass for a session that plays, at its speed. At the end it stops or begins again.
+void play_on(Session& session, double seconds);
 
 // The session as text: what tests compare.
 std::string to_text(const Session& session);

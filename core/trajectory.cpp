@@ -29,7 +29,7 @@ State Sampler::state(const Piece& piece, double t) const {
         }
     }
     if (piece.contact)
-        if (const auto projected = projection_->surface.project(state, false)) return *projected;
+        if (const auto projected = projection_->surface.project(state, false)) return projected->state;
     return state;
 }
 

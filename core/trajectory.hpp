@@ -111,7 +111,9 @@ struct Statistics {
     long steps = 0, evaluations = 0, impacts = 0;
     double energy_drift = 0.0;  // largest relative change of the energy inside a smooth stretch, at step ends
     double least_gap = 0.0;     // at step ends
-    double seconds = 0.0;       // wall clock: the only value that may differ between two runs
+    // Wall clock: the only values that may differ between two runs.
+    double seconds = 0.0;
+    double certificate_seconds = 0.0;  // of these, for the truncation conditions and their proofs
 };
 
 struct Trajectory {

@@ -29,27 +29,6 @@ void quiet(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-void show_title(const Certificate& certificate, int number, PanelState& state, Commands& commands) {
-    const std::string how = certificate.certified ? "certified" : "not certified";
-    ImGui::TextUnformatted(fmt::format("Zeno point, event {}: {}", number, how).c_str());
-    ImGui::SameLine();
-    quiet(fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
-                      to_text(certificate.reinitialization)));
-    const float width = ImGui::GetTextLineHeight();
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
-    const bool close =
-        ImGui::InvisibleButton("close", {width, width}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-    remember(state, "close certificate");
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const float inset = 0.28F * width;
-    const ImU32 color = packed(ImGui::IsItemHovered() ? text_color() : faint_color());
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddLine({low.x + inset, low.y + inset}, {high.x - inset, high.y - inset}, color, units(1.5F));
-    list->AddLine({low.x + inset, high.y - inset}, {high.x - inset, low.y + inset}, color, units(1.5F));
-    tooltip("close (Escape)");
-    if (close) commands.emplace_back(command::Select{0});
-}
-
 // One row: name, left < right, and a bar of how much of the right side is used. The one that decided is set off.
 void show_inequality(const Inequality& inequality, bool decisive) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -75,6 +54,25 @@ void show_inequality(const Inequality& inequality, bool decisive) {
 
 }  // namespace
 
+bool show_card_title(const std::string& title, const std::string& more, PanelState& state) {
+    ImGui::TextUnformatted(title.c_str());
+    ImGui::SameLine();
+    quiet(more);
+    const float width = ImGui::GetTextLineHeight();
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+    const bool close =
+        ImGui::InvisibleButton("close", {width, width}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    remember(state, "close card");
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float inset = 0.28F * width;
+    const ImU32 color = packed(ImGui::IsItemHovered() ? text_color() : faint_color());
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddLine({low.x + inset, low.y + inset}, {high.x - inset, high.y - inset}, color, units(1.5F));
+    list->AddLine({low.x + inset, high.y - inset}, {high.x - inset, low.y + inset}, color, units(1.5F));
+    tooltip("close (Escape)");
+    return close;
+}
+
 std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
@@ -92,8 +90,41 @@ std::vector<std::string> certificate_lines(const Event& event) {
     return lines;
 }
 
-void show_certificate(const Event& event, int number, PanelState& state, Commands& commands) {
-    show_title(*event.certificate, number, state, commands);
+void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    const Certificate& certificate = *event.certificate;
+    const bool close = show_card_title(
+        fmt::format("Zeno point, event {}: {}", index + 1, certificate.certified ? "certified" : "not certified"),
+        fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
+                    to_text(certificate.reinitialization)),
+        state);
+    if (close) commands.emplace_back(command::Select{0});
+    const bool lens = session.scene().shows("lens");
+    const float height = ImGui::GetTextLineHeight() + units(4.0F);
+    for (const bool is_lens : {false, true}) {
+        const char* name = is_lens ? "Zeno lens" : "certificate";
+        if (is_lens) ImGui::SameLine(0.0F, units(12.0F));
+        const ImVec2 size{ImGui::CalcTextSize(name).x, height};
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        ImGui::PushID(name);
+        if (ImGui::InvisibleButton("tab", size)) commands.emplace_back(command::Show{"lens", is_lens});
+        ImGui::PopID();
+        remember(state, std::string("tab ") + name);
+        const bool lit = lens == is_lens;
+        ImGui::GetWindowDrawList()->AddText(at, packed(lit || ImGui::IsItemHovered() ? text_color() : faint_color()),
+                                            name);
+        if (lit)
+            ImGui::GetWindowDrawList()->AddLine({at.x, at.y + height - units(2.0F)},
+                                                {at.x + size.x, at.y + height - units(2.0F)}, packed(text_color()),
+                                                units(1.5F));
+    }
+    if (lens)
+        show_lens(session, index, state, commands);
+    else
+        show_certificate(event);
+}
+
+void show_certificate(const Event& event) {
     const std::vector<std::string> lines = certificate_lines(event);
     float half = 0.44F * ImGui::GetContentRegionAvail().x;
     for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));

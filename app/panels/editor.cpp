@@ -103,6 +103,11 @@ bool typed(EditorState& editor, ImVec2 size, bool read_only) {
     return ImGui::IsItemEdited();
 }
 
+int line_of_cursor(const ImGuiInputTextState& input) {
+    const ImWchar* begin = input.TextW.Data;
+    return 1 + static_cast<int>(std::count(begin, begin + std::min(input.Stb.cursor, input.CurLenW), ImWchar{'\n'}));
+}
+
 // Text, line numbers and marks, as high as given.
 void show_text(const Session& session, PanelState& state, float height) {
     EditorState& editor = state.editor;
@@ -140,6 +145,12 @@ void show_text(const Session& session, PanelState& state, float height) {
         ImGui::SetScrollY(child, std::max(0.0F, (static_cast<float>(editor.go_to) - above) * line));
         editor.go_to = 0;
     }
+    // A message that appears takes room from the text: the line under the hand stays in sight.
+    if (child != nullptr && input != nullptr && height < editor.height) {
+        const float below = static_cast<float>(line_of_cursor(*input)) * line + paddings - height;
+        if (child->Scroll.y < below) ImGui::SetScrollY(child, below);
+    }
+    editor.height = height;
     const float scroll = child != nullptr ? child->Scroll.y : 0.0F;
     const Page page{all.x + gutter + padding.x - sideways,
                     all.y + padding.y - scroll,
@@ -240,7 +251,7 @@ void hand_over_text(EditorState& editor, Commands& commands) {
 
 void toggle_editor(const Session& session, PanelState& state, Commands& commands) {
     hand_over_text(state.editor, commands);
-    commands.emplace_back(command::Show{!session.shows_editor()});
+    commands.emplace_back(command::Show{"editor", !session.shows_editor()});
 }
 
 void show_editor(const Session& session, PanelState& state, Commands& commands) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "figure/label.hpp"
 #include "output/output.hpp"
@@ -38,11 +39,24 @@ std::vector<std::string> wrapped(const std::string& text, float width) {
     return lines;
 }
 
-// The Zeno event that the user chose, which is shown with its certificate; or none.
-const Event* chosen(const Session& session) {
-    if (session.selected() == 0) return nullptr;
-    const Event& event = session.trajectory().events[static_cast<std::size_t>(session.selected() - 1)];
-    return event.certificate ? &event : nullptr;
+// The index of the event that the user chose, which is shown with its reasons; or none.
+std::optional<std::size_t> chosen(const Session& session) {
+    if (session.selected() == 0) return std::nullopt;
+    return static_cast<std::size_t>(session.selected() - 1);
+}
+
+// Whether something stands beside the list.
+bool has_card(const Session& session) { return chosen(session) || session.pinned() != nullptr; }
+
+void show_card_of_event(const Session& session, std::size_t event, PanelState& state, Commands& commands) {
+    switch (session.trajectory().events[event].kind) {
+        case Event::Kind::impact:
+            return show_impact(session, event, state, commands);
+        case Event::Kind::zeno:
+            return show_zeno(session, event, state, commands);
+        case Event::Kind::release:
+            return show_release(session, event, state, commands);
+    }
 }
 
 // A certificate in its symbols; the sentence itself is plain text, for terminals.
@@ -62,7 +76,7 @@ std::vector<Row> rows(const Session& session, bool impacts, float width) {
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (events[i].kind == Event::Kind::impact && !impacts) continue;
         result.push_back({i, ""});
-        if (!events[i].certificate || chosen(session) != nullptr) continue;
+        if (!events[i].certificate || has_card(session)) continue;
         for (std::string& line : wrapped(typeset_sentence(*events[i].certificate), width))
             result.push_back({i, std::move(line)});
     }
@@ -94,7 +108,32 @@ std::string state_text(const Session& session, const Event& event, float width) 
     return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
 }
 
-void show_header(bool with_state, PanelState& state) {
+// At the left of `right`: pin the present run, and the comparison of the two ways to cut a bouncing.
+void show_comparing(const Session& session, float right, PanelState& state, Commands& commands) {
+    const char* both = "paper | sharp";
+    const char* pin = session.pinned() != nullptr ? "unpin" : "pin";
+    const float padding = 2.0F * ImGui::GetStyle().FramePadding.x, gap = units(6.0F);
+    const float both_width = ImGui::CalcTextSize(both).x + padding,
+                pin_width = ImGui::CalcTextSize("unpin").x + padding;
+    ImGui::SameLine(right - both_width);
+    if (ImGui::Button(both)) {
+        using namespace command;
+        commands.insert(commands.end(),
+                        {UseConditions{Conditions::paper}, UseReinitialization{Reinitialization::euclidean}, Select{0},
+                         Pin{true}, UseConditions{Conditions::sharp}, UseReinitialization{Reinitialization::kinetic}});
+    }
+    remember(state, "compare");
+    tooltip(
+        "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with the kinetic "
+        "restart");
+    ImGui::SameLine(right - both_width - gap - pin_width);
+    if (ImGui::Button(pin, {pin_width, 0.0F})) commands.emplace_back(command::Pin{session.pinned() == nullptr});
+    remember(state, "pin");
+    tooltip("keep the present run in the plots, in grey, beside those that follow");
+}
+
+void show_header(const Session& session, PanelState& state, Commands& commands) {
+    const bool with_state = !has_card(session);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
@@ -113,6 +152,7 @@ void show_header(bool with_state, PanelState& state) {
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
     tooltip("list the impacts, or only Zeno points and releases");
+    show_comparing(session, right - width - units(16.0F), state, commands);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {
@@ -167,15 +207,15 @@ void follow(const std::vector<Row>& all, int event, PanelState& state) {
 }  // namespace
 
 void show_events(const Session& session, PanelState& state, Commands& commands) {
-    show_header(chosen(session) == nullptr, state);
+    show_header(session, state, commands);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
     // As high as whole lines are.
     const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
     const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
                          units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
-    const Event* event = chosen(session);
-    const float list_width = event == nullptr ? 0.0F : units(speed_at);
+    const auto event = chosen(session);
+    const float list_width = has_card(session) ? units(speed_at) : 0.0F;
     ImGui::BeginChild("list", {list_width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
     const std::vector<Row> all = rows(session, state.show_impacts, width);
@@ -190,12 +230,15 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
             show_row(session, row, i, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();
-    if (event != nullptr) {
+    if (has_card(session)) {
         ImGui::SameLine(0.0F, units(8.0F));
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
         ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
-        ImGui::BeginChild("certificate", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-        show_certificate(*event, session.selected(), state, commands);
+        ImGui::BeginChild("card", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+        if (event)
+            show_card_of_event(session, *event, state, commands);
+        else
+            show_comparison(session, state, commands);
         ImGui::EndChild();
         ImGui::PopStyleVar(2);
     }

@@ -79,6 +79,15 @@ void show_card(const std::string& message) {
     ImGui::EndGroup();
 }
 
+// Ctrl+Z and Ctrl+Shift+Z or Ctrl+Y, unless a text field has them.
+void use_keys(const Session& session, Commands& commands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput || !io.KeyCtrl) return;
+    const bool z = ImGui::IsKeyPressed('Z'), again = ImGui::IsKeyPressed('Y') || (z && io.KeyShift);
+    if (again && session.can_redo()) commands.emplace_back(command::Redo{});
+    if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
+}
+
 }  // namespace
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
@@ -96,11 +105,12 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     if (parts.error.height > 0.0F) {
         part("error", parts.error, still_window, [&] { show_card(message); });
     }
-    part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session); });
+    part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
     part("plots", parts.plots, still_window, [&] { show_plots(session, state, commands); });
     part("events", parts.events, still_window, [&] { show_events(session, state, commands); });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
+    use_keys(session, commands);
     return commands;
 }
 

@@ -22,6 +22,7 @@ struct EditorState {
     int revision = 0;         // counts the texts that came from elsewhere
     double resting = 0.0;     // s since the last letter
     int go_to = 0;            // a line to scroll to; 0: none
+    float height = 0.0F;      // of the text on the screen, pixels
     bool is_active = false;   // letters go here
 
     enum class Asking { nothing, open, save, unsaved };
@@ -51,10 +52,10 @@ struct PanelState {
     std::vector<SystemEntry> systems;  // to choose from
     bool in_window = false;            // a window may show how long the run took; a picture must not
     bool show_impacts = true;          // in the event list
-    bool loop = false;                 // at the end of the run the player begins again
     EditorState editor;
     PlotMenu plot_menu;
     PlotBox box;
+    enum class Hand { free, body, arrow, world } hand = Hand::free;  // what it holds in the mechanism
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
     int followed = -1;                                 // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
@@ -69,7 +70,7 @@ void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);
 void show_dialogs(const Session& session, PanelState& state, Commands& commands);
-void show_mechanism(const Session& session);
+void show_mechanism(const Session& session, PanelState& state, Commands& commands);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
@@ -81,7 +82,16 @@ void show_events(const Session& session, PanelState& state, Commands& commands);
 // What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
 // decided.
 std::vector<std::string> certificate_lines(const Event& event);
-void show_certificate(const Event& event, int number, PanelState& state, Commands& commands);
+void show_certificate(const Event& event);
+// The cards beside the list, each about the event with this index: its certificate or the Zeno lens; what an impact
+// cost and why the bouncing was not cut there; why the contact ended. And how the pinned run and the present one
+// differ. The first line of a card; true if the user closes it.
+bool show_card_title(const std::string& title, const std::string& more, PanelState& state);
+void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_lens(const Session& session, std::size_t event, PanelState& state, Commands& commands);
+void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_comparison(const Session& session, PanelState& state, Commands& commands);
 void show_status(const Session& session, const PanelState& state);
 
 // Letters were typed that are no command yet: frames must go on until they are.

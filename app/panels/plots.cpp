@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "figure/ticks.hpp"
 #include "paint/axes.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
@@ -35,11 +36,12 @@ struct Place {
     Rectangle area;  // inside the axes
     Rectangle cell;  // the whole card
     bool over_time;
+    PanelMap map;
 };
 
 // The instant of the present, or of the pointer: a line over time, a dot on every curve.
 void paint_instant(const Session& session, const Place& place, const Sample& sample, float strength) {
-    const PanelMap map(session.plots()[place.plot], place.area);
+    const PanelMap& map = place.map;
     const std::vector<double> values = session.values(place.plot, sample);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Rectangle& area = place.area;
@@ -75,7 +77,7 @@ void paint_values(const Session& session, const Place& place, const Sample& samp
     const float size = 0.87F * ImGui::GetFontSize(), line = 1.15F * size, padding = units(5.0F);
     float width = 0.0F;
     for (const std::string& text : lines) width = std::max(width, label_width(text, size));
-    const PanelMap map(session.plots()[place.plot], place.area);
+    const PanelMap& map = place.map;
     const bool at_left = map.x(values[0]) > place.area.x + 0.5 * place.area.width;
     const float left =
         std::floor(at_left ? place.area.x + padding : place.area.x + place.area.width - width - 3.0F * padding);
@@ -97,10 +99,10 @@ command::Zoom zoom_to(const PanelMap& map, std::size_t plot, double left, double
     return {static_cast<int>(plot) + 1, map.x.value(left), map.x.value(right), map.y.value(bottom), map.y.value(top)};
 }
 
-void use_wheel(const Session& session, const Place& place, bool along_x, bool along_y, Commands& commands) {
+void use_wheel(const Place& place, bool along_x, bool along_y, Commands& commands) {
     const float wheel = ImGui::GetIO().MouseWheel;
     if (wheel == 0.0F) return;
-    const PanelMap map(session.plots()[place.plot], place.area);
+    const PanelMap& map = place.map;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double factor = std::pow(0.85, double{wheel});
     const auto about = [&](double pixel, double at, bool along) { return along ? at + (pixel - at) * factor : pixel; };
@@ -110,18 +112,18 @@ void use_wheel(const Session& session, const Place& place, bool along_x, bool al
 }
 
 // Moves with the hand from where it took hold.
-void use_drag(const Session& session, const Place& place, Commands& commands) {
+void use_drag(const Place& place, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, static_cast<float>(click)) || (delta.x == 0 && delta.y == 0))
         return;
-    const PanelMap map(session.plots()[place.plot], place.area);
+    const PanelMap& map = place.map;
     const Rectangle& a = place.area;
     commands.emplace_back(
         zoom_to(map, place.plot, a.x - delta.x, a.x + a.width - delta.x, a.y - delta.y, a.y + a.height - delta.y));
 }
 
 // With the right button: a box, and when it is let go the box is the plot.
-void use_box(const Session& session, const Place& place, PanelState& state, Commands& commands) {
+void use_box(const Place& place, PanelState& state, Commands& commands) {
     const int number = static_cast<int>(place.plot);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const Rectangle& a = place.area;
@@ -141,7 +143,7 @@ void use_box(const Session& session, const Place& place, PanelState& state, Comm
     }
     state.box.plot = -1;
     if (right - left < click || bottom - top < click) return;
-    commands.emplace_back(zoom_to(PanelMap(session.plots()[place.plot], a), place.plot, left, right, top, bottom));
+    commands.emplace_back(zoom_to(place.map, place.plot, left, right, top, bottom));
 }
 
 void use_click(const Session& session, const Place& place, Commands& commands) {
@@ -152,7 +154,7 @@ void use_click(const Session& session, const Place& place, Commands& commands) {
     }
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
     if (!place.over_time || !ImGui::IsItemDeactivated() || std::hypot(moved.x, moved.y) > click) return;
-    const PanelMap map(session.plots()[place.plot], place.area);
+    const PanelMap& map = place.map;
     const double time = map.x.value(ImGui::GetIO().MousePos.x);
     if (time != session.time()) commands.emplace_back(command::Seek{time});
 }
@@ -170,16 +172,15 @@ void use_mouse(const Session& session, const Place& place, PanelState& state, Co
     const Rectangle &a = place.area, &c = place.cell;
     const std::string name = "plot " + std::to_string(place.plot);
     if (hot("x axis of " + name, {a.x, a.y + a.height, a.width, c.y + c.height - a.y - a.height}))
-        use_wheel(session, place, true, false, commands);
-    if (hot("y axis of " + name, {c.x, a.y, a.x - c.x, a.height})) use_wheel(session, place, false, true, commands);
+        use_wheel(place, true, false, commands);
+    if (hot("y axis of " + name, {c.x, a.y, a.x - c.x, a.height})) use_wheel(place, false, true, commands);
     const bool hovered = hot(name, a);
     remember(state, name);
-    if (hovered) use_wheel(session, place, true, true, commands);
-    if (ImGui::IsItemActive()) use_drag(session, place, commands);
+    if (hovered) use_wheel(place, true, true, commands);
+    if (ImGui::IsItemActive()) use_drag(place, commands);
     use_click(session, place, commands);
-    use_box(session, place, state, commands);
-    if (hovered && place.over_time)
-        state.pointed_at = PanelMap(session.plots()[place.plot], a).x.value(ImGui::GetIO().MousePos.x);
+    use_box(place, state, commands);
+    if (hovered && place.over_time) state.pointed_at = place.map.x.value(ImGui::GetIO().MousePos.x);
 }
 
 // Clickable: the curves of a plot that has several. Returns where it began.
@@ -236,6 +237,26 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     show_plot_menu(session, plot, state, commands);
 }
 
+// The plot with the pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits
+// hold both.
+Panel with_pinned(const Session& session, std::size_t plot) {
+    Panel panel = session.plots()[plot];
+    if (plot >= session.pinned_plots().size()) return panel;
+    const Panel& pinned = session.pinned_plots()[plot];
+    std::vector<Curve> behind = pinned.curves;
+    for (Curve& curve : behind) {
+        curve.label.clear();
+        curve.stroke.color = session.theme().surface;
+        curve.stroke.color.a = 140;
+        curve.stroke.width = 1.2;
+    }
+    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
+    const Framing& framing = session.plotted().list()[plot].framing;
+    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
+    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
+    return panel;
+}
+
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
@@ -245,10 +266,11 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
     const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
                           cell.y + cell.height - edge - row.y - head};
     if (inner.width < 2.0F || inner.height < 2.0F) return;
-    const Rectangle area = paint(session.plots()[plot], style_of(session.theme()), list, inner, units(1.0F));
+    const Panel panel = with_pinned(session, plot);
+    const Rectangle area = paint(panel, style_of(session.theme()), list, inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
-    const Place place{plot, area, cell, session.plotted().list()[plot].over_time()};
+    const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};
     paint_instant(session, place, session.now(), 1.0F);
     if (state.pointed_before) {
         const Sample sample = session.at(*state.pointed_before);

@@ -37,11 +37,15 @@ class Program {
  private:
     template <class Scalar>
     friend class Evaluator;
+    friend class SeriesCompiler;
+    friend class SeriesEvaluator;
     Slots slots_;
     std::vector<Constant> constants_;        // registers count .. count + constants - 1
     std::vector<Instruction> instructions_;  // results follow in order, one register each
     std::size_t fixed_ = 0;                  // instructions that depend on parameters alone come first
-    std::vector<std::uint32_t> outputs_;     // registers
+    std::vector<std::size_t> runs_;          // ends of runs of instructions of one operation
+    std::size_t fixed_runs_ = 0;
+    std::vector<std::uint32_t> outputs_;  // registers
 };
 
 // A program with its registers. One per thread; copying copies the registers.
@@ -60,85 +64,91 @@ class Evaluator {
     std::size_t output_count() const { return program_->outputs_.size(); }
 
     // Evaluates what depends on the parameters alone. Call after the parameter inputs change, before run().
-    void fix() { execute(0, program_->fixed_); }
+    void fix() { execute(0, program_->fixed_runs_); }
     // Evaluates the rest. Inputs must be set.
-    void run() { execute(program_->fixed_, program_->instructions_.size()); }
+    void run() { execute(program_->fixed_runs_, program_->runs_.size()); }
 
  private:
-    void execute(std::size_t begin, std::size_t end);
+    friend class SeriesEvaluator;
+    void execute(std::size_t first_run, std::size_t last_run);
     const Program* program_ = nullptr;
     std::vector<Scalar> registers_;
 };
 
+// Branches once a run of equal operations, not once an instruction: what to do next is hard to foresee for a processor.
 template <class Scalar>
-void Evaluator<Scalar>::execute(std::size_t begin, std::size_t end) {
+void Evaluator<Scalar>::execute(std::size_t first_run, std::size_t last_run) {
     using std::acos, std::asin, std::atan, std::cos, std::cosh, std::exp, std::log, std::sin, std::sinh, std::sqrt,
         std::tan, std::tanh, std::pow;
     Scalar* const r = registers_.data();
-    Scalar* result = r + program_->slots_.count + program_->constants_.size() + begin;
-    for (std::size_t i = begin; i < end; ++i, ++result) {
-        const Instruction& in = program_->instructions_[i];
-        const Scalar& a = r[in.a];
-        switch (in.operation) {
+    const Instruction* const begin = program_->instructions_.data();
+    const Instruction* in = begin + (first_run == 0 ? 0 : program_->runs_[first_run - 1]);
+    Scalar* result = r + program_->slots_.count + program_->constants_.size() + (in - begin);
+    for (std::size_t run = first_run; run < last_run; ++run) {
+        const Instruction* const end = begin + program_->runs_[run];
+        const auto each = [&](const auto& value) {
+            for (; in != end; ++in, ++result) *result = value(r[in->a]);
+        };
+        switch (in->operation) {
             case Operation::add:
-                *result = a + r[in.b];
+                each([&](const Scalar& a) -> Scalar { return a + r[in->b]; });
                 break;
             case Operation::subtract:
-                *result = a - r[in.b];
+                each([&](const Scalar& a) -> Scalar { return a - r[in->b]; });
                 break;
             case Operation::multiply:
-                *result = a * r[in.b];
+                each([&](const Scalar& a) -> Scalar { return a * r[in->b]; });
                 break;
             case Operation::divide:
-                *result = a / r[in.b];
+                each([&](const Scalar& a) -> Scalar { return a / r[in->b]; });
                 break;
             case Operation::negate:
-                *result = -a;
+                each([&](const Scalar& a) -> Scalar { return -a; });
                 break;
             case Operation::power:
-                *result = integer_power(a, in.exponent);
+                each([&](const Scalar& a) -> Scalar { return integer_power(a, in->exponent); });
                 break;
             case Operation::real_power:
-                *result = pow(a, r[in.b]);
+                each([&](const Scalar& a) -> Scalar { return pow(a, r[in->b]); });
                 break;
             case Operation::sqrt:
-                *result = sqrt(a);
+                each([&](const Scalar& a) -> Scalar { return sqrt(a); });
                 break;
             case Operation::sin:
-                *result = sin(a);
+                each([&](const Scalar& a) -> Scalar { return sin(a); });
                 break;
             case Operation::cos:
-                *result = cos(a);
+                each([&](const Scalar& a) -> Scalar { return cos(a); });
                 break;
             case Operation::tan:
-                *result = tan(a);
+                each([&](const Scalar& a) -> Scalar { return tan(a); });
                 break;
             case Operation::asin:
-                *result = asin(a);
+                each([&](const Scalar& a) -> Scalar { return asin(a); });
                 break;
             case Operation::acos:
-                *result = acos(a);
+                each([&](const Scalar& a) -> Scalar { return acos(a); });
                 break;
             case Operation::atan:
-                *result = atan(a);
+                each([&](const Scalar& a) -> Scalar { return atan(a); });
                 break;
             case Operation::sinh:
-                *result = sinh(a);
+                each([&](const Scalar& a) -> Scalar { return sinh(a); });
                 break;
             case Operation::cosh:
-                *result = cosh(a);
+                each([&](const Scalar& a) -> Scalar { return cosh(a); });
                 break;
             case Operation::tanh:
-                *result = tanh(a);
+                each([&](const Scalar& a) -> Scalar { return tanh(a); });
                 break;
             case Operation::exp:
-                *result = exp(a);
+                each([&](const Scalar& a) -> Scalar { return exp(a); });
                 break;
             case Operation::log:
-                *result = log(a);
+                each([&](const Scalar& a) -> Scalar { return log(a); });
                 break;
             case Operation::pi:
-                *result = scalar_pi<Scalar>();
+                each([](const Scalar&) { return scalar_pi<Scalar>(); });
                 break;
             case Operation::number:
             case Operation::symbol:

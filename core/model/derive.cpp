@@ -10,17 +10,20 @@ namespace {
 
 using Row = std::vector<Expression>;
 
-// M = L D L' with unit lower triangular L. Square roots are not needed and zeros stay zeros.
+// M = L D L' with unit lower triangular L. Square roots are not needed and zeros stay zeros; L D is kept beside L,
+// because it is there before the division.
 class Factorisation {
  public:
     Factorisation(const Row& M, std::size_t n, Graph& graph) : n_(n), lower_(n * n, graph.number(0)), pivots_(n) {
+        Row product(n * n, graph.number(0));  // L D
         for (std::size_t j = 0; j < n; ++j) {
             pivots_[j] = M[j * n + j];
-            for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - power(lower_[j * n + k], 2) * pivots_[k];
+            for (std::size_t k = 0; k < j; ++k) pivots_[j] = pivots_[j] - lower_[j * n + k] * product[j * n + k];
             if (pivots_[j].is_zero()) throw std::domain_error(fmt::format("pivot {} is 0", j + 1));
             for (std::size_t i = j + 1; i < n; ++i) {
                 Expression entry = M[i * n + j];
-                for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * lower_[j * n + k] * pivots_[k];
+                for (std::size_t k = 0; k < j; ++k) entry = entry - lower_[i * n + k] * product[j * n + k];
+                product[i * n + j] = entry;
                 lower_[i * n + j] = entry / pivots_[j];
             }
         }

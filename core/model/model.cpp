@@ -180,12 +180,15 @@ void Model::compile() {
     flight_ = program({e.f, {e.hddot}, e.pivots});
     contact_ = program({e.f_c, {e.hddot}, e.pivots, {e.jerk}});
     gap_ = program({{e.gap}});
+    normal_ = program({{e.hddot}});
     release_ = program({{e.hddot, e.jerk}});
     surface_ = program({{e.gap, e.hdot}, e.n, e.g, {e.W}});
     bounds_ = program({{e.hddot}, e.n, e.f});
     energy_ = program({{e.energy, e.kinetic, e.potential}});
     force_ = program({{e.lambda}});
     restitution_ = program({{e.restitution}});
+    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.n + 1);
+    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.n + 1);
 }
 
 const Bouncing& Model::bouncing() const {

@@ -19,6 +19,7 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/description.hpp"
+#include "series/series.hpp"
 #include "trajectory.hpp"
 
 namespace achilles {
@@ -38,12 +39,17 @@ class Model {
     const Program& flight() const { return flight_; }    // f (n), hddot, pivots (n)
     const Program& contact() const { return contact_; }  // f_c (n), hddot, pivots (n), jerk
     const Program& gap() const { return gap_; }          // h
+    const Program& normal() const { return normal_; }    // hddot
     const Program& release() const { return release_; }  // hddot, jerk
     const Program& surface() const { return surface_; }  // h, hdot, n (n), g (n), W
     const Program& bounds() const { return bounds_; }    // hddot, n (n), f (n): what Def. 7 needs over a box
     const Program& energy() const { return energy_; }    // T + V, T, V
     const Program& force() const { return force_; }      // lambda
     const Program& restitution() const { return restitution_; }
+
+    // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
+    const SeriesProgram& flight_series() const { return flight_series_; }
+    const SeriesProgram& contact_series() const { return contact_series_; }
 
     // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
     // too large.
@@ -86,7 +92,8 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
-    Program flight_, contact_, gap_, release_, surface_, bounds_, energy_, force_, restitution_;
+    SeriesProgram flight_series_, contact_series_;
+    Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
 };
 
 }  // namespace achilles

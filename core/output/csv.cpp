@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/model.hpp"
@@ -27,7 +28,10 @@ std::string to_csv(const Trajectory& trajectory) {
     auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
     auto force = model.evaluator(model.force(), trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
-    for (const Sample& sample : Sampler(trajectory).all()) {
+    // Step ends and events; where steps are long, so many instants between them that a plot of the rows is a curve.
+    constexpr std::size_t wanted = 1000;
+    const auto between = static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size()));
+    for (const Sample& sample : Sampler(trajectory).all(between)) {
         for (auto* program : {&surface, &force, &energy}) {
             put(*program, sample.state);
             program->run();

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -27,7 +28,6 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* 
       watch_(watch),
       flow_(*model_, run_),
       surface_(*model_, run_),
-      conditions_(truncation_conditions(*model_, run_)),
       record_(model_, run_),
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
       state_{run.q, run.v} {}
@@ -35,7 +35,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* 
 // ---- the start ----
 
 void Execution::begin() {
-    const Contact contact = surface_.at(state_);
+    const Contact contact = contact_ = surface_.at(state_);
     takeoff_ = {{contact.h, contact.hdot}, 0};
     if (contact.h <= 4.0 * surface_.gap_error(state_)) {  // |h| and |hdot| within rounding count as zero
         takeoff_ = {{0.0, contact.hdot}, 1};
@@ -82,9 +82,10 @@ Polynomial Execution::gap_along() {
     Polynomial h = flow_.watched();
     const int known = takeoff_.multiplicity;
     for (int j = 0; j < known; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
+    if (flow_.is_expansion()) return h;
     const Contact contact = surface_.at(flow_.end());
     const double value = contact.h - h(1.0), slope = contact.hdot * flow_.duration() - h.slope(1.0);
-    if (std::abs(value) > 4.0 * surface_.gap_error(flow_.end())) {
+    if (!surface_.within_gap_error(value, 4.0, contact, flow_.end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
         const int m = std::max(2, known);
         const double b = slope - m * value;
@@ -98,14 +99,31 @@ Polynomial Execution::gap_along() {
 bool Execution::find_impact() {
     if (!advance(run_.options.end_time - flow_.end_time())) return true;
     Polynomial h = gap_along();
-    if (const std::optional<double> root = first_descent(h, takeoff_.multiplicity)) {
-        if (locate_impact(*root)) return true;
+    Descent descent = first_descent(h, takeoff_.multiplicity, flow_.remainder());
+    if (takeoff_.inside && descent.kind == Descent::Kind::none) descent.kind = Descent::Kind::undecided;
+    if (descent.kind == Descent::Kind::undecided) return leave_undecided(descent.theta);
+    if (descent.kind == Descent::Kind::root) {
+        if (descent.theta == 0.0) return true;  // it came down within the remainder of the last step
+        if (locate_impact(descent.theta)) return true;
         h = gap_along();  // no impact after all, or the step became shorter
     }
-    flow_.move_gap({h(1.0), h.slope(1.0) / flow_.duration()});
-    takeoff_.multiplicity = 0;
-    take(surface_.at(flow_.end()).h);
+    Gap gap{h(1.0), h.slope(1.0) / flow_.duration()};
+    const Contact contact = surface_.at(flow_.end());
+    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow_.end())) gap = {contact.h, contact.hdot};
+    flow_.move_gap(gap);
+    takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
+    take(contact);
     return false;
+}
+
+// Whether the gap closes cannot be told from here on: the run ends there. Always true.
+bool Execution::leave_undecided(double theta) {
+    if (theta > 0.0 && flow_.retake(theta * flow_.duration()) == Obstacle::none) take(surface_.at(flow_.end()));
+    stop(Outcome::Kind::undecided,
+         fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot "
+                     "be told just after {}",
+                     flow_.remainder(), where(t_, state_)));
+    return true;
 }
 
 // Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
@@ -113,10 +131,11 @@ bool Execution::find_impact() {
 bool Execution::locate_impact(double theta) {
     double duration = theta * flow_.duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Flow::Obstacle::none) {
+        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
             leave(obstacle);
             return true;
         }
+        if (flow_.is_expansion()) break;
         const bool shortened = flow_.duration() < duration * (1.0 - 1e-12);
         const Polynomial h = gap_along();
         const double hdot = h.slope(1.0) / flow_.duration();
@@ -134,15 +153,15 @@ bool Execution::locate_impact(double theta) {
              "dh = 0 where contact happens: the normal is not defined at " + where(flow_.end_time(), flow_.end()));
         return true;
     }
-    flow_.move_end(*landed);
-    take(surface_.at(*landed).h);
+    flow_.move_end(landed->state);
+    take(landed->contact);
     return true;
 }
 
 // ---- impact ----
 
 void Execution::land() {
-    const Contact contact = surface_.at(state_);
+    const Contact& contact = contact_;
     if (!(contact.hdot < 0.0)) {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
@@ -151,10 +170,10 @@ void Execution::land() {
                         reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
     if (restitution_ == 0.0) {
         capture(collision);
-    } else if (auto certificate = conditions_->hold(collision)) {
+    } else if (auto certificate = prove(&TruncationConditions::hold, collision)) {
         complete(collision, *certificate);
     } else if (too_short_to_resolve(collision, restitution_)) {
-        if (auto widest = conditions_->widest(collision)) {
+        if (auto widest = prove(&TruncationConditions::widest, collision)) {
             complete(collision, *widest);
         } else {
             stop(Outcome::Kind::undecided,
@@ -164,6 +183,16 @@ void Execution::land() {
     } else {
         bounce(contact, restitution_);
     }
+}
+
+// Asks the truncation conditions, which stand ready from the first question on.
+std::optional<Certificate> Execution::prove(
+    std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
+    const auto clock = std::chrono::steady_clock::now();
+    if (!conditions_) conditions_ = truncation_conditions(*model_, run_);
+    auto certificate = ((*conditions_).*question)(collision);
+    proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return certificate;
 }
 
 // Newton's law, and the flight it starts.
@@ -185,16 +214,21 @@ void Execution::bounce(const Contact& contact, double e) {
     state_.v = event.v_after;
     record_.event(std::move(event));
     const double hdot = -e * contact.hdot;
-    const double hddot = surface_.normal_acceleration(state_);
     takeoff_ = {{0.0, hdot}, 1};
+    first_step_ = 0.0;
+    if (flow_.is_expansion()) return;
+    const double hddot = surface_.normal_acceleration(state_);
     first_step_ = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
 // THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
+    // Far from it where the last step was neither short nor low.
+    const double last = flow_.duration(), q = collision.before.q.cwiseAbs().maxCoeff();
+    if (last > 1e-6 * (1.0 + collision.t) && last * collision.speed > 1e-8 * (1.0 + q)) return false;
+    const double u = e * collision.speed;
     const double a = -surface_.normal_acceleration({collision.before.q, collision.tangential});
     if (!(a > 0.0)) return false;
-    const double u = e * collision.speed;
     return u * u / (2.0 * a) < 4.0 * surface_.gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
 }
 
@@ -216,7 +250,7 @@ void Execution::capture(const Collision& before) {
         certificate.inequalities = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(collision, certificate);
     } else if (certainly_positive(hddot)) {
-        bounce(surface_.at(state_), 0.0);
+        bounce(contact_, 0.0);
         takeoff_ = {{0.0, 0.0}, 2};
     } else {
         stop(Outcome::Kind::undecided,
@@ -271,14 +305,24 @@ bool Execution::stay(double until) {
                  "the motion cannot be kept on the surface at " + where(flow_.end_time(), flow_.end()));
             return false;
         }
-        flow_.move_end(*projected);
+        flow_.move_end(projected->state);
         Polynomial force = flow_.watched();
         for (double& c : force.c) c = -c;  // -hddot = W lambda
-        force.c[2] += -surface_.normal_acceleration(*projected) - force(1.0);
+        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(projected->state) - force(1.0);
         if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
-        const std::optional<double> root = first_descent(force, 0);
-        if (root && locate_release(*root)) return !outcome_;
-        take(surface_.at(flow_.end()).h);
+        const Descent descent = first_descent(force, 0, flow_.remainder());
+        if (descent.kind == Descent::Kind::undecided) {
+            stop(Outcome::Kind::undecided,
+                 "the contact force comes closer to zero than the integration knows it just after " +
+                     where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
+            return false;
+        }
+        if (descent.kind == Descent::Kind::root) {
+            if (locate_release(descent.theta)) return !outcome_;
+            take(surface_.at(flow_.end()));  // the step became shorter
+        } else {
+            take(projected->contact);
+        }
     }
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
     return false;
@@ -288,27 +332,28 @@ bool Execution::stay(double until) {
 bool Execution::locate_release(double theta) {
     double duration = theta * flow_.duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Flow::Obstacle::none) {
+        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
             leave(obstacle);
             return true;
         }
         const auto projected = surface_.project(flow_.end(), false);
         if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) {
-            if (projected) flow_.move_end(*projected);
+            if (projected) flow_.move_end(projected->state);
             return false;
         }
-        flow_.move_end(*projected);
-        const double correction = -surface_.normal_acceleration(*projected) / surface_.jerk(*projected);
+        const State& end = projected->state;
+        flow_.move_end(end);
+        const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             flow_.shift_end(correction);
-            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(*again);
+            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(again->state);
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides
         duration = std::max(duration + correction, 0.5 * duration);
     }
-    take(surface_.at(flow_.end()).h);
+    take(surface_.at(flow_.end()));
     return true;
 }
 
@@ -359,25 +404,26 @@ bool Execution::advance(double longest) {
         return false;
     }
     const auto obstacle = flow_.step(longest);
-    if (obstacle != Flow::Obstacle::none) leave(obstacle);
-    return obstacle == Flow::Obstacle::none;
+    if (obstacle != Obstacle::none) leave(obstacle);
+    return obstacle == Obstacle::none;
 }
 
-// Accepts the flow's last step.
-void Execution::take(double gap) {
-    record_.step(flow_, gap);
+// Accepts the flow's last step; `contact` is that of its end.
+void Execution::take(const Contact& contact) {
+    contact_ = contact;
+    record_.step(flow_, contact.h);
     t_ = flow_.end_time();
     state_ = flow_.end();
 }
 
-void Execution::leave(Flow::Obstacle obstacle) {
+void Execution::leave(Obstacle obstacle) {
     const std::string place = where(t_, state_);
     switch (obstacle) {
-        case Flow::Obstacle::left_the_domain:
+        case Obstacle::left_the_domain:
             return stop(
                 Outcome::Kind::left_the_domain,
                 "the motion leaves the domain (M not positive definite, or a function undefined) just after " + place);
-        case Flow::Obstacle::not_a_number:
+        case Obstacle::not_a_number:
             return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
         default:
             return stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
@@ -386,6 +432,10 @@ void Execution::leave(Flow::Obstacle obstacle) {
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
-Trajectory Execution::finish() { return record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations()); }
+Trajectory Execution::finish() {
+    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations());
+    trajectory.statistics.certificate_seconds = proving_;
+    return trajectory;
+}
 
 }  // namespace achilles

@@ -32,15 +32,19 @@ class Execution {
  private:
     // How the gap leaves zero at the start of a flight: h, hdot, and how many of h, hdot, hddot are zero there.
     struct Takeoff {
-        Flow::Gap gap;
+        Gap gap;
         int multiplicity = 0;
+        bool inside = false;  // the last step ended with the gap inside its remainder
     };
 
     void start_in_contact(const Surface::Normal& normal);
     Polynomial gap_along();
     bool find_impact();
+    bool leave_undecided(double theta);
     bool locate_impact(double theta);
     void land();
+    std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
+                                     const Collision& collision);
     void bounce(const Contact& contact, double e);
     bool too_short_to_resolve(const Collision& collision, double e);
     void complete(const Collision& collision, Certificate certificate);
@@ -51,8 +55,8 @@ class Execution {
 
     bool is_cancelled();
     bool advance(double longest);
-    void take(double gap);
-    void leave(Flow::Obstacle obstacle);
+    void take(const Contact& contact);
+    void leave(Obstacle obstacle);
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
@@ -65,10 +69,12 @@ class Execution {
     double restitution_;
     double t_ = 0.0;
     State state_;
+    Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;
     double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
+    double proving_ = 0.0;    // s, the clock's
     std::optional<Outcome> outcome_;
 };
 

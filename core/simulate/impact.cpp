@@ -23,6 +23,7 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
 Surface::Surface(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
       surface_(model.evaluator(model.surface(), run.parameters)),
+      normal_(model.evaluator(model.normal(), run.parameters)),
       release_(model.evaluator(model.release(), run.parameters)),
       gap_(model.evaluator<Interval>(model.gap(), run.parameters)),
       surface_enclosure_(model.evaluator<Interval>(model.surface(), run.parameters)),
@@ -45,20 +46,30 @@ double Surface::gap_error(const State& state) {
     return rad(gap_.output(0));
 }
 
+// What the rounding of q alone does to h is a part of the bound and at hand.
+bool Surface::within_gap_error(double value, double times, const Contact& contact, const State& state) {
+    constexpr double surely = 0.5 * 0x1p-53;  // half, for its own rounding
+    const double part = surely * contact.g.cwiseProduct(state.q).cwiseAbs().sum();
+    return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
+}
+
 double Surface::hdot_error(const State& state) {
     put(surface_enclosure_, state);
     surface_enclosure_.run();
     return rad(surface_enclosure_.output(1));
 }
 
-std::optional<State> Surface::project(State state, bool keep_velocity) {
+std::optional<Surface::Placed> Surface::project(State state, bool keep_velocity) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
     for (int round = 0; round <= rounds; ++round) {
-        const Contact contact = at(state);
+        Contact contact = at(state);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
-        if (std::abs(contact.h) <= gap_error(state) * (round < rounds ? 1.0 : 4.0)) {
-            if (!keep_velocity) state.v -= contact.hdot * contact.n;
-            return state;
+        if (within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state)) {
+            if (!keep_velocity) {
+                state.v -= contact.hdot * contact.n;
+                contact.hdot = 0.0;
+            }
+            return Placed{state, contact};
         }
         state.q -= contact.h * contact.n;
     }
@@ -76,9 +87,9 @@ Surface::Normal Surface::normal(const State& state) {
 }
 
 double Surface::normal_acceleration(const State& state) {
-    put(release_, state);
-    release_.run();
-    return release_.output(0);
+    put(normal_, state);
+    normal_.run();
+    return normal_.output(0);
 }
 
 double Surface::jerk(const State& state) {

@@ -31,11 +31,17 @@ class Surface {
     Contact at(const State& state);
     // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
     double gap_error(const State& state);
-    // The same for hdot.
+    // Is |value|, a difference of gaps, within `times` that bound at q?
+    bool within_gap_error(double value, double times, const Contact& contact, const State& state);
+    // The bound for hdot.
     double hdot_error(const State& state);
     // Moves q along n until |h| is at rounding level, then v to s (kept = false) or not at all (kept = true).
     // Returns nothing where that fails: dh = 0, or h cannot be brought to zero.
-    std::optional<State> project(State state, bool keep_velocity);
+    struct Placed {
+        State state;
+        Contact contact;  // there
+    };
+    std::optional<Placed> project(State state, bool keep_velocity);
     // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
     struct Normal {
         Interval hddot, jerk;
@@ -46,7 +52,7 @@ class Surface {
 
  private:
     std::size_t n_;
-    Evaluator<double> surface_, release_;
+    Evaluator<double> surface_, normal_, release_;
     Evaluator<Interval> gap_, surface_enclosure_, release_enclosure_;
 };
 

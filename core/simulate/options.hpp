@@ -31,11 +31,11 @@ struct Truncation {
 };
 
 struct Options {
-    double end_time = 10.0;    // s, the run stops here at the latest
-    double tolerance = 1e-10;  // local error per step, absolute and relative
-    Method method = Method::dopri5;
-    int max_impacts = 200000;  // over the run; then Outcome "too many impacts"
-    int max_steps = 2000000;   // of the integration, over the run: all are kept; then Outcome "too many steps"
+    double end_time = 10.0;          // s, the run stops here at the latest
+    double tolerance = 1e-10;        // local error per step, absolute and relative
+    Method method = Method::taylor;  // the faster one from any tolerance on that is worth asking for
+    int max_impacts = 200000;        // over the run; then Outcome "too many impacts"
+    int max_steps = 2000000;         // of the integration, over the run: all are kept; then Outcome "too many steps"
     Truncation truncation;
 };
 

@@ -1,7 +1,7 @@
 #include "simulate/polynomial.hpp"
 
-#include <boost/math/tools/toms748_solve.hpp>
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 
 namespace achilles {
 
@@ -32,42 +32,31 @@ Polynomial interpolate(const std::array<double, 5>& f) {
 
 namespace {
 
-using Bernstein = std::array<double, Polynomial::capacity>;
+using Coefficients = std::array<double, Polynomial::capacity>;
+
+// C(i, j), stored by j: column j is contiguous in i.
+constexpr auto binomials = [] {
+    std::array<Coefficients, Polynomial::capacity> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        table[0][i] = 1.0;
+        for (std::size_t j = 1; j <= i; ++j) table[j][i] = table[j - 1][i - 1] + (j < i ? table[j][i - 1] : 0.0);
+    }
+    return table;
+}();
 
 // b_i = sum_j C(i,j)/C(d,j) c_j: the coefficients over [0, 1].
-Bernstein to_bernstein(const Polynomial& p) {
-    Bernstein b{};
-    std::array<double, Polynomial::capacity> scaled{};  // c_j / C(d, j)
-    double binomial = 1.0;
-    for (int j = 0; j <= p.degree; ++j) {
-        scaled[static_cast<std::size_t>(j)] = p.c[static_cast<std::size_t>(j)] / binomial;
-        binomial = binomial * (p.degree - j) / (j + 1);
-    }
-    for (int i = 0; i <= p.degree; ++i) {
-        double sum = 0.0, choose = 1.0;
-        for (int j = 0; j <= i; ++j) {
-            sum += choose * scaled[static_cast<std::size_t>(j)];
-            choose = choose * (i - j) / (j + 1);
-        }
-        b[static_cast<std::size_t>(i)] = sum;
+Coefficients to_bernstein(const Polynomial& p) {
+    Coefficients b{};
+    const auto d = static_cast<std::size_t>(p.degree);
+    for (std::size_t j = 0; j <= d; ++j) {
+        const double scaled = p.c[j] / binomials[j][d];
+        for (std::size_t i = j; i <= d; ++i) b[i] += binomials[j][i] * scaled;
     }
     return b;
 }
 
-int sign_variations(const Bernstein& b, int degree) {
-    int count = 0;
-    double last = 0.0;
-    for (int i = 0; i <= degree; ++i) {
-        const double value = b[static_cast<std::size_t>(i)];
-        if (value == 0.0) continue;
-        if (last * value < 0.0) ++count;
-        last = value > 0.0 ? 1.0 : -1.0;
-    }
-    return count;
-}
-
-// De Casteljau at the middle: the halves' coefficients.
-void halve(const Bernstein& b, int degree, Bernstein& left, Bernstein& right) {
+// De Casteljau at the middle: the halves' coefficients. Afterwards right[i] holds the last entry of each level.
+void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& right) {
     right = b;
     for (int level = 0; level <= degree; ++level) {
         left[static_cast<std::size_t>(level)] = right[0];
@@ -75,47 +64,113 @@ void halve(const Bernstein& b, int degree, Bernstein& left, Bernstein& right) {
             right[static_cast<std::size_t>(i)] =
                 0.5 * (right[static_cast<std::size_t>(i)] + right[static_cast<std::size_t>(i) + 1]);
     }
-    // After the loop right[i] holds the last entry of each level, in the right order.
 }
 
+// The root between a positive and a negative end: Newton's method, kept inside the shrinking bracket.
 double polish(const Polynomial& p, double low, double high) {
     const double at_low = p(low), at_high = p(high);
-    if (at_low == 0.0) return low;
-    if (at_high == 0.0) return high;
-    if (at_low * at_high > 0.0) return 0.5 * (low + high);  // signs lost to rounding: the bracket itself is the answer
-    std::uintmax_t iterations = 60;
-    const auto bracket = boost::math::tools::toms748_solve([&](double x) { return p(x); }, low, high, at_low, at_high,
-                                                           boost::math::tools::eps_tolerance<double>(52), iterations);
-    return 0.5 * (bracket.first + bracket.second);
+    if (!(at_low > 0.0)) return low;
+    if (!(at_high < 0.0)) return high;
+    double x = low + (high - low) * (at_low / (at_low - at_high));
+    for (int round = 0; round < 100; ++round) {
+        double value = 0.0, slope = 0.0;
+        for (int i = p.degree; i >= 0; --i) {
+            slope = slope * x + value;
+            value = value * x + p.c[static_cast<std::size_t>(i)];
+        }
+        if (value == 0.0) return x;
+        (value > 0.0 ? low : high) = x;
+        double next = x - value / slope;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+        if (std::abs(next - x) <= 0x1p-53 * x || next == low || next == high) return next;
+        x = next;
+    }
+    return x;
 }
 
-std::optional<double> search(const Polynomial& p, const Bernstein& b, double low, double high, int depth) {
-    const double first = b[0], last = b[static_cast<std::size_t>(p.degree)];
-    const int variations = sign_variations(b, p.degree);
-    if (variations == 0) {
-        if (last == 0.0 && first > 0.0) return high;
-        return std::nullopt;
+// Looks through the step from left to right, in pieces that are halved until each says one thing.
+class Search {
+ public:
+    Search(const Polynomial& p, double remainder) : p_(p), remainder_(remainder) {}
+
+    Descent run() {
+        const Coefficients b = to_bernstein(p_);
+        inside_ = starts_inside_ = !(b[0] > remainder_);
+        if (visit(b, 0.0, 1.0, 45)) return found_;
+        if (inside_) return {Descent::Kind::open, since_};
+        return {};
     }
-    if (variations == 1) {
-        if (first < 0.0) return std::nullopt;  // it rises through zero here
-        return polish(p, low, high);
+
+ private:
+    bool find(Descent::Kind kind, double theta) {
+        found_ = {kind, theta};
+        return true;
     }
-    if (depth == 0) return std::nullopt;  // a touch, to within rounding
-    Bernstein left{}, right{};
-    halve(b, p.degree, left, right);
-    const double middle = 0.5 * (low + high);
-    if (const auto root = search(p, left, low, middle, depth - 1)) return root;
-    return search(p, right, middle, high, depth - 1);
-}
+
+    // One piece. What is known on entering it: inside_, that the quantity has come down into the remainder (at since_)
+    // and not left it; otherwise it is above. True if the search is over.
+    bool visit(const Coefficients& b, double low, double high, int depth) {
+        int rises_and_falls = 0, crossings_below = 0;  // sign variations of b - remainder, b + remainder
+        bool above = b[0] > remainder_, below = b[0] < -remainder_;
+        const bool starts_above = above;
+        for (std::size_t i = 1; i <= static_cast<std::size_t>(p_.degree); ++i) {
+            const bool now_above = b[i] > remainder_, now_below = b[i] < -remainder_;
+            rises_and_falls += now_above != above;
+            crossings_below += now_below != below;
+            above = now_above;
+            below = now_below;
+        }
+        if (!inside_ && rises_and_falls == 0 && starts_above) return false;
+        if (!inside_ && rises_and_falls == 1 && starts_above) {
+            if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, low, high));
+            if (crossings_below == 0) {
+                inside_ = true;
+                since_ = low;
+                return false;
+            }
+        }
+        if (inside_ && !starts_above) {
+            if (rises_and_falls == 0 && crossings_below == 0) return below && find(Descent::Kind::root, low);
+            if (rises_and_falls == 0 && crossings_below == 1 && below)
+                return find(Descent::Kind::root, polish(p_, since_, high));
+            if (rises_and_falls == 1 && crossings_below == 0) {
+                if (!starts_inside_) return find(Descent::Kind::undecided, since_);
+                inside_ = starts_inside_ = false;
+                return false;
+            }
+        }
+        if (depth == 0) return find(Descent::Kind::undecided, low);
+        Coefficients left{}, right{};
+        halve(b, p_.degree, left, right);
+        const double middle = 0.5 * (low + high);
+        return visit(left, low, middle, depth - 1) || visit(right, middle, high, depth - 1);
+    }
+
+    const Polynomial& p_;
+    const double remainder_;
+    bool inside_ = false, starts_inside_ = false;
+    double since_ = 0.0;
+    Descent found_;
+};
 
 }  // namespace
 
-std::optional<double> first_descent(const Polynomial& polynomial, int known) {
+Descent first_descent(const Polynomial& polynomial, int known, double remainder) {
     Polynomial p;
     p.degree = polynomial.degree - known;
-    for (int i = 0; i <= p.degree; ++i)
-        p.c[static_cast<std::size_t>(i)] = polynomial.c[static_cast<std::size_t>(i + known)];
-    return search(p, to_bernstein(p), 0.0, 1.0, 40);
+    std::copy_n(polynomial.c.begin() + known, p.degree + 1, p.c.begin());
+    double others = 0.0, slopes = 0.0, end = p.c[0];
+    for (int k = 1; k <= p.degree; ++k) {
+        const double c = p.c[static_cast<std::size_t>(k)];
+        others += std::abs(c);
+        if (k > 1) slopes += k * std::abs(c);
+        end += c;
+    }
+    if (p.c[0] - others > remainder) return {};
+    // It only falls: most flights are nearly parabolas.
+    if (p.c[0] > remainder && p.c[1] + slopes < 0.0 && end < -remainder)
+        return {Descent::Kind::root, polish(p, 0.0, 1.0)};
+    return Search(p, remainder).run();
 }
 
 }  // namespace achilles

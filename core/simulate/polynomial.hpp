@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 namespace achilles {
 
@@ -18,9 +17,22 @@ struct Polynomial {
 // The polynomial of degree 4 through values at theta = 0, 1/4, 1/2, 3/4, 1. The first value is met exactly.
 Polynomial interpolate(const std::array<double, 5>& values);
 
-// The first theta in (0, 1] at which the polynomial goes from positive to negative (or reaches 0 at 1), with a root of
-// multiplicity `known` at 0 divided out first. Roots are isolated by sign variations in the Bernstein basis, so two
-// roots inside one step are both seen; a touch without a change of sign is no root.
-std::optional<double> first_descent(const Polynomial& polynomial, int known);
+// Where a quantity that is known to within a remainder first goes from positive to negative.
+struct Descent {
+    enum class Kind {
+        none,       // it stays positive
+        root,       // it does at theta, to the last bit of the polynomial
+        undecided,  // from theta on it lies inside the remainder and comes out above: a touch, or two roots
+        open        // from theta on it lies inside the remainder until the end of the step
+    };
+    Kind kind = Kind::none;
+    double theta = 0.0;
+};
+
+// The first descent in (0, 1] of a polynomial from which the true quantity differs by at most `remainder`, with a root
+// of multiplicity `known` at 0 divided out first. Roots are isolated by sign variations in the Bernstein basis, of the
+// polynomial raised and lowered by the remainder, so that no two roots inside one step are missed and none is invented.
+// A quantity that starts inside the remainder and rises is `none`: where it starts is known.
+Descent first_descent(const Polynomial& polynomial, int known, double remainder);
 
 }  // namespace achilles

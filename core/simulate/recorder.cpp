@@ -9,6 +9,10 @@ Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run)
     : energy_(model->evaluator(model->energy(), run.parameters)) {
     trajectory_.model = std::move(model);
     trajectory_.run = run;
+    // A usual run grows no further than this.
+    trajectory_.events.reserve(64);
+    trajectory_.pieces.reserve(128);
+    trajectory_.coefficients.reserve(8192);
 }
 
 void Recorder::open(Phase::Kind kind, double t) {

@@ -85,7 +85,7 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     // A few thousand points fill any screen; between the step ends of a short run there is room for more.
     constexpr std::size_t wanted = 4000;
     const std::size_t steps = std::max<std::size_t>(1, trajectory.pieces.size());
-    const int between = static_cast<int>(std::min<std::size_t>(24, wanted / steps));
+    const int between = static_cast<int>(std::min<std::size_t>(400, wanted / steps));
     return Sampler(trajectory).all(between);
 }
 

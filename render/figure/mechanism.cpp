@@ -178,6 +178,30 @@ std::vector<Point> Mechanism::zero_line(std::span<const double> parameters, cons
     return line;
 }
 
+Grip::Hold Grip::at(const State& state) {
+    if (!run_) return {{state.q[0], state.q[1]}, 0.0};
+    put(*run_, state);
+    run_->run();
+    return {{run_->output(first_), run_->output(first_ + 1)}, disc_ ? run_->output(2) : 0.0};
+}
+
+std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
+    Grip grip;
+    if (plane_) return grip;
+    const Item *disc = nullptr, *line = nullptr;
+    for (const Item& item : items_) {
+        if (!item.moves) continue;
+        if (item.description.shape == Kind::disc) disc = &item;
+        if (item.description.shape == Kind::segment || item.description.shape == Kind::polyline) line = &item;
+    }
+    const Item* held = disc != nullptr ? disc : line;
+    if (held == nullptr) return std::nullopt;
+    grip.run_ = model_.evaluator(held->program, parameters);
+    grip.disc_ = held->description.shape == Kind::disc;
+    grip.first_ = 2 * (held->description.points.size() - 1);
+    return grip;
+}
+
 Drawing Mechanism::draw(const State& state, std::span<const double> parameters, const Drawing& limits,
                         const Theme& theme) const {
     Drawing drawing = limits;

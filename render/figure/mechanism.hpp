@@ -1,6 +1,7 @@
 // The mechanism that a system file draws, evaluated at a state.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "figure/drawing.hpp"
@@ -8,6 +9,23 @@
 #include "model/model.hpp"
 
 namespace achilles {
+
+// The point by which a mechanism is held: the centre of the last disc that moves, else the end of the last line that
+// does. Evaluates its program, so one per thread.
+class Grip {
+ public:
+    struct Hold {
+        Point at;
+        double radius = 0.0;  // of the disc; 0 without one
+    };
+    Hold at(const State& state);
+
+ private:
+    friend class Mechanism;
+    std::optional<Evaluator<double>> run_;  // none: the coordinates are the place
+    std::size_t first_ = 0;                 // output
+    bool disc_ = false;
+};
 
 class Mechanism {
  public:
@@ -21,6 +39,9 @@ class Mechanism {
 
     // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
+
+    // Nothing where no shape but texts and curves moves.
+    std::optional<Grip> grip(std::span<const double> parameters) const;
 
  private:
     struct Item {

@@ -45,20 +45,34 @@ void Events::release_all() {
     for (const int number : {0, 1, 2}) button(number, false);
 }
 
-Input Events::next() {
+// A key that matters only through the character it makes.
+bool Events::is_letter(const Event& event) const {
+    const auto is_held = [this](int code) {
+        return std::find(held_.keys.begin(), held_.keys.end(), code) != held_.keys.end();
+    };
+    for (const int code :
+         {key::left_control, key::right_control, key::left_alt, key::right_alt, key::left_super, key::right_super})
+        if (is_held(code)) return false;
+    return event.code < 256 || event.code == key::left_shift || event.code == key::right_shift;
+}
+
+Input Events::next(bool is_typing) {
     held_.wheel = held_.wheel_sideways = 0.0;
     held_.text.clear();
-    bool moved = false, clicked = false, pressed = false;
+    bool clicked = false, pressed = false;
     for (; !waiting_.empty(); waiting_.pop_front()) {
         const Event& event = waiting_.front();
+        const bool is_button = event.kind == Event::Kind::button, is_key = event.kind == Event::Kind::key;
         // A move after a click would drag, a click after a move must hit where the mouse went: the one order ImGui can
         // show in a frame is move, then click.
-        if (event.kind == Event::Kind::mouse && clicked) break;
-        if (event.kind == Event::Kind::button && clicked) break;
-        if (event.kind == Event::Kind::key && pressed) break;
-        moved = moved || event.kind == Event::Kind::mouse;
-        clicked = clicked || event.kind == Event::Kind::button;
-        pressed = pressed || event.kind == Event::Kind::key;
+        if ((is_button || event.kind == Event::Kind::mouse) && clicked) break;
+        if (is_key && pressed) break;
+        // In a text letters come first: what acts on them waits, and they wait for what acted before them.
+        const bool is_free = is_typing && is_key && is_letter(event);
+        if (is_typing && (is_button || (is_key && !is_free)) && !held_.text.empty()) break;
+        if (is_typing && event.kind == Event::Kind::character && (pressed || clicked)) break;
+        clicked = clicked || is_button;
+        pressed = pressed || (is_key && !is_free);
         apply(event);
     }
     return held_;

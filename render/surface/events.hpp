@@ -22,8 +22,9 @@ class Events {
     void release_all();
 
     bool empty() const { return waiting_.empty(); }
-    // The hand during the next frame.
-    Input next();
+    // The hand during the next frame. While somebody is typing, all the letters that have come are in it: a slow frame
+    // must not fall behind the hand. Keys that do something else wait for the letters before them.
+    Input next(bool is_typing = false);
 
  private:
     struct Event {
@@ -34,6 +35,7 @@ class Events {
         double x = 0.0, y = 0.0;
     };
     void apply(const Event& event);
+    bool is_letter(const Event& event) const;
 
     std::deque<Event> waiting_;
     Input held_;

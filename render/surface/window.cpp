@@ -265,7 +265,7 @@ void Window::Implementation::frame(const FrameFunction& draw) {
     unsettled = std::max(unsettled - 1, 0);
     const Interface::Active active(interface);
     if (stale) restyle();
-    apply(events.next());
+    apply(events.next(ImGui::GetIO().WantTextInput));
     const ImDrawData& data = interface.frame(draw, width, height, step);
     show_cursor();
     const Current current(window);

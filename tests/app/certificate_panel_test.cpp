@@ -64,7 +64,7 @@ TEST(CertificatePanel, OpensWithAClickAndCloses) {
     click("event " + std::to_string(zeno + 1));
     EXPECT_EQ(session.selected(), zeno + 1);
     for (int i = 0; i < 2; ++i) frame();
-    click("close certificate");
+    click("close card");
     EXPECT_EQ(session.selected(), 0);
 }
 

@@ -60,8 +60,8 @@ const Refusal refusals[] = {
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no 'shap' to choose; did you mean 'sharp'?\nthe choice is paper or sharp\n"},
-    {"taylor_method", "simulate ball_on_sine --method taylor",
-     "achilles: the Taylor method is not available yet; use --method dopri5\n"},
+    {"unknown_method", "simulate ball_on_sine --method tailor",
+     "--method tailor: there is no 'tailor' to choose; did you mean 'taylor'?\nthe choice is dopri5 or taylor\n"},
     {"end_not_positive", "simulate ball_on_sine --end -1",
      "--end: the value must be positive and finite, but it is -1\n"},
     {"not_a_number", "simulate ball_on_sine --eps nan", "--eps nan: this is not a finite number\n"},
@@ -126,11 +126,12 @@ TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
 TEST(Cli, TheCommandLineOverridesTheFile) {
     const Folder folder;
     folder.put("drop.toml", drop + "[run]\nmethod = \"taylor\"\n[truncation]\nconditions = \"paper\"\n");
-    const Answer refused = folder.run("simulate drop.toml");
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_EQ(refused.err, "drop.toml: the Taylor method is not available yet; use --method dopri5\n");
+    const Answer from_file = folder.run("simulate drop.toml");
+    EXPECT_EQ(from_file.status, 0);
+    EXPECT_NE(from_file.out.find("taylor, tolerance"), std::string::npos) << from_file.out;
     const Answer answer = folder.run("simulate drop.toml --method dopri5 --conditions sharp");
     EXPECT_EQ(answer.status, 0);
+    EXPECT_NE(answer.out.find("dopri5, tolerance"), std::string::npos) << answer.out;
     EXPECT_NE(answer.out.find("sharp conditions"), std::string::npos) << answer.out;
 }
 

@@ -36,8 +36,19 @@ const std::vector<Command> one_of_each{
     command::Text{""},
     command::Save{"mine.toml", false},
     command::Save{"a folder/mine\n.toml", true},
-    command::Show{true},
-    command::Show{false},
+    command::Show{"editor", true},
+    command::Show{"trail", false},
+    command::Start{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
+    command::Look{-1.5, 1e-7, 3.0},
+    command::LookAll{},
+    command::Speed{0.001},
+    command::Loop{true},
+    command::Step{-1},
+    command::Undo{},
+    command::Redo{},
+    command::Pin{true},
+    command::Pin{false},
+    command::Lens{2.5},
 };
 
 TEST(Command, reads_back_what_it_writes) {

@@ -26,7 +26,7 @@ std::string ball() { return test::system("ball_on_sine").source_text; }
 struct Writer : Hands {
     explicit Writer(const std::string& system = "ball_on_sine", const SurfaceOptions& options = test::surface())
         : Hands(system, options) {
-        session.apply(command::Show{true});
+        session.apply(command::Show{"editor", true});
         rest(2);
     }
     void write(const std::string& text) {
@@ -40,6 +40,20 @@ struct Writer : Hands {
         type(path);
         rest(2);
         ASSERT_EQ(state.editor.path, path);
+    }
+    // Pixels in the colour of a mistake, within the text.
+    int marked() {
+        const Image image = picture();
+        const Rectangle r = state.places.at("text");
+        int count = 0;
+        for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
+            for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x) {
+                const auto* pixel =
+                    &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                    static_cast<std::size_t>(x))];
+                if (pixel[0] > pixel[1] + 12 && pixel[1] < pixel[2] + 3) ++count;
+            }
+        return count;
     }
     std::vector<std::string> told() const {
         std::vector<std::string> lines;
@@ -107,26 +121,21 @@ TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_
 // The wave and the tinted line: the picture of a text with a problem is another one, and the last frame is the first.
 TEST(Editor, a_problem_is_marked_in_the_text) {
     Writer hands;
-    const auto reddish = [&] {
-        const Image image = hands.picture();
-        const Rectangle r = hands.state.places.at("text");
-        int count = 0;
-        for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
-            for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x) {
-                const auto* pixel =
-                    &image.rgb[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                    static_cast<std::size_t>(x))];
-                if (pixel[0] > pixel[1] + 12 && pixel[1] < pixel[2] + 3) ++count;
-            }
-        return count;
-    };
-    EXPECT_EQ(reddish(), 0);
+    EXPECT_EQ(hands.marked(), 0);
     hands.session.apply(command::Text{replaced(ball(), "y = [\"lambda\"]", "y = [\"lamda\"]")});
     hands.rest(3);
-    EXPECT_GT(reddish(), 300 * 10) << "the line is on the last page: the text scrolls there";
+    EXPECT_GT(hands.marked(), 300 * 10) << "the line is on the last page: the text scrolls there";
     hands.session.apply(command::Text{ball()});
     hands.rest(3);
-    EXPECT_EQ(reddish(), 0);
+    EXPECT_EQ(hands.marked(), 0);
+}
+
+TEST(Editor, a_message_does_not_hide_the_line_under_the_hand) {
+    Writer hands;
+    hands.write(ball() + "y = [\"x\"]");  // twice in a table: a mistake in the last line
+    hands.rest(frames_of_a_pause + 5);
+    ASSERT_FALSE(hands.session.document().problems.empty());
+    EXPECT_GT(hands.marked(), 300 * 10);
 }
 
 TEST(Editor, escape_takes_nothing_back) {

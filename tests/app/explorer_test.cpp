@@ -97,9 +97,9 @@ TEST(Explorer, plays_seeks_selects_and_opens) {
         hands.click("conditions " + std::string(to_text(conditions)));
         EXPECT_TRUE(hands.all.empty()) << "what is so already needs no command";
     }
-    EXPECT_FALSE(hands.state.loop);
+    EXPECT_FALSE(hands.session.scene().loops());
     hands.click("loop", 0.2);
-    EXPECT_TRUE(hands.state.loop);
+    EXPECT_TRUE(hands.session.scene().loops());
     EXPECT_TRUE(hands.all.empty()) << "a matter of the view, in no journal";
     hands.click("systems");
     hands.click("open double_pendulum");

@@ -94,17 +94,17 @@ TEST(Session, plays_and_finds_events) {
 
 TEST(Session, plays_to_the_end_or_round_and_round) {
     Session session = test::session("ball_on_sine");
-    play_on(session, 1.0, true);
+    play_on(session, 1.0);
     EXPECT_EQ(session.time(), 0.0) << "it does not play";
     session.apply(command::Play{});
-    play_on(session, 1.5, false);
+    play_on(session, 1.5);
     EXPECT_EQ(session.time(), 1.5);
     session.apply(command::Seek{19.5});
-    play_on(session, 1.0, true);
+    play_on(session, 1.0);
     EXPECT_TRUE(session.playing());
     EXPECT_EQ(session.time(), 0.0);
     session.apply(command::Seek{19.5});
-    play_on(session, 1.0, false);
+    play_on(session, 1.0);
     EXPECT_FALSE(session.playing());
     EXPECT_EQ(session.time(), 20.0);
 }

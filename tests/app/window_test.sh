@@ -6,8 +6,9 @@
 set -euo pipefail
 
 if [ "${2-}" != inside ]; then
-    # As small a screen as the window needs; no display of the person who runs the tests is touched.
-    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24" "$0" "$1" inside
+    # As small a screen as the window needs; no display of the person who runs the tests is touched. Without -noreset the
+    # server starts anew when one explorer has closed, and the next may find it gone.
+    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset" "$0" "$1" inside
 fi
 
 build=$1
@@ -61,7 +62,7 @@ await test -s "$folder/mine.toml" || fail "nothing was saved"
 [ "$(tail -c 9 "$folder/mine.toml")" = "# by hand" ] || fail "something else was saved"
 
 # A window that would close over changes asks first.
-xdotool key ctrl+End sleep 0.2
+xdotool mousemove --window "$window" 200 300 sleep 0.2 click 1 sleep 0.3 key ctrl+End sleep 0.2
 xdotool type --delay 40 "!"
 xdotool sleep 0.2 key ctrl+q sleep 1
 kill -0 "$explorer" || fail "the window closes over changes that are not saved"

@@ -1,48 +1,17 @@
 // What certificates cost, beside the run they belong to: medians of interleaved repetitions in one process.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "certify/truncation.hpp"
-#include "simulate/impact.hpp"
-#include "simulate/simulate.hpp"
+#include "bench/certificates.hpp"
+#include "bench/measure.hpp"
 
 namespace {
 
 using namespace achilles;
-
-double median(std::vector<double> x) {
-    std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-    return x[x.size() / 2];
-}
-
-template <class Work>
-double seconds(const Work& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-// Every collision at which a run asked for a certificate: its impacts, and the one it was cut at.
-std::vector<Collision> collisions(const Trajectory& trajectory) {
-    Surface surface(*trajectory.model, trajectory.run);
-    std::vector<Collision> result;
-    for (const Event& event : trajectory.events) {
-        if (event.kind == Event::Kind::release) continue;
-        const State before{event.truncation ? event.truncation->q : event.q,
-                           event.truncation ? event.truncation->v_before : event.v_before};
-        const Contact contact = surface.at(before);
-        const auto kind = trajectory.run.options.truncation.reinitialization;
-        result.push_back({event.truncation ? event.truncation->t : event.t, before, -contact.hdot,
-                          reinitialize(contact, before.v, Reinitialization::kinetic),
-                          reinitialize(contact, before.v, kind)});
-    }
-    return result;
-}
+using namespace achilles::bench;
 
 void measure(const std::string& file, Conditions kind) {
     const auto model = std::make_shared<const Model>(read_system(file));

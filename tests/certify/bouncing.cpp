@@ -1,7 +1,10 @@
 #include "certify/bouncing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "certify/roots.hpp"
 
 namespace achilles::test {
 
@@ -24,16 +27,20 @@ Point sum(const std::vector<Point>& coefficients, const Real& t) {
     return result;
 }
 
-// The longest step for which the series, cut where it is, errs by less than the tolerance: all of the duration where
-// expand() stopped early. Judged by two terms, since one may vanish by symmetry.
-double safe_step(const std::vector<Point>& path, double duration, double tolerance) {
-    double step = duration;
-    if (path.size() <= max_order) return step;
-    for (std::size_t k = path.size() - 2; k < path.size(); ++k) {
-        const double term = std::max(size(path[k].v), size(path[k].q));
-        if (term > 0.0) step = std::min(step, 0.7 * std::pow(tolerance / term, 1.0 / static_cast<double>(k)));
-    }
+// The longest step for which a series, cut where it is, errs by less than the tolerance, given its last two sizes: two,
+// since one may vanish by symmetry.
+double safe_step(double step, std::size_t order, std::array<double, 2> last, double tolerance) {
+    for (std::size_t k = 0; k < 2; ++k)
+        if (last[k] > 0.0)
+            step = std::min(step, 0.7 * std::pow(tolerance / last[k], 1.0 / static_cast<double>(order - 1 + k)));
     return step;
+}
+
+// All of the duration where expand() stopped early.
+double safe_step(const std::vector<Point>& path, double duration, double tolerance) {
+    if (path.size() <= max_order) return duration;
+    const auto term = [&](std::size_t k) { return std::max(size(path[k].v), size(path[k].q)); };
+    return safe_step(duration, max_order, {term(max_order - 1), term(max_order)}, tolerance);
 }
 
 }  // namespace
@@ -50,6 +57,7 @@ TrueMotion::TrueMotion(const Model& model, const Run& run)
       flight_(model.flight(), model.layout(), run.parameters),
       contact_motion_(model.contact(), model.layout(), run.parameters),
       gap_(model.gap(), model.layout(), run.parameters),
+      release_(model.release(), model.layout(), run.parameters),
       surface_(model.evaluator<Real>(model.surface(), run.parameters)),
       acceleration_(model.evaluator<Real>(model.contact(), run.parameters)) {}
 
@@ -114,45 +122,73 @@ TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Poi
     return path;
 }
 
-// Where the gap of this path first returns to zero within the step. The certified motions fall all the time (hddot <
-// 0), so that Newton's iteration from the end, where the gap is negative, comes down on that root from the right.
-std::optional<Real> TrueMotion::landing(const Coefficients& path, const Real& step) {
-    Reals gap;
-    for (std::size_t k = 0; k < path.size() && k <= max_order; ++k) {
-        for (std::size_t i = 0; i < n_; ++i) gap_.set(i, k, path[k].q[i]);
-        gap_.run(k);
-        gap.push_back(gap_.output(0, k));
-    }
-    const auto horner = [&](const Real& t) {
-        Real value = 0, slope = 0;
-        for (std::size_t k = gap.size(); k-- > 0;) {
-            slope = slope * t + value;
-            value = value * t + gap[k];
+// An output of a program along the path, to as many orders as it needs, which may be more than the path's: the sine of
+// a parabola. Where all of them are not enough, the step becomes shorter.
+Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, std::size_t output, double& step,
+                        double tolerance) {
+    Reals result;
+    int negligible = 0;
+    double power = 1.0;
+    for (std::size_t k = 0; k <= max_order && (negligible < 2 || k < path.size()); ++k) {
+        for (std::size_t i = 0; i < n_; ++i) {
+            program.set(i, k, k < path.size() ? path[k].q[i] : Real(0));
+            program.set(n_ + i, k, k < path.size() ? path[k].v[i] : Real(0));
         }
-        return std::pair{value, slope};
-    };
-    Real t = step;
-    if (horner(t).first > 0) return std::nullopt;
-    for (int round = 0; round < 60; ++round) {
-        const auto [value, slope] = horner(t);
-        const Real correction = value / slope;
-        t -= correction;
-        if (abs(correction) < 1e-24 * t) break;
+        program.run(k);
+        result.push_back(program.output(output, k));
+        negligible = std::abs(static_cast<double>(result.back())) * power < tolerance ? negligible + 1 : 0;
+        power *= step;
     }
-    return t;
+    if (negligible < 2) {
+        const auto term = [&](std::size_t k) { return std::abs(static_cast<double>(result[k])); };
+        step = safe_step(step, max_order, {term(max_order - 1), term(max_order)}, tolerance);
+    }
+    return result;
 }
 
-bool TrueMotion::fly(Point& point, Real& time, double expected, double tolerance) {
-    for (int step = 0; step < 2000; ++step) {
-        const Coefficients path = expand(flight_, point, expected, tolerance);
-        const Real length(safe_step(path, expected, tolerance));
-        const auto arrival = landing(path, length);
-        const Real& taken = arrival ? *arrival : length;
-        time += taken;
-        point = sum(path, taken);
-        if (arrival) return *arrival > 0;
+// Every event is where a quantity comes down through zero.
+bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double expected, double tolerance) {
+    Real left = longest;
+    for (; left > 0; flight.known = 0) {
+        const double reach = std::min(expected, static_cast<double>(left));
+        const Coefficients path =
+            expand(until == Until::release ? contact_motion_ : flight_, flight.point, reach, tolerance);
+        double step = safe_step(path, reach, tolerance);
+        Reals watched = along(path, until == Until::release ? release_ : gap_, 0, step, tolerance);
+        if (until == Until::dip) watched = derivative(watched);
+        if (until != Until::impact)
+            for (Real& c : watched) c = -c;
+        // Known roots are zero, and would be found again.
+        if (until == Until::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
+        const auto event = first_descent(watched, step);
+        const Real taken = event ? *event : step < static_cast<double>(left) ? Real(step) : left;
+        flight.time += taken;
+        flight.point = sum(path, taken);
+        left -= taken;
+        if (event) return true;
     }
     return false;
+}
+
+bool TrueMotion::fly(Flight& flight, const Real& longest, double expected, double tolerance) {
+    return move(flight, Until::impact, longest, expected, tolerance);
+}
+
+bool TrueMotion::fly_to_dip(Flight& flight, const Real& longest, double expected, double tolerance) {
+    return move(flight, Until::dip, longest, expected, tolerance);
+}
+
+bool TrueMotion::stay(Flight& contact, const Real& longest, double tolerance) {
+    return move(contact, Until::release, longest, static_cast<double>(longest), tolerance);
+}
+
+Real TrueMotion::normal_acceleration(const Point& point) {
+    for (std::size_t i = 0; i < n_; ++i) {
+        acceleration_.input(i) = point.q[i];
+        acceleration_.input(n_ + i) = point.v[i];
+    }
+    acceleration_.run();
+    return acceleration_.output(n_);
 }
 
 std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) {
@@ -162,12 +198,7 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
     for (; result.impacts < 100000; ++result.impacts) {
         const Contact c = contact(point);
         const Point slid = restart(point, Reinitialization::kinetic);
-        for (std::size_t i = 0; i < n_; ++i) {
-            acceleration_.input(i) = slid.q[i];
-            acceleration_.input(n_ + i) = slid.v[i];
-        }
-        acceleration_.run();
-        const Real w = -c.hdot, a = -acceleration_.output(n_);
+        const Real w = -c.hdot, a = -normal_acceleration(slid);
         if (!(w > 0) || !(a > 0)) return std::nullopt;
         if (e_ == 0 || w < until * first) {
             const Real rest = 2 * e_ * w / (a * (1 - e_));
@@ -181,7 +212,10 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
         for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * c.n[i];
         const double expected = 2.2 * static_cast<double>(e_ * w / a), speed = static_cast<double>(w);
         result.velocities.push_back(point.v);
-        if (!fly(point, result.time, expected, std::max(1e-32, 1e-20 * speed))) return std::nullopt;
+        Flight flight{point, result.time, 1};
+        if (!fly(flight, 100 * expected, expected, std::max(1e-32, 1e-20 * speed))) return std::nullopt;
+        point = flight.point;
+        result.time = flight.time;
         result.velocities.push_back(point.v);
     }
     return std::nullopt;

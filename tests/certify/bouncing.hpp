@@ -21,6 +21,14 @@ struct ZenoPoint {
     std::vector<Reals> velocities;  // after each impact and before the next: the largest excursions on the way
 };
 
+// Motion underway. At the start of a flight the gap has a root of this multiplicity: 1 after an impact, 3 after a
+// release.
+struct Flight {
+    Point point;
+    Real time;
+    int known = 0;
+};
+
 class TrueMotion {
  public:
     TrueMotion(const Model& model, const Run& run);
@@ -32,24 +40,35 @@ class TrueMotion {
     // Follows the impacts until their speed has fallen by the factor `until`; what is left is a geometric series, up to
     // terms in the square of that speed. Nothing if the bouncing does not behave like one.
     std::optional<ZenoPoint> zeno(const Point& collision, double until = 1e-8);
-    // The motion that keeps contact, for a time.
+    // The motion that keeps contact, for a time, whatever the force.
     Point constrained(Point start, const Real& duration, double tolerance);
 
- private:
+    // Flies to the next impact, for `longest` at most, in steps of at most `expected`. False if none came.
+    bool fly(Flight& flight, const Real& longest, double expected, double tolerance);
+    // Flies until the gap stops falling and rises, likewise.
+    bool fly_to_dip(Flight& flight, const Real& longest, double expected, double tolerance);
+    // Keeps contact until the force vanishes, for `longest` at most. True if it did.
+    bool stay(Flight& contact, const Real& longest, double tolerance);
+
     struct Contact {
         Real h, hdot;
         Reals n, g;
     };
-    using Coefficients = std::vector<Point>;  // by order
     Contact contact(const Point& point);
+    // hddot of the free motion.
+    Real normal_acceleration(const Point& point);
+
+ private:
+    using Coefficients = std::vector<Point>;  // by order
+    enum class Until { impact, dip, release };
     Coefficients expand(Evaluator<Series>& motion, const Point& from, double duration, double tolerance);
-    // Flies until the next impact; adds the time that takes. False if there is none.
-    bool fly(Point& point, Real& time, double expected, double tolerance);
-    std::optional<Real> landing(const Coefficients& path, const Real& step);
+    Reals along(const Coefficients& path, Evaluator<Series>& program, std::size_t output, double& step,
+                double tolerance);
+    bool move(Flight& flight, Until until, const Real& longest, double expected, double tolerance);
 
     std::size_t n_;
     Real e_;
-    Evaluator<Series> flight_, contact_motion_, gap_;
+    Evaluator<Series> flight_, contact_motion_, gap_, release_;
     Evaluator<Real> surface_, acceleration_;
 };
 

@@ -6,9 +6,9 @@ namespace achilles {
 
 using test::max_order, test::Real;
 
-using SeriesEvaluator = Evaluator<test::Series>;
+using ExactSeries = Evaluator<test::Series>;
 
-SeriesEvaluator::Evaluator(const Program& program, const Layout& layout, std::span<const double> parameters) {
+ExactSeries::Evaluator(const Program& program, const Layout& layout, std::span<const double> parameters) {
     for (std::size_t i = 0; i < program.slots_.count; ++i) fresh();
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         at(layout.parameter(i), 0) = parameters[i];
@@ -21,20 +21,20 @@ SeriesEvaluator::Evaluator(const Program& program, const Layout& layout, std::sp
     outputs_.assign(program.outputs_.begin(), program.outputs_.end());
 }
 
-std::size_t SeriesEvaluator::fresh() {
+std::size_t ExactSeries::fresh() {
     constant_.push_back(false);
     series_.resize(series_.size() + max_order + 1);
     return constant_.size() - 1;
 }
 
-std::size_t SeriesEvaluator::constant(const Real& value) {
+std::size_t ExactSeries::constant(const Real& value) {
     const std::size_t series = fresh();
     at(series, 0) = value;
     constant_[series] = true;
     return series;
 }
 
-void SeriesEvaluator::lower(const Instruction& in, std::size_t result) {
+void ExactSeries::lower(const Instruction& in, std::size_t result) {
     const auto add = [&](Kind kind) { steps_.push_back({kind, in.a, in.b, result}); };
     switch (in.operation) {
         case Operation::add:
@@ -73,7 +73,7 @@ void SeriesEvaluator::lower(const Instruction& in, std::size_t result) {
 }
 
 // Repeated products: unlike the usual recurrence they do not divide by the base, which may vanish.
-void SeriesEvaluator::lower_power(const Instruction& in, std::size_t result) {
+void ExactSeries::lower_power(const Instruction& in, std::size_t result) {
     const int n = std::abs(in.exponent);
     std::size_t so_far = in.a;
     for (int factor = 2; factor <= n; ++factor) {
@@ -84,13 +84,13 @@ void SeriesEvaluator::lower_power(const Instruction& in, std::size_t result) {
     if (in.exponent < 0) steps_.push_back({Kind::divide, constant(1), so_far, result});
 }
 
-bool SeriesEvaluator::is_constant(const Step& step) const {
+bool ExactSeries::is_constant(const Step& step) const {
     const bool binary = step.kind == Kind::add || step.kind == Kind::subtract || step.kind == Kind::multiply ||
                         step.kind == Kind::divide;
     return constant_[step.a] && (!binary || constant_[step.b]);
 }
 
-void SeriesEvaluator::run(std::size_t order) {
+void ExactSeries::run(std::size_t order) {
     for (const Step& step : steps_) {
         if (order == 0) {
             at(step.result, 0) = start(step);
@@ -107,7 +107,7 @@ void SeriesEvaluator::run(std::size_t order) {
     }
 }
 
-Real SeriesEvaluator::start(const Step& step) {
+Real ExactSeries::start(const Step& step) {
     const Real &a = at(step.a, 0), &b = at(step.b, 0);
     switch (step.kind) {
         case Kind::add:
@@ -132,7 +132,7 @@ Real SeriesEvaluator::start(const Step& step) {
     return 0;
 }
 
-Real SeriesEvaluator::product(std::size_t a, std::size_t b, std::size_t k) {
+Real ExactSeries::product(std::size_t a, std::size_t b, std::size_t k) {
     if (constant_[a]) return at(a, 0) * at(b, k);
     if (constant_[b]) return at(a, k) * at(b, 0);
     Real sum = 0;
@@ -141,7 +141,7 @@ Real SeriesEvaluator::product(std::size_t a, std::size_t b, std::size_t k) {
 }
 
 // Coefficient k >= 1 from the earlier ones: the usual recurrences of automatic differentiation.
-Real SeriesEvaluator::next(const Step& step, std::size_t k) {
+Real ExactSeries::next(const Step& step, std::size_t k) {
     const std::size_t a = step.a, b = step.b, c = step.result;
     Real sum = 0;
     switch (step.kind) {

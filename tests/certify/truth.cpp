@@ -70,9 +70,9 @@ std::optional<State> Trials::zeno_equilibrium(const Run& run) {
         state.q[k] = uniform(coordinates[i].range[0], coordinates[i].range[1]);
         state.v[k] = uniform(coordinates[i].rate_range[0], coordinates[i].rate_range[1]);
     }
-    auto projected = surface.project(state, false);
-    if (projected && !(surface.normal_acceleration(*projected) < 0.0)) projected.reset();
-    return projected;
+    const auto projected = surface.project(state, false);
+    if (!projected || !(surface.normal_acceleration(projected->state) < 0.0)) return std::nullopt;
+    return projected->state;
 }
 
 void Trials::certify(Trial& trial, const State& before) {

@@ -21,6 +21,8 @@ Polynomial from_roots(std::initializer_list<double> roots, double lead) {
     return p;
 }
 
+using Kind = Descent::Kind;
+
 TEST(Polynomials, InterpolationMeetsItsValues) {
     const std::array<double, 5> values{1.0, -2.0, 0.5, 3.0, 7.0};
     const Polynomial p = interpolate(values);
@@ -28,28 +30,55 @@ TEST(Polynomials, InterpolationMeetsItsValues) {
     EXPECT_NEAR(p.slope(0.3), (p(0.3 + 1e-6) - p(0.3 - 1e-6)) / 2e-6, 1e-7);
 }
 
+double root_of(const Polynomial& polynomial, int known) {
+    const Descent descent = first_descent(polynomial, known, 0.0);
+    EXPECT_EQ(descent.kind, Kind::root);
+    return descent.theta;
+}
+
 TEST(Polynomials, TheFirstDescentIsFoundToTheLastBit) {
-    EXPECT_NEAR(*first_descent(from_roots({0.3}, -1.0), 0), 0.3, 1e-15);
-    EXPECT_NEAR(*first_descent(from_roots({0.3, 0.7, 2.0}, -1.0), 0), 0.3, 1e-15);
-    EXPECT_NEAR(*first_descent(from_roots({-0.5, 0.9}, -1.0), 0), 0.9, 1e-15);
-    EXPECT_FALSE(first_descent(from_roots({1.5}, -1.0), 0));
-    EXPECT_FALSE(first_descent(from_roots({-0.5}, 1.0), 0));
+    EXPECT_NEAR(root_of(from_roots({0.3}, -1.0), 0), 0.3, 1e-15);
+    EXPECT_NEAR(root_of(from_roots({0.3, 0.7, 2.0}, -1.0), 0), 0.3, 1e-15);
+    EXPECT_NEAR(root_of(from_roots({-0.5, 0.9}, -1.0), 0), 0.9, 1e-15);
+    EXPECT_EQ(first_descent(from_roots({1.5}, -1.0), 0, 0.0).kind, Kind::none);
+    EXPECT_EQ(first_descent(from_roots({-0.5}, 1.0), 0, 0.0).kind, Kind::none);
 }
 
 TEST(Polynomials, TwoRootsInOneStepLeaveNoSignChangeAtItsEndsAndAreSeen) {
     for (const double width : {1e-1, 1e-3, 1e-6}) {
-        const auto root = first_descent(from_roots({0.4, 0.4 + width}, 1.0), 0);
-        ASSERT_TRUE(root) << width;
-        EXPECT_NEAR(*root, 0.4, 1e-9);
+        EXPECT_NEAR(root_of(from_roots({0.4, 0.4 + width}, 1.0), 0), 0.4, 1e-9);
     }
-    EXPECT_FALSE(first_descent(from_roots({0.4, 0.4}, 1.0), 0));  // a touch
+    EXPECT_NE(first_descent(from_roots({0.4, 0.4}, 1.0), 0, 0.0).kind, Kind::root);  // a touch
 }
 
 TEST(Polynomials, KnownRootsAreDividedOut) {
-    EXPECT_NEAR(*first_descent(from_roots({0.0, 0.6}, -1.0), 1), 0.6, 1e-15);
-    EXPECT_NEAR(*first_descent(from_roots({0.0, 0.0, 0.0, 0.25}, -1.0), 3), 0.25, 1e-15);
-    EXPECT_FALSE(first_descent(from_roots({0.0, 0.0, 0.0, 1.25}, -1.0), 3));
-    EXPECT_EQ(*first_descent(from_roots({0.0, 1.0}, -1.0), 1), 1.0);
+    EXPECT_NEAR(root_of(from_roots({0.0, 0.6}, -1.0), 1), 0.6, 1e-15);
+    EXPECT_NEAR(root_of(from_roots({0.0, 0.0, 0.0, 0.25}, -1.0), 3), 0.25, 1e-15);
+    EXPECT_EQ(first_descent(from_roots({0.0, 0.0, 0.0, 1.25}, -1.0), 3, 0.0).kind, Kind::none);
+    EXPECT_EQ(first_descent(from_roots({0.0, 1.0}, -1.0), 1, 0.0).kind, Kind::open);  // at the end: the next step tells
+}
+
+// (theta - 0.4)^2 + c: a dip to c, known to within 1e-6.
+TEST(Polynomials, WhatLiesInsideTheRemainderIsUndecided) {
+    const auto dip = [](double least) {
+        Polynomial p = from_roots({0.4, 0.4}, 1.0);
+        p.c[0] += least;
+        return first_descent(p, 0, 1e-6);
+    };
+    EXPECT_EQ(dip(1e-3).kind, Kind::none);
+    EXPECT_EQ(dip(1.1e-6).kind, Kind::none);
+    EXPECT_EQ(dip(-1e-3).kind, Kind::root);
+    EXPECT_EQ(dip(-1.1e-6).kind, Kind::root);
+    for (const double least : {0.9e-6, 1e-9, 0.0, -1e-9, -0.9e-6}) {
+        EXPECT_EQ(dip(least).kind, Kind::undecided) << least;
+        EXPECT_NEAR(dip(least).theta, 0.4, 0.1) << least;
+    }
+    // It ends inside: open. It starts inside and rises: none. It starts inside and falls: a root.
+    EXPECT_EQ(first_descent(from_roots({1.0000001}, -1.0), 0, 1e-6).kind, Kind::open);
+    EXPECT_EQ(first_descent(from_roots({-1e-7}, 1.0), 0, 1e-6).kind, Kind::none);
+    const Descent falls = first_descent(from_roots({1e-7}, -1.0), 0, 1e-6);
+    EXPECT_EQ(falls.kind, Kind::root);
+    EXPECT_NEAR(falls.theta, 1e-7, 1e-15);
 }
 
 TEST(Polynomials, RandomRootsAgreeWithASearchOnAGrid) {
@@ -62,14 +91,14 @@ TEST(Polynomials, RandomRootsAgreeWithASearchOnAGrid) {
         std::optional<double> expected;
         for (int i = 1; i <= 4000 && !expected; ++i)
             if (p(i / 4000.0) < 0.0) expected = i / 4000.0;
-        const auto found = first_descent(p, 0);
+        const Descent found = first_descent(p, 0, 0.0);
         if (expected) {
-            ASSERT_TRUE(found);
-            EXPECT_LE(*found, *expected);
-            if (*found > 1e-6) {
-                EXPECT_GT(p(0.5 * *found), -1e-12);
+            ASSERT_EQ(found.kind, Kind::root);
+            EXPECT_LE(found.theta, *expected);
+            if (found.theta > 1e-6) {
+                EXPECT_GT(p(0.5 * found.theta), -1e-12);
             }
-            EXPECT_NEAR(p(*found), 0.0, 1e-13);
+            EXPECT_NEAR(p(found.theta), 0.0, 1e-13);
         }
     }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "certify/definition7.hpp"
+#include "certify/execution.hpp"
 #include "certify/lies.hpp"
 #include "certify/tally.hpp"
 #include "core/systems.hpp"
@@ -30,6 +31,46 @@ constraint = [{ gap = "y", restitution = "e" }]
 )";
 
 }  // namespace
+
+// Both problems of the paper's Fig. 4, whose 40 digits another program computed.
+TEST(Truth, IsTheReferenceOfBothProblemsTo20Digits) {
+    const auto to_real = [](const nlohmann::json& text) { return Real(text.get<std::string>()); };
+    for (const Problem& problem : problems) {
+        SCOPED_TRACE(problem.key);
+        const auto model = load(problem.asset);
+        const auto run = model->default_run();
+        Point start = point_of({run.q, run.v});
+        if (problem.key == "double_pendulum") {  // whose angles are no doubles
+            start.q = {scalar_pi<Real>() / 6, scalar_pi<Real>() * 25 / 180};
+        }
+        const TrueExecution truth = TrueRuns(*model, run).run(start, 20.0);
+        const auto expected = reference("fig4")["problems"][problem.key];
+        const auto near = [](const Real& a, const Real& b) { return static_cast<double>(abs(a - b)) < 1e-20; };
+        std::size_t phase = 0, impact = 0, release = 0;
+        for (const TrueEvent& event : truth.events) {
+            if (event.kind == Event::Kind::zeno) {
+                EXPECT_NEAR(static_cast<double>(event.t - to_real(expected["zeno_times"].at(phase))), 0.0, 1e-17);
+                ++phase;
+                impact = 0;
+            } else if (event.kind == Event::Kind::release) {
+                EXPECT_TRUE(near(event.t, to_real(expected["detach_times"].at(release++))));
+            } else if (impact < expected["impacts"][phase].size()) {
+                const auto& listed = expected["impacts"][phase][impact++];
+                EXPECT_TRUE(near(event.t, to_real(listed["t"])))
+                    << "impact " << impact << " " << event.t - to_real(listed["t"]);
+                EXPECT_TRUE(near(-event.speed, to_real(listed["hdot_minus"]))) << "impact " << impact;
+            }
+        }
+        EXPECT_EQ(phase, expected["zeno_times"].size());
+        EXPECT_EQ(release, expected["detach_times"].size());
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_TRUE(near(truth.end.q[i], to_real(expected["end_state"][i])))
+                << truth.end.q[i] - to_real(expected["end_state"][i]);
+            EXPECT_TRUE(near(truth.end.v[i], to_real(expected["end_state"][i + 2])))
+                << truth.end.v[i] - to_real(expected["end_state"][i + 2]);
+        }
+    }
+}
 
 // Law: on a flat floor the times between impacts are a geometric series, and nothing else changes.
 TEST(Truth, KnowsTheGeometricSeries) {

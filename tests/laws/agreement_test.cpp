@@ -9,20 +9,20 @@ namespace {
 class Agreement : public Law {};
 
 TEST_P(Agreement, TwoTolerancesAgree) {
-    auto run = predictable_run(GetParam());
+    auto run = run_of(GetParam());
     run.options.tolerance = 1e-8;
     const Trajectory loose = simulated(GetParam(), run);
     run.options.tolerance = 1e-11;
     const Trajectory tight = simulated(GetParam(), run);
     EXPECT_LE(distance(loose.end, tight.end), 1e-5)
-        << "if the motion is chaotic, give the file an [extra] laws_end_time";
+        << "a motion that cannot be predicted so far makes a poor example: end it sooner";
     EXPECT_EQ(loose.phases.size(), tight.phases.size());
 }
 
 // What the euclidean restart adds is of the order of the impact speed at the cut, which eps bounds, and
 // grows with the motion: up to 28 eps (triple_pendulum) was measured.
 TEST_P(Agreement, KineticAndEuclideanAgreeAsEpsFalls) {
-    auto run = predictable_run(GetParam());
+    auto run = run_of(GetParam());
     run.options.tolerance = 1e-12;
     for (const double eps : {1e-3, 1e-5, 1e-7}) {
         run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = eps;

@@ -1,21 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <ostream>
-#include <regex>
 
 #include "core/systems.hpp"
 #include "laws/laws.hpp"
 
 namespace achilles::test {
-
-namespace {
-
-std::filesystem::path file_of(const std::string& system) { return source_file("assets/systems/" + system + ".toml"); }
-
-}  // namespace
 
 void PrintTo(const Case& one, std::ostream* out) { *out << one.system << ", " << to_text(one.method); }
 
@@ -46,21 +38,6 @@ std::shared_ptr<const Model> model_of(const std::string& system) {
 Run run_of(const Case& one) {
     auto run = model_of(one.system)->default_run();
     run.options.method = one.method;
-    return run;
-}
-
-double predictable_until(const std::string& system) {
-    std::ifstream file(file_of(system));
-    const std::regex entry("laws_end_time *= *([0-9.]+)");
-    std::smatch found;
-    for (std::string line; std::getline(file, line);)
-        if (std::regex_search(line, found, entry)) return std::stod(found[1]);
-    return model_of(system)->default_run().options.end_time;
-}
-
-Run predictable_run(const Case& one) {
-    auto run = run_of(one);
-    run.options.end_time = std::min(run.options.end_time, predictable_until(one.system));
     return run;
 }
 

@@ -1,4 +1,6 @@
 // The laws of one execution, on the run that each file asks for.
+#include <random>
+
 #include "laws/laws.hpp"
 #include "simulate/simulate.hpp"
 
@@ -32,6 +34,43 @@ TEST_P(Law, EnergyIsConstantInPhasesAndNeverRisesAtImpacts) { on_every_run(GetPa
 TEST_P(Law, TheGapIsNeverNegative) { on_every_run(GetParam(), gap); }
 TEST_P(Law, PhasesAbutAndAlternate) { on_every_run(GetParam(), phases); }
 TEST_P(Law, TheContactForcePressesUntilTheRelease) { on_every_run(GetParam(), contact_force); }
+
+// Starts and parameters anywhere near the file's, within its sliders.
+TEST_P(Law, AllHoldFromOtherStarts) {
+    const auto model = model_of(GetParam().system);
+    const SystemDescription& description = model->description();
+    std::mt19937 random(8);
+    const auto near = [&](double value, const std::array<double, 2>& range, double part) {
+        const double reach = part * (range[1] - range[0]);
+        return std::uniform_real_distribution(std::max(range[0], value - reach),
+                                              std::min(range[1], value + reach))(random);
+    };
+    int done = 0;
+    for (int trial = 0; trial < 200 && done < 6; ++trial) {
+        auto run = run_of(GetParam());
+        for (std::size_t i = 0; i < run.parameters.size(); ++i)
+            run.parameters[i] = near(run.parameters[i], description.parameters[i].range, 0.05);
+        for (int i = 0; i < model->n(); ++i) {
+            const CoordinateDescription& coordinate = description.coordinates[static_cast<std::size_t>(i)];
+            run.q[i] = near(run.q[i], coordinate.range, 0.15);
+            run.v[i] = near(run.v[i], coordinate.rate_range, 0.15);
+        }
+        SCOPED_TRACE(trial);
+        Trajectory trajectory;
+        try {
+            trajectory = simulate(model, run);
+        } catch (const InputError&) {
+            continue;  // a start with a negative gap
+        }
+        ++done;
+        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        for (const auto law : {energy, gap, phases, contact_force}) {
+            const Violations violations = law(trajectory);
+            EXPECT_TRUE(violations.empty()) << listed(violations);
+        }
+    }
+    EXPECT_EQ(done, 6);
+}
 
 INSTANTIATE_TEST_SUITE_P(Execution, Law, testing::ValuesIn(all_cases()), name_of);
 

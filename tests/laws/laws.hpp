@@ -41,12 +41,6 @@ std::vector<Case> all_cases();
 std::shared_ptr<const Model> model_of(const std::string& system);
 // The run that the file asks for, with this method.
 Run run_of(const Case& one);
-// The time up to which nearby motions stay near: the run's end, or [extra] laws_end_time where a file gives one since
-// its motion is chaotic.
-double predictable_until(const std::string& system);
-
-// run_of, ending there at the latest.
-Run predictable_run(const Case& one);
 // Simulates, and expects that the run reaches its end time.
 Trajectory simulated(const Case& one, const Run& run);
 // The largest difference of a coordinate or rate, relative where these are large.

@@ -147,6 +147,46 @@ TEST(Events, a_click_within_a_frame_is_seen) {
     EXPECT_TRUE(events.empty());
 }
 
+TEST(Events, a_slow_frame_keeps_up_with_typing_and_keeps_its_order) {
+    Events events;
+    const auto press = [&](int code, const char* text) {
+        events.key(code, true);
+        for (; *text != '\0'; ++text) events.character(static_cast<unsigned char>(*text));
+        events.key(code, false);
+    };
+    press('A', "a");
+    press('B', "b");
+    events.key(key::left_shift, true);
+    press('C', "C");
+    events.key(key::left_shift, false);
+    press(key::left, "");  // acts on what was typed before, and on nothing after it
+    press('D', "d");
+    events.key(key::left_control, true);
+    press('S', "");
+    events.key(key::left_control, false);
+    press('E', "e");
+    events.button(0, true);  // and so does a click
+    press('F', "f");
+    std::vector<std::string> texts;
+    std::vector<std::vector<int>> keys;
+    while (!events.empty()) {
+        const Input input = events.next(true);
+        texts.push_back(input.text);
+        keys.push_back(input.keys);
+    }
+    std::string all;
+    for (const std::string& text : texts) all += text;
+    EXPECT_EQ(all, "abCdef");
+    EXPECT_EQ(texts[0], "abC");
+    EXPECT_EQ(keys[1], std::vector<int>{key::left});
+    EXPECT_EQ(texts[1], "");
+    const auto with_control = std::find(keys.begin(), keys.end(), std::vector<int>{key::left_control, 'S'});
+    ASSERT_NE(with_control, keys.end()) << "Ctrl+S is seen";
+    EXPECT_EQ(texts[static_cast<std::size_t>(with_control - keys.begin())], "");
+    EXPECT_EQ(texts.back(), "f") << "after the click";
+    EXPECT_LT(texts.size(), 12U);
+}
+
 class OnDisplay : public testing::Test {
  protected:
     void SetUp() override {

@@ -1,14 +1,13 @@
-// The centre: the mechanism as it is now, and the timeline below it.
+// Below the mechanism: the phases as bands, the events on them, and the player.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "paint/marker.hpp"
-#include "paint/mechanism.hpp"
 #include "panels/widgets.hpp"
+#include "surface/frame.hpp"
 
 namespace achilles {
 
@@ -98,70 +97,90 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         commands.emplace_back(command::Play{});
 }
 
+// A small button with a picture: a triangle to this side with a bar before it.
+bool step_button(const char* name, float side, const char* about, PanelState& state) {
+    const ImVec2 size{units(28.0F), ImGui::GetFrameHeight()};
+    const bool pressed = ImGui::Button((std::string("##") + name).c_str(), size);
+    remember(state, name);
+    tooltip(about);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const ImVec2 c{0.5F * (low.x + high.x), 0.5F * (low.y + high.y)};
+    const float r = units(4.5F) * side;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddTriangleFilled({c.x - r, c.y - units(4.5F)}, {c.x - r, c.y + units(4.5F)}, {c.x + 0.7F * r, c.y},
+                            packed(text_color()));
+    const float bar = c.x + r, width = units(2.0F);
+    list->AddRectFilled({bar - 0.5F * width, c.y - units(4.5F)}, {bar + 0.5F * width, c.y + units(4.5F)},
+                        packed(text_color()));
+    return pressed;
+}
+
+// How fast time passes: 1/1000 to 10, logarithmic.
+void speed_slider(const Session& session, PanelState& state, Commands& commands) {
+    auto speed = static_cast<float>(session.scene().speed());
+    ImGui::SetNextItemWidth(units(84.0F));
+    const auto low = static_cast<float>(command::slowest), high = static_cast<float>(command::fastest);
+    if (ImGui::SliderFloat("##speed", &speed, low, high, "",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
+        // Three digits, and 1 is easy to find again.
+        const double unit = std::pow(10.0, std::floor(std::log10(double{speed})) - 1.0);
+        double rounded = std::round(double{speed} / unit) * unit;
+        if (std::abs(std::log(rounded)) < 0.12) rounded = 1.0;
+        commands.emplace_back(command::Speed{std::clamp(rounded, command::slowest, command::fastest)});
+    }
+    remember(state, "speed");
+    tooltip("how fast the run is played; right click: as fast as it is");
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) commands.emplace_back(command::Speed{1.0});
+    const std::string text = fmt::format("{:.3g}\u00d7", session.scene().speed());
+    ImGui::SameLine(0.0F, units(6.0F));
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text.c_str());
+}
+
 // At the right end of the line.
-void loop_box(PanelState& state) {
+void loop_box(const Session& session, PanelState& state, Commands& commands) {
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("loop").x;
     ImGui::SameLine(std::max(ImGui::GetContentRegionMax().x - width - units(4.0F), units(160.0F)));
-    ImGui::Checkbox("loop", &state.loop);
+    bool loops = session.scene().loops();
+    if (ImGui::Checkbox("loop", &loops)) commands.emplace_back(command::Loop{loops});
     remember(state, "loop");
     tooltip("begin again at the end of the run");
 }
 
-// The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
-// the height it took.
-float show_state(const Session& session, ImVec2 at, float width) {
-    constexpr float first = 130.0F, column = 130.0F;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
-    const Phase::Kind phase = session.now().phase;
-    const Color color = phase_color(session.theme(), phase);
-    list->AddRectFilled({at.x, at.y + 0.25F * size}, {at.x + units(10.0F), at.y + 0.25F * size + units(10.0F)},
-                        packed(color), units(2.0F));
-    paint_label(list, at.x + units(16.0F), at.y, legend_text(phase), text_color(), size);
-    const auto& coordinates = session.description().coordinates;
-    const auto columns = static_cast<std::size_t>(std::max(1.0F, (width - units(first)) / units(column)));
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? 57.29577951308232 : 1.0;
-        const auto index = static_cast<Eigen::Index>(i);
-        const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
-        const std::string rate_unit = unit.empty() ? "" : unit + "/s";
-        const float x = at.x + units(first + column * static_cast<float>(i % columns));
-        const float y = at.y + 2.0F * line * static_cast<float>(i / columns);
-        const auto text = [&](const std::string& name, double value, const std::string& of) {
-            return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;
-        };
-        paint_label(list, x, y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
-        paint_label(list, x, y + line, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
-                    faint_color(), size);
-    }
-    const std::size_t rows = (coordinates.size() + columns - 1) / columns;
-    return 2.0F * line * static_cast<float>(std::max<std::size_t>(rows, 1)) + units(8.0F);
+// Left and right step from event to event, Home and End go to the ends.
+void use_keys(const Session& session, Commands& commands) {
+    if (ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
+    if (ImGui::IsKeyPressed(key::left)) commands.emplace_back(command::Step{-1});
+    if (ImGui::IsKeyPressed(key::right)) commands.emplace_back(command::Step{1});
+    if (ImGui::IsKeyPressed(key::home)) commands.emplace_back(command::Seek{0.0});
+    if (ImGui::IsKeyPressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
 }  // namespace
-
-void show_mechanism(const Session& session) {
-    const Rectangle area = remaining();
-    if (area.width < 2.0F || area.height < 2.0F) return;
-    ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
-                                              packed(session.theme().background), units(4.0F));
-    const float strip = show_state(session, {area.x + units(12.0F), area.y + units(8.0F)}, area.width - units(24.0F));
-    const Drawing drawing = session.mechanism().draw(session.now().state, session.trajectory().run.parameters,
-                                                     session.limits(), session.theme());
-    paint(drawing, ImGui::GetWindowDrawList(), {area.x, area.y + strip, area.width, area.height - strip}, units(1.0F));
-}
 
 float timeline_height() {
     return ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y + units(space + marks + band + axis);
 }
 
 void show_timeline(const Session& session, PanelState& state, Commands& commands) {
+    const float between = units(4.0F);
     play_button(session, state, commands);
+    ImGui::SameLine(0.0F, between);
+    if (step_button("step back", -1.0F, "to the event before (left arrow)", state))
+        commands.emplace_back(command::Step{-1});
+    ImGui::SameLine(0.0F, between);
+    if (step_button("step on", 1.0F, "to the next event (right arrow)", state)) commands.emplace_back(command::Step{1});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
+    // As wide as it ever gets, so that what follows stands still.
+    const float time_at = ImGui::GetCursorPosX();
     ImGui::TextUnformatted(fmt::format("t = {:.3f} s", session.time()).c_str());
-    loop_box(state);
+    ImGui::SameLine(
+        time_at +
+        ImGui::CalcTextSize(fmt::format("t = {:.3f} s", 8.0 + 10.0 * session.run().options.end_time).c_str()).x);
+    speed_slider(session, state, commands);
+    loop_box(session, state, commands);
+    use_keys(session, commands);
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);

@@ -1,0 +1,63 @@
+#include "scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "expression/nearest.hpp"
+
+namespace achilles {
+
+namespace {
+
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+const std::vector<std::string> things{"controls", "editor", "events", "force", "lens", "plots", "trail", "velocity"};
+
+}  // namespace
+
+void Scene::perform(const command::Look& command) {
+    if (!(command.width > 0.0) || !std::isfinite(command.x) || !std::isfinite(command.y) ||
+        !std::isfinite(command.width))
+        throw refusal(fmt::format("a part of the world {} wide cannot be shown", command.width));
+    look_ = command;
+}
+
+void Scene::perform(const command::LookAll&) { look_.reset(); }
+
+void Scene::perform(const command::Show& command) {
+    if (std::find(things.begin(), things.end(), command.what) == things.end())
+        throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
+    if (command.on)
+        shown_.insert(command.what);
+    else
+        shown_.erase(command.what);
+}
+
+void Scene::perform(const command::Speed& command) {
+    if (!(command.value >= command::slowest && command.value <= command::fastest))
+        throw refusal(fmt::format("a run is played at {} to {} times its speed, not at {}", command::slowest,
+                                  command::fastest, command.value));
+    speed_ = command.value;
+}
+
+void Scene::perform(const command::Loop& command) { loops_ = command.on; }
+
+void Scene::perform(const command::Lens& command) { lens_ = std::clamp(command.from, -100.0, 1e9); }
+
+std::string to_text(const Scene& scene) {
+    std::string text;
+    if (const auto& look = scene.look())
+        text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
+    for (const std::string& thing : things)
+        if (scene.shows(thing) != Scene().shows(thing))
+            text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
+    if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
+    if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
+    if (scene.loops()) text += "loop on\n";
+    return text;
+}
+
+}  // namespace achilles

@@ -1,0 +1,337 @@
+// From a flat program to the recurrences of its series.
+#include <array>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "series/series.hpp"
+
+namespace achilles {
+
+class SeriesCompiler {
+ public:
+    explicit SeriesCompiler(SeriesProgram& series) : series_(series), program_(series.program_) {}
+
+    void compile() {
+        const Slots& slots = program_.slots_;
+        const auto first = slots.count + static_cast<std::uint32_t>(program_.constants_.size());
+        const auto count = first + static_cast<std::uint32_t>(program_.instructions_.size());
+        first_moving_ = first + static_cast<std::uint32_t>(program_.fixed_);
+        series_.coefficients_.push_back({});  // the number 1
+        next_register_ = count;
+        next_series_ = 1 + slots.fixed_begin;
+        forms_.resize(count);
+        for (std::uint32_t i = 0; i < slots.fixed_begin; ++i) forms_[i] = {{1 + i, one}};
+        for (std::uint32_t reg = first_moving_; reg < count; ++reg)
+            forms_[reg] = translate(program_.instructions_[reg - first], reg);
+        for (const std::uint32_t output : program_.outputs_) {
+            const bool wanted = series_.outputs_.size() < series_.wanted_;
+            const Operand value = wanted ? operand(output) : Operand{output, 0, one};
+            series_.outputs_.push_back({output, value.series, value.scale});
+        }
+        series_.registers_ = next_register_;
+        series_.series_ = next_series_;
+        place_sums();
+    }
+
+ private:
+    using Kind = SeriesProgram::Kind;
+    using Seed = SeriesProgram::Seed;
+
+    // coefficient * series, and a sum of such terms: what moves in a register.
+    struct Term {
+        std::uint32_t series, coefficient;
+    };
+    using Form = std::vector<Term>;
+    static constexpr std::size_t longest_form = 6;
+
+    // A register as a factor: its order 0, and scale * series beyond.
+    struct Operand {
+        std::uint32_t value, series, scale;
+    };
+    static constexpr std::uint32_t one = 0;              // the coefficient
+    static constexpr std::uint32_t sum_mark = 1u << 31;  // an inner sum, before it has its place
+
+    bool moves(std::uint32_t reg) const { return reg < program_.slots_.fixed_begin || reg >= first_moving_; }
+
+    // ---- coefficients ----
+
+    std::uint32_t coefficient(Operation operation, std::uint32_t a, std::uint32_t b = 0) {
+        const auto [found, fresh] = coefficient_ids_.emplace(std::tuple(operation, a, b),
+                                                             static_cast<std::uint32_t>(series_.coefficients_.size()));
+        if (fresh) series_.coefficients_.push_back({operation, a, b});
+        return found->second;
+    }
+    std::uint32_t of_register(std::uint32_t reg) { return coefficient(Operation::number, reg); }
+    std::uint32_t times(std::uint32_t a, std::uint32_t b) {
+        if (a == one) return b;
+        return b == one ? a : coefficient(Operation::multiply, a, b);
+    }
+
+    // ---- linear forms ----
+
+    Form scaled(const Form& form, std::uint32_t factor) {
+        Form result = form;
+        for (Term& term : result) term.coefficient = times(term.coefficient, factor);
+        return result;
+    }
+    Form negated(const Form& form) {
+        Form result = form;
+        for (Term& term : result) term.coefficient = coefficient(Operation::negate, term.coefficient);
+        return result;
+    }
+    Form sum(const Form& a, const Form& b) {
+        Form result = a;
+        for (const Term& term : b) {
+            std::size_t i = 0;
+            while (i < result.size() && result[i].series != term.series) ++i;
+            if (i == result.size()) {
+                result.push_back(term);
+            } else {
+                result[i].coefficient = coefficient(Operation::add, result[i].coefficient, term.coefficient);
+            }
+        }
+        return result.size() > longest_form ? Form{{written_out(result), one}} : result;
+    }
+
+    // The series of a form, as rules of up to three terms each.
+    std::uint32_t written_out(const Form& form) {
+        std::uint32_t series = form[0].series, scale = form[0].coefficient;
+        for (std::size_t i = 1; i < form.size(); i += 2) {
+            const bool third = i + 1 < form.size();
+            const std::uint32_t result = next_series_++;
+            series_.combinations_.push_back({static_cast<std::uint32_t>(series_.rules_.size()),
+                                             {scale, form[i].coefficient, third ? form[i + 1].coefficient : one}});
+            series_.rules_.push_back({result, series, form[i].series, third ? form[i + 1].series : 0});
+            series = result;
+            scale = one;
+        }
+        return series;
+    }
+
+    // A register as a factor. A form of several terms is written out once.
+    Operand operand(std::uint32_t reg) {
+        if (!moves(reg) || forms_[reg].empty()) return {reg, 0, one};
+        Form& form = forms_[reg];
+        if (form.size() > 1) form = {{written_out(form), one}};
+        return {reg, form[0].series, form[0].coefficient};
+    }
+
+    // ---- recurrences ----
+
+    std::uint32_t inner(std::uint32_t x, std::uint32_t y, bool weighted) {
+        const auto [found, fresh] =
+            sum_ids_.emplace(std::tuple(x, y, weighted), static_cast<std::uint32_t>(sums_.size()));
+        if (fresh) sums_.push_back({{x, y}, weighted});
+        return sum_mark | found->second;
+    }
+
+    // Adds the recurrence of a function and returns its result as a factor. The same function of the same operands is
+    // made once: sine and cosine of one angle, chains of powers.
+    Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
+                 std::optional<std::uint32_t> partner_value = {}) {
+        const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
+        if (const auto found = made_.find(key); found != made_.end()) return found->second.first;
+        seed.a = a.value;
+        seed.b = b.value;
+        seed.scale_a = a.scale;
+        seed.scale_b = b.scale;
+        seed.result = value;
+        seed.rule = static_cast<std::uint32_t>(series_.rules_.size());
+        const std::uint32_t r = next_series_++;
+        const Operand result{value, r, one};
+        Operand partner = result;
+        if (seed.kind == Kind::sin_cos || seed.kind == Kind::tangent) {
+            partner = {partner_value ? *partner_value : next_register_++, next_series_++, one};
+            seed.partner = partner.value;
+        }
+        const std::uint32_t p = partner.series;
+        auto& rules = series_.rules_;
+        switch (seed.kind) {
+            case Kind::multiply:
+                rules.push_back({r, b.series, a.series, inner(a.series, b.series, false)});
+                break;
+            case Kind::square:
+            case Kind::unit_and_square:
+                rules.push_back({r, a.series, 0, inner(a.series, a.series, false)});
+                break;
+            case Kind::divide:
+                rules.push_back({r, a.series, b.series, inner(r, b.series, false)});
+                break;
+            case Kind::sqrt:
+                rules.push_back({r, a.series, 0, inner(r, r, false)});
+                break;
+            case Kind::exp:
+                rules.push_back({r, a.series, 0, inner(a.series, r, true)});
+                break;
+            case Kind::sin_cos:
+                rules.push_back({r, a.series, 0, inner(a.series, p, true)});
+                rules.push_back({p, a.series, 0, inner(a.series, r, true)});
+                break;
+            case Kind::tangent:
+                rules.push_back({r, a.series, 0, inner(a.series, p, true)});
+                rules.push_back({p, r, 0, inner(r, r, false)});
+                break;
+            case Kind::integral_of_ratio:
+                rules.push_back({r, a.series, 0, inner(r, b.series, true)});
+                break;
+            case Kind::power:
+                rules.push_back({r, a.series, inner(a.series, r, true), inner(r, a.series, true)});
+                break;
+        }
+        series_.seeds_.push_back(seed);
+        made_.emplace(key, std::pair(result, partner));
+        return result;
+    }
+    // A result that has no register in the program.
+    Operand hidden(Seed seed, const Operand& a, const Operand& b) { return make(seed, a, b, next_register_++); }
+    Operand partner_of(const Operand& result) const {
+        for (const auto& [key, made] : made_)
+            if (made.first.series == result.series) return made.second;
+        return result;
+    }
+
+    Operand product(const Operand& a, const Operand& b) {
+        const bool same = a.value == b.value && a.series == b.series;
+        return hidden({.kind = same ? Kind::square : Kind::multiply}, a, b);
+    }
+
+    // Order 0 of each is taken from the program where it stands there.
+    Operand sine_and_cosine(const Instruction& in) {
+        const bool circular = in.operation == Operation::sin || in.operation == Operation::cos;
+        const Operand a = operand(in.a);
+        std::uint32_t sine = next_register_++;
+        std::optional<std::uint32_t> cosine;
+        for (std::size_t i = program_.fixed_; i < program_.instructions_.size(); ++i) {
+            if (program_.instructions_[i].a != in.a) continue;
+            const Operation other = program_.instructions_[i].operation;
+            const auto reg = first_moving_ + static_cast<std::uint32_t>(i - program_.fixed_);
+            if (other == (circular ? Operation::sin : Operation::sinh)) sine = reg;
+            if (other == (circular ? Operation::cos : Operation::cosh)) cosine = reg;
+        }
+        return make({.kind = Kind::sin_cos, .sign = circular ? -1.0 : 1.0}, a, a, sine, cosine);
+    }
+
+    // base^n, n >= 2, by repeated squaring.
+    Operand whole_power(Operand base, unsigned n) {
+        std::optional<Operand> result;
+        for (; n != 0; n >>= 1) {
+            if (n & 1u) result = result ? product(*result, base) : base;
+            if (n > 1) base = product(base, base);
+        }
+        return *result;
+    }
+
+    static Form form_of(const Operand& operand) { return {{operand.series, operand.scale}}; }
+
+    Form translate(const Instruction& in, std::uint32_t result) {
+        const auto form = [&](std::uint32_t reg) { return moves(reg) ? forms_[reg] : Form(); };
+        const auto function = [&](Kind kind, double sign = 1.0) {
+            const Operand a = operand(in.a);
+            return make({.kind = kind, .sign = sign}, a, a, result);
+        };
+        const auto ratio = [&](double sign, const Operand& denominator) {
+            return form_of(make({.kind = Kind::integral_of_ratio, .function = in.operation, .sign = sign},
+                                operand(in.a), denominator, result));
+        };
+        const auto unit_and_square = [&](double sign) {
+            const Operand a = operand(in.a);
+            return hidden({.kind = Kind::unit_and_square, .sign = sign}, a, a);
+        };
+        switch (in.operation) {
+            case Operation::add:
+                return sum(form(in.a), form(in.b));
+            case Operation::subtract:
+                return sum(form(in.a), negated(form(in.b)));
+            case Operation::negate:
+                return negated(form(in.a));
+            case Operation::multiply:
+                if (!moves(in.a)) return scaled(form(in.b), of_register(in.a));
+                if (!moves(in.b)) return scaled(form(in.a), of_register(in.b));
+                if (in.a == in.b) return form_of(function(Kind::square));
+                return form_of(make({.kind = Kind::multiply}, operand(in.a), operand(in.b), result));
+            case Operation::divide:
+                if (!moves(in.b)) return scaled(form(in.a), coefficient(Operation::divide, one, of_register(in.b)));
+                return form_of(make({.kind = Kind::divide}, operand(in.a), operand(in.b), result));
+            case Operation::power: {
+                const Operand power = whole_power(operand(in.a), static_cast<unsigned>(std::abs(in.exponent)));
+                if (in.exponent > 0) return form_of(power);
+                return form_of(make({.kind = Kind::divide, .sign = -1.0}, {power.value, 0, one}, power, result));
+            }
+            case Operation::real_power: {
+                if (!moves(in.b)) return form_of(make({.kind = Kind::power}, operand(in.a), operand(in.b), result));
+                const Operand a = operand(in.a);
+                const Operand log = hidden({.kind = Kind::integral_of_ratio, .function = Operation::log}, a, a);
+                const Operand exponent = product(operand(in.b), log);
+                return form_of(make({.kind = Kind::exp}, exponent, exponent, result));
+            }
+            case Operation::sqrt:
+                return form_of(function(Kind::sqrt));
+            case Operation::sin:
+            case Operation::sinh:
+                return form_of(sine_and_cosine(in));
+            case Operation::cos:
+            case Operation::cosh:
+                return form_of(partner_of(sine_and_cosine(in)));
+            case Operation::tan:
+                return form_of(function(Kind::tangent, 1.0));
+            case Operation::tanh:
+                return form_of(function(Kind::tangent, -1.0));
+            case Operation::asin:
+            case Operation::acos: {
+                const Operand square = unit_and_square(-1.0);
+                const Operand root = hidden({.kind = Kind::sqrt}, square, square);
+                return ratio(in.operation == Operation::asin ? 1.0 : -1.0, root);
+            }
+            case Operation::atan:
+                return ratio(1.0, unit_and_square(1.0));
+            case Operation::exp:
+                return form_of(function(Kind::exp));
+            case Operation::log:
+                return ratio(1.0, operand(in.a));
+            case Operation::number:
+            case Operation::symbol:
+            case Operation::pi:
+                break;  // do not move
+        }
+        return {};
+    }
+
+    // Weighted sums come first: their left factors are stored times the order.
+    void place_sums() {
+        std::vector<std::uint32_t> position(sums_.size());
+        for (const bool weighted : {true, false}) {
+            for (std::size_t i = 0; i < sums_.size(); ++i) {
+                if (sums_[i].weighted != weighted) continue;
+                position[i] = next_series_ + static_cast<std::uint32_t>(series_.sums_.size());
+                series_.sums_.push_back(sums_[i].sum);
+            }
+            if (weighted) series_.weighted_ = series_.sums_.size();
+        }
+        for (SeriesProgram::Rule& rule : series_.rules_)
+            for (std::uint32_t* operand : {&rule.x, &rule.y, &rule.w})
+                if (*operand & sum_mark) *operand = position[*operand & ~sum_mark];
+    }
+
+    struct Pending {
+        SeriesProgram::InnerSum sum;
+        bool weighted;
+    };
+    SeriesProgram& series_;
+    const Program& program_;
+    std::uint32_t first_moving_ = 0, next_register_ = 0, next_series_ = 0;
+    std::vector<Form> forms_;  // of the program's registers that move
+    std::map<std::tuple<Operation, std::uint32_t, std::uint32_t>, std::uint32_t> coefficient_ids_;
+    std::map<std::tuple<Kind, Operation, double, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>,
+             std::pair<Operand, Operand>>
+        made_;
+    std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::uint32_t> sum_ids_;
+    std::vector<Pending> sums_;
+};
+
+SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program), wanted_(wanted) {
+    SeriesCompiler(*this).compile();
+}
+
+}  // namespace achilles

@@ -1,0 +1,186 @@
+#include "series/series.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "series/convolution.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr auto reciprocals = [] {
+    std::array<double, SeriesEvaluator::highest_order + 1> table{};
+    for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k);
+    return table;
+}();
+
+double function_value(Operation function, double a) {
+    switch (function) {
+        case Operation::log:
+            return std::log(a);
+        case Operation::asin:
+            return std::asin(a);
+        case Operation::acos:
+            return std::acos(a);
+        case Operation::atan:
+            return std::atan(a);
+        default:
+            return std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+double combined(Operation operation, double a, double b) {
+    switch (operation) {
+        case Operation::add:
+            return a + b;
+        case Operation::multiply:
+            return a * b;
+        case Operation::divide:
+            return a / b;
+        case Operation::negate:
+            return -a;
+        default:
+            return std::numeric_limits<double>::quiet_NaN();
+    }
+}
+
+}  // namespace
+
+SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters)
+    : program_(&program),
+      inputs_(program.program_.slots_.fixed_begin),
+      lanes_((program.sums_.size() + 7) / 8 * 8),
+      zero_(program.program_),
+      now_(program.series_ + lanes_, 0.0),
+      factors_(program.rules_.size(), {0.0, 0.0, 0.0}),
+      rows_(2 * lanes_ * (highest_order + 1), 0.0),
+      older_(lanes_, 0.0) {
+    for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
+    zero_.fix();
+    zero_.registers_.resize(program.registers_, 0.0);
+    for (const SeriesProgram::Coefficient& c : program.coefficients_) {
+        if (coefficients_.empty()) {
+            coefficients_.push_back(1.0);
+        } else if (c.operation == Operation::number) {
+            coefficients_.push_back(zero_.registers_[c.a]);
+        } else {
+            coefficients_.push_back(combined(c.operation, coefficients_[c.a], coefficients_[c.b]));
+        }
+    }
+    for (const SeriesProgram::Combination& c : program.combinations_)
+        for (std::size_t i = 0; i < 3; ++i) factors_[c.rule][i] = coefficients_[c.coefficient[i]];
+    for (const SeriesProgram::Output& output : program.outputs_) scale_.push_back(coefficients_[output.coefficient]);
+}
+
+// The program itself gives order 0 of its registers; here follow the hidden ones, and the factors of the rules.
+void SeriesEvaluator::begin(const double* inputs) {
+    using Kind = SeriesProgram::Kind;
+    std::copy_n(inputs, inputs_, zero_.registers_.data());
+    zero_.run();
+    double* const z = zero_.registers_.data();
+    const std::size_t own = zero_.program_->slots_.count + zero_.program_->constants_.size() + zero_.program_->size();
+    for (const SeriesProgram::Seed& seed : program_->seeds_) {
+        const double a = z[seed.a], b = z[seed.b], sign = seed.sign;
+        const double by_a = coefficients_[seed.scale_a], by_b = coefficients_[seed.scale_b];
+        std::array<double, 3>* const f = &factors_[seed.rule];
+        double& r = z[seed.result];
+        const bool hidden = seed.result >= own;
+        switch (seed.kind) {
+            case Kind::multiply:
+                if (hidden) r = a * b;
+                f[0] = {a * by_b, b * by_a, by_a * by_b};
+                break;
+            case Kind::square:
+                if (hidden) r = a * a;
+                f[0] = {2.0 * a * by_a, 0.0, by_a * by_a};
+                break;
+            case Kind::unit_and_square:
+                if (hidden) r = 1.0 + sign * (a * a);
+                f[0] = {sign * 2.0 * a * by_a, 0.0, sign * by_a * by_a};
+                break;
+            case Kind::divide: {
+                if (hidden) r = sign < 0.0 ? 1.0 / b : a / b;
+                const double inverse = 1.0 / b;
+                f[0] = {by_a * inverse, -(r * by_b * inverse), -(by_b * inverse)};
+                break;
+            }
+            case Kind::sqrt: {
+                if (hidden) r = std::sqrt(a);
+                const double inverse = 0.5 / r;
+                f[0] = {by_a * inverse, 0.0, -inverse};
+                break;
+            }
+            case Kind::exp:
+                if (hidden) r = std::exp(a);
+                f[0] = {by_a * r, 0.0, by_a};
+                break;
+            case Kind::sin_cos: {
+                double& c = z[seed.partner];
+                if (hidden) r = sign < 0.0 ? std::sin(a) : std::sinh(a);
+                if (seed.partner >= own) c = sign < 0.0 ? std::cos(a) : std::cosh(a);
+                f[0] = {by_a * c, 0.0, by_a};
+                f[1] = {sign * by_a * r, 0.0, sign * by_a};
+                break;
+            }
+            case Kind::tangent: {
+                if (hidden) r = sign > 0.0 ? std::tan(a) : std::tanh(a);
+                const double w = z[seed.partner] = 1.0 + sign * (r * r);
+                f[0] = {by_a * w, 0.0, by_a};
+                f[1] = {sign * 2.0 * r, 0.0, sign};
+                break;
+            }
+            case Kind::integral_of_ratio: {
+                if (hidden) r = function_value(seed.function, a);
+                const double inverse = 1.0 / b;
+                f[0] = {sign * by_a * inverse, 0.0, -(by_b * inverse)};
+                break;
+            }
+            case Kind::power: {
+                // a p' = e a' p:  a_0 p_k = e (a_k p_0 + sum j a_j p_{k-j}/k) - sum j p_j a_{k-j}/k
+                if (hidden) r = std::pow(a, b);
+                const double inverse = by_a / a;
+                f[0] = {b * r * inverse, b * inverse, -inverse};
+                break;
+            }
+        }
+    }
+}
+
+// Order k becomes a row. Rows 0 and k are not read for order k: the inner sums leave these terms out.
+void SeriesEvaluator::keep(int k) {
+    double* const x = rows_.data() + 2 * lanes_ * static_cast<std::size_t>(k);
+    double* const y = x + lanes_;
+    const double* const n = now_.data();
+    const double weight = k;
+    const SeriesProgram::InnerSum* const sums = program_->sums_.data();
+    const std::size_t weighted = program_->weighted_, count = program_->sums_.size();
+    for (std::size_t i = 0; i < weighted; ++i) {
+        x[i] = weight * n[sums[i].x];
+        y[i] = n[sums[i].y];
+    }
+    for (std::size_t i = weighted; i < count; ++i) {
+        x[i] = n[sums[i].x];
+        y[i] = n[sums[i].y];
+    }
+}
+
+void SeriesEvaluator::extend(int k, const double* inputs) {
+    static const InnerSums inner = inner_sums();
+    double* const n = now_.data();
+    double* const sums = n + program_->series_;
+    inner(rows_.data(), lanes_, k, older_.data(), sums);
+    const double inverse = reciprocals[static_cast<std::size_t>(k)];
+    for (std::size_t i = 0; i < program_->weighted_; ++i) sums[i] *= inverse;
+    for (std::size_t i = 0; i < inputs_; ++i) n[1 + i] = inputs[i];
+    const std::array<double, 3>* f = factors_.data();
+    for (const SeriesProgram::Rule& rule : program_->rules_) {
+        n[rule.result] = ((*f)[2] * n[rule.w] + (*f)[1] * n[rule.y]) + (*f)[0] * n[rule.x];
+        ++f;
+    }
+    keep(k);
+}
+
+}  // namespace achilles

@@ -1,0 +1,130 @@
+// A program over truncated power series in time: the Taylor coefficients of its outputs, one order after the other.
+//
+// The series x(t) = sum x_k t^k of every register obey recurrences in which order k needs the orders below k and the
+// order k of the operands (Moore; Jorba & Zou 2005). A product, say:
+//     c_k = a_0 b_k + b_0 a_k + sum_{0<j<k} a_j b_{k-j}
+// Functions follow from their differential equations: with s = sin a and c = cos a, k s_k = sum j a_j c_{k-j}; a power
+// with a moving exponent is exp(b log a); whole powers are products, because their base may be zero.
+//
+// Every recurrence is a sum of three terms with factors that depend on order 0 alone, so one loop without a branch runs
+// them all. The inner sums need lower orders alone: all of them are formed first, one lane of a vector each
+// (convolution.hpp). Sums, differences and multiples by what does not move need no recurrence: they are carried along
+// as linear forms of the others, with coefficients evaluated once a run, and written out where a product needs them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "expression/program.hpp"
+
+namespace achilles {
+
+// Compiled once, shared between threads. Inputs outside the program's fixed slots move with time.
+class SeriesProgram {
+ public:
+    SeriesProgram() = default;
+    // Of the outputs, the first `wanted` are wanted as series, the others at order 0.
+    SeriesProgram(const Program& program, std::size_t wanted);
+
+    std::size_t inner_sums() const { return sums_.size(); }
+    std::size_t rules() const { return rules_.size(); }
+
+ private:
+    friend class SeriesEvaluator;
+    friend class SeriesCompiler;
+
+    // A number that depends on the parameters alone: one of the program's registers, or made of two others.
+    struct Coefficient {
+        Operation operation = Operation::number;  // number: register a
+        std::uint32_t a = 0, b = 0;
+    };
+    // Order k of series `result` is (f[2] w_k + f[1] y_k) + f[0] x_k: what is known last comes last. An operand is a
+    // series or an inner sum.
+    struct Rule {
+        std::uint32_t result, x, y, w;
+    };
+    // How the factors of a rule (of two, where a function has a partner) follow from order 0.
+    enum class Kind : std::uint8_t {
+        multiply,         // a b
+        square,           // a^2
+        unit_and_square,  // 1 + sign a^2
+        divide,           // a/b; sign -1: 1/b
+        sqrt,
+        exp,
+        sin_cos,            // with partner; sign +1: hyperbolic
+        tangent,            // tan a with partner 1 + tan^2 a; sign -1: tanh a, 1 - tanh^2 a
+        integral_of_ratio,  // r' = sign a'/b: log, asin, acos, atan
+        power               // a^b, b does not move
+    };
+    struct Seed {
+        Kind kind;
+        Operation function = Operation::number;  // of integral_of_ratio
+        double sign = 1.0;
+        std::uint32_t a = 0, b = 0, result = 0, partner = 0;  // registers of order 0
+        std::uint32_t scale_a = 0, scale_b = 0;               // coefficients: operand = a_0 + scale * series
+        std::uint32_t rule = 0;
+    };
+    // A rule whose factors are coefficients.
+    struct Combination {
+        std::uint32_t rule;
+        std::uint32_t coefficient[3];
+    };
+    // sum_{0<j<k} x_j y_{k-j}, or of j x_j y_{k-j}, divided by k
+    struct InnerSum {
+        std::uint32_t x, y;
+    };
+    struct Output {
+        std::uint32_t value;        // register of order 0
+        std::uint32_t series;       // higher orders: scale * series
+        std::uint32_t coefficient;  // of the scale
+    };
+
+    Program program_;
+    std::size_t wanted_ = 0;
+    std::vector<Coefficient> coefficients_;  // the first is 1
+    std::vector<Rule> rules_;
+    std::vector<Seed> seeds_;
+    std::vector<Combination> combinations_;
+    std::vector<InnerSum> sums_;  // those of j x_j first
+    std::size_t weighted_ = 0;    // how many these are
+    std::size_t registers_ = 0;   // of order 0: the program's, then hidden ones
+    std::size_t series_ = 0;      // series 0 is zero, then the inputs that move, then results; inner sums follow
+    std::vector<Output> outputs_;
+};
+
+// A series program with its coefficients. One per thread.
+class SeriesEvaluator {
+ public:
+    static constexpr int highest_order = 34;
+
+    SeriesEvaluator() = default;
+    SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters);
+
+    // Evaluates order 0 at these values of the moving inputs.
+    void begin(const double* inputs);
+    // Order 0 of an output, after begin().
+    double start(std::size_t index) const { return zero_.registers_[program_->outputs_[index].value]; }
+
+    // Evaluates order k, 1 <= k <= highest_order, from that order of the inputs, after all lower ones.
+    void extend(int k, const double* inputs);
+    // Order k of an output, after extend(k).
+    double output(std::size_t index) const { return scale_[index] * now_[program_->outputs_[index].series]; }
+
+ private:
+    void keep(int k);
+
+    const SeriesProgram* program_ = nullptr;
+    std::size_t inputs_ = 0;                      // moving ones
+    std::size_t lanes_ = 0;                       // inner sums, rounded up to whole vectors
+    Evaluator<double> zero_;                      // order 0, with room for hidden registers
+    std::vector<double> coefficients_;            // of the program, by number
+    std::vector<double> scale_;                   // of the outputs
+    std::vector<double> now_;                     // order k: series, inner sums
+    std::vector<std::array<double, 3>> factors_;  // per rule
+    std::vector<double> rows_;                    // per order: the left factors of all inner sums, then the right ones
+    std::vector<double> older_;                   // what the inner sums of the next order have so far
+};
+
+}  // namespace achilles

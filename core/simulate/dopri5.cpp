@@ -1,0 +1,236 @@
+// Dormand and Prince's Runge-Kutta method of order 5 with its dense output of order 4, from Boost.Odeint.
+//
+// The quantity whose zero ends the stretch is integrated along with the motion, under the same error control: in flight
+// the gap (h, hdot with (h, hdot)' = (hdot, hddot)), in contact hddot (with rate h'''). So a step is never longer than
+// that quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers
+// (THEORY section 9).
+#include <algorithm>
+
+// Must stand first: dense_output_runge_kutta.hpp forgets to include it.
+#include <boost/numeric/odeint/util/unwrap_reference.hpp>
+
+#include <boost/numeric/odeint/stepper/dense_output_runge_kutta.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <cmath>
+#include <limits>
+
+#include "simulate/stepper.hpp"
+
+namespace achilles {
+
+namespace {
+
+namespace odeint = boost::numeric::odeint;
+using Values = std::vector<double>;  // q, v, then what is watched: h, hdot in flight; hddot, 0 in contact
+using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
+
+bool is_finite(const Values& values) {
+    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+}
+
+class Dopri5 : public Stepper {
+ public:
+    Dopri5(const Model& model, const Run& run)
+        : n_(static_cast<std::size_t>(model.n())),
+          tolerance_(run.options.tolerance),
+          dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
+          flight_(model.evaluator(model.flight(), run.parameters)),
+          contact_(model.evaluator(model.contact(), run.parameters)) {}
+
+    void initialize(Motion motion, const State& state, const Gap& gap) override;
+    Obstacle do_step(double longest, double first, double least) override;
+    Obstacle redo_step(double duration, double least) override;
+    double current_time() const override { return span_; }
+    const State& current_state() const override { return to_; }
+    Polynomial watched() const override { return component(2 * n_); }
+    std::uint32_t coefficients(std::vector<double>& coefficients) const override;
+    double remainder() const override;
+    bool is_expansion() const override { return false; }
+    long evaluations() const override { return evaluations_; }
+
+ private:
+    void derivative(const Values& y, Values& dydt);
+    auto system() {
+        return [this](const Values& y, Values& dydt, double) { derivative(y, dydt); };
+    }
+    void guess_first_step();
+    void set(double dt);
+    Obstacle advance(double dt, double least);
+    Obstacle accept();
+    Obstacle obstacle_here() const;
+    Values values_of(const State& state) const;
+    Polynomial component(std::size_t i) const {
+        return interpolate({nodes_[0][i], nodes_[1][i], nodes_[2][i], nodes_[3][i], nodes_[4][i]});
+    }
+
+    std::size_t n_;
+    double tolerance_;
+    Dense dense_;
+    Evaluator<double> flight_, contact_;
+    Motion motion_ = Motion::flight;
+    double span_ = 0.0;
+    double natural_ = 0.0;     // the step the error control would take next; 0: not known
+    State from_, to_;          // the last step's ends
+    Gap gap_;                  // in flight, at `from`
+    bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
+    std::array<Values, 5> nodes_;
+    long evaluations_ = 0;
+};
+
+// y' = (v, f, hdot, hddot) or (v, f_c, h''', 0). Where M is not positive definite the derivative is NaN, and with it
+// the step.
+void Dopri5::derivative(const Values& y, Values& dydt) {
+    ++evaluations_;
+    Evaluator<double>& program = motion_ == Motion::flight ? flight_ : contact_;
+    for (std::size_t i = 0; i < 2 * n_; ++i) program.input(i) = y[i];
+    program.run();
+    bool regular = true;
+    for (std::size_t i = 0; i < n_; ++i) regular = regular && program.output(n_ + 1 + i) > 0.0;
+    for (std::size_t i = 0; i < n_; ++i) {
+        dydt[i] = y[n_ + i];
+        dydt[n_ + i] = regular ? program.output(i) : std::numeric_limits<double>::quiet_NaN();
+    }
+    dydt[2 * n_] = motion_ == Motion::flight ? y[2 * n_ + 1] : program.output(2 * n_ + 1);
+    dydt[2 * n_ + 1] = motion_ == Motion::flight ? program.output(n_) : 0.0;
+}
+
+Values Dopri5::values_of(const State& state) const {
+    Values y(2 * n_ + 2, 0.0);
+    for (std::size_t i = 0; i < n_; ++i) {
+        y[i] = state.q[static_cast<Eigen::Index>(i)];
+        y[n_ + i] = state.v[static_cast<Eigen::Index>(i)];
+    }
+    return y;
+}
+
+void Dopri5::initialize(Motion motion, const State& state, const Gap& gap) {
+    motion_ = motion;
+    to_ = state;
+    gap_ = gap;
+    continuing_ = false;
+    if (natural_ == 0.0) guess_first_step();
+}
+
+// The first stretch of a run: a guess from the first derivative, which the error control corrects at once.
+void Dopri5::guess_first_step() {
+    Values dydt(2 * n_ + 2);
+    const Values y = values_of(to_);
+    derivative(y, dydt);
+    double size = 1e-3, rate = 1e-3;
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+        size = std::max(size, std::abs(y[i]));
+        rate = std::max(rate, std::abs(dydt[i]));
+    }
+    natural_ = std::isfinite(rate) ? size / rate * std::pow(tolerance_, 0.2) : 1e-3;
+}
+
+void Dopri5::set(double dt) {
+    Values y = values_of(from_);
+    if (motion_ == Motion::flight) {
+        y[2 * n_] = gap_.h;
+        y[2 * n_ + 1] = gap_.hdot;
+    } else {  // hddot of the state itself
+        for (std::size_t i = 0; i < 2 * n_; ++i) contact_.input(i) = y[i];
+        contact_.run();
+        y[2 * n_] = contact_.output(n_);
+    }
+    dense_.initialize(y, 0.0, dt);
+}
+
+// What a step that never became finite means: the state itself tells.
+Obstacle Dopri5::obstacle_here() const {
+    for (const double y : values_of(from_))
+        if (!(std::abs(y) < 1e150)) return Obstacle::not_a_number;  // it ran away to infinity
+    return Obstacle::left_the_domain;
+}
+
+// Reads the step that was just made. Dense output at theta = 0, 1/4, 1/2, 3/4, 1: a quartic is known by these.
+Obstacle Dopri5::accept() {
+    const double begin = dense_.previous_time();
+    span_ = dense_.current_time() - begin;
+    for (std::size_t k = 0; k < 5; ++k) {
+        nodes_[k].resize(2 * n_ + 2);
+        if (k == 0) nodes_[k] = dense_.previous_state();
+        if (k == 4) nodes_[k] = dense_.current_state();
+        if (k > 0 && k < 4) dense_.calc_state(begin + 0.25 * static_cast<double>(k) * span_, nodes_[k]);
+        if (!is_finite(nodes_[k])) return Obstacle::not_a_number;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        to_.q[static_cast<Eigen::Index>(i)] = nodes_[4][i];
+        to_.v[static_cast<Eigen::Index>(i)] = nodes_[4][n_ + i];
+    }
+    return Obstacle::none;
+}
+
+// Steps from `from` by dt, or less if the error control or the domain asks for it.
+Obstacle Dopri5::advance(double dt, double least) {
+    bool finite = true;
+    for (; dt > least; dt *= 0.25) {
+        set(dt);
+        try {
+            dense_.do_step(system());
+        } catch (const odeint::odeint_error&) {  // 500 rejections in a row
+            return Obstacle::step_too_small;
+        }
+        finite = accept() == Obstacle::none;
+        if (finite) return span_ > least ? Obstacle::none : Obstacle::step_too_small;
+    }
+    return finite ? Obstacle::step_too_small : obstacle_here();
+}
+
+Obstacle Dopri5::do_step(double longest, double first, double least) {
+    const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
+    const bool by_order = wanted < natural_ || wanted > longest;
+    if (continuing_) gap_ = {nodes_[4][2 * n_], nodes_[4][2 * n_ + 1]};
+    from_ = to_;
+    Obstacle obstacle = Obstacle::not_a_number;
+    if (continuing_ && !by_order) {
+        try {
+            dense_.do_step(system());
+            obstacle = accept();
+        } catch (const odeint::odeint_error&) {
+            return Obstacle::step_too_small;
+        }
+    }
+    if (obstacle != Obstacle::none) obstacle = advance(std::min(wanted, longest), least);
+    if (obstacle != Obstacle::none) return obstacle;
+    // A step that was short by order says nothing about what the error control would allow.
+    const double next = dense_.current_time_step();
+    natural_ = by_order ? std::max(next, natural_) : next;
+    continuing_ = true;
+    return obstacle;
+}
+
+Obstacle Dopri5::redo_step(double duration, double least) {
+    continuing_ = false;
+    return advance(duration, least);
+}
+
+std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
+    const std::size_t first = coefficients.size();
+    coefficients.resize(first + 10 * n_);
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+        Polynomial p = component(i);
+        p.c[1] += nodes_[4][i] - p(1.0);
+        for (std::size_t k = 0; k <= 4; ++k) coefficients[first + 2 * n_ * k + i] = p.c[k];
+    }
+    return 4;
+}
+
+// The local error that the error control allows, and as much for the dense output between the ends, which is of one
+// order less. In a flight that is short against such a step, less than the highest term that was kept.
+double Dopri5::remainder() const {
+    const Polynomial p = watched();
+    double size = 0.0;
+    for (const double c : p.c) size += std::abs(c);
+    return std::min(4.0 * tolerance_ * (1.0 + size), std::abs(p.c[4])) + 8.0 * 0x1p-53 * size;
+}
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run) {
+    return std::make_unique<Dopri5>(model, run);
+}
+
+}  // namespace achilles

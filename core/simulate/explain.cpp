@@ -1,0 +1,49 @@
+#include "simulate/explain.hpp"
+
+#include <cmath>
+
+#include "certify/truncation.hpp"
+#include "simulate/impact.hpp"
+
+namespace achilles {
+
+ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
+    const Event& impact = trajectory.events[event];
+    const Model& model = *trajectory.model;
+    const Run& run = trajectory.run;
+    auto energy = model.evaluator(model.energy(), run.parameters);
+    const auto energy_at = [&](const Vector& v) {
+        put(energy, State{impact.q, v});
+        energy.run();
+        return energy.output(0);
+    };
+    ImpactReason reason;
+    reason.energy_before = energy_at(impact.v_before);
+    reason.energy_after = energy_at(impact.v_after);
+
+    Surface surface(model, run);
+    const State before{impact.q, impact.v_before};
+    const Contact contact = surface.at(before);
+    const Collision collision{impact.t, before, std::abs(contact.hdot),
+                              reinitialize(contact, before.v, Reinitialization::kinetic),
+                              reinitialize(contact, before.v, run.options.truncation.reinitialization)};
+    reason.normal_acceleration = surface.normal_acceleration({impact.q, collision.restart});
+    if (reason.normal_acceleration < 0.0) reason.attempt = truncation_conditions(model, run)->widest(collision);
+    return reason;
+}
+
+ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
+    const Event& release = trajectory.events[event];
+    const Model& model = *trajectory.model;
+    const State state{release.q, release.v_after};
+    Surface surface(model, trajectory.run);
+    const double W = surface.at(state).W;
+    ReleaseReason reason;
+    reason.lambda = -surface.normal_acceleration(state) / W;
+    reason.jerk = surface.jerk(state);
+    // hddot vanishes here, so the change of W does not matter.
+    reason.lambda_rate = -reason.jerk / W;
+    return reason;
+}
+
+}  // namespace achilles

@@ -1,0 +1,33 @@
+#include "simulate/many.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+namespace achilles {
+
+namespace {
+
+Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
+    try {
+        return simulate(model, run);
+    } catch (const InputError& error) {
+        return error;
+    }
+}
+
+}  // namespace
+
+void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
+                   const std::function<Run(std::size_t)>& run_of,
+                   const std::function<void(std::size_t, Attempt&&)>& take, int threads) {
+    const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) take(i, attempt(model, run_of(i)));
+    };
+    // One run takes long enough (10 us and more) to be a task of its own, and may take a thousand times longer than
+    // its neighbour.
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), work, tbb::auto_partitioner()); });
+}
+
+}  // namespace achilles

@@ -1,0 +1,50 @@
+// Many runs of one model on all cores: what maps and sweeps stand on.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "model/description.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+// What one run of many gave: its trajectory, or why it could not start (a start below the floor is one point of a map,
+// not the end of it).
+using Attempt = std::variant<Trajectory, InputError>;
+
+// Makes run_of(i), simulates it and hands the result to take(i, attempt), for 0 <= i < count, on at most `threads`
+// threads (0: one for every core). Runs share the model only, which never changes, so that no result depends on the
+// number of threads or on the other runs; only Statistics::seconds does.
+//
+// run_of and take are called once for every i, from several threads at once and in no order: they may write to a place
+// that belongs to i and share nothing else that changes. A trajectory ends with its take() unless that keeps it, so
+// memory does not grow with count. What run_of or take throws ends the runs not yet begun and is thrown again here
+// (where several throw, one of theirs); that is how a caller cancels.
+void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
+                   const std::function<Run(std::size_t)>& run_of,
+                   const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0);
+
+// The same for a list of runs, each reduced to what is wanted of it: results[i] = summarize(i, attempt of runs[i]).
+template <class Summarize>
+auto simulate_many(const std::shared_ptr<const Model>& model, std::span<const Run> runs, const Summarize& summarize,
+                   int threads = 0) {
+    using Summary = std::invoke_result_t<const Summarize&, std::size_t, Attempt&&>;
+    static_assert(!std::is_same_v<Summary, bool>, "neighbours in a vector<bool> share a byte: return a char");
+    std::vector<std::optional<Summary>> places(runs.size());
+    simulate_many(
+        model, runs.size(), [&](std::size_t i) { return runs[i]; },
+        [&](std::size_t i, Attempt&& attempt) { places[i].emplace(summarize(i, std::move(attempt))); }, threads);
+    std::vector<Summary> results;
+    results.reserve(places.size());
+    for (std::optional<Summary>& place : places) results.push_back(std::move(*place));
+    return results;
+}
+
+}  // namespace achilles

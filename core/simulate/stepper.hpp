@@ -1,0 +1,60 @@
+// One step of a smooth motion after the other, with dense output: what an integrator must offer to the flow.
+//
+// The calls bear the names that Boost.Odeint gives to those of a dense-output stepper. Time runs from 0 in every step,
+// so that the shortest flight late in a run has all its digits. Besides (q, v), every step carries the quantity that is
+// watched for a zero: the gap in flight, hddot of the free motion in contact.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "model/model.hpp"
+#include "simulate/polynomial.hpp"
+#include "trajectory.hpp"
+
+namespace achilles {
+
+enum class Motion { flight, contact };
+
+// Why a step could not be made.
+enum class Obstacle { none, left_the_domain, not_a_number, step_too_small };
+
+// The gap and its rate.
+struct Gap {
+    double h = 0.0, hdot = 0.0;
+};
+
+class Stepper {
+ public:
+    virtual ~Stepper() = default;
+
+    // Stands at a state, ready to step on from there. `gap` counts in flight alone.
+    virtual void initialize(Motion motion, const State& state, const Gap& gap) = 0;
+    // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
+    // to be sensible after an impact. `least` is the shortest that time can resolve.
+    virtual Obstacle do_step(double longest, double first, double least) = 0;
+    // The last step again, from the same state, with this duration.
+    virtual Obstacle redo_step(double duration, double least) = 0;
+
+    // The last step: [0, current_time], and what is reached there.
+    virtual double current_time() const = 0;
+    virtual const State& current_state() const = 0;
+
+    // Along the last step, polynomials in theta = t/current_time: what is watched, and (q, v) as blocks of ascending
+    // powers, appended to `coefficients`; their degree is returned.
+    virtual Polynomial watched() const = 0;
+    virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
+    // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
+    virtual double remainder() const = 0;
+    // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the
+    // state's own value, and no first guess is needed. False if it is integrated to its end: watched() then drifts from
+    // its value at (q, v) within the tolerance, and between the ends it is interpolated.
+    virtual bool is_expansion() const = 0;
+
+    virtual long evaluations() const = 0;
+};
+
+std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run);
+std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run);
+
+}  // namespace achilles

@@ -1,0 +1,205 @@
+#include "simulate/taylor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace achilles {
+
+namespace {
+
+constexpr int highest = SeriesEvaluator::highest_order;
+constexpr int guarded = 10;
+constexpr int lowest = 5;  // a release is a triple root: the gap needs more terms than that
+
+// The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
+// radius of convergence. The weights are processor cycles, measured: a step on its own, a rule, a lane of inner sums.
+int best_order(const SeriesProgram& program, double tolerance) {
+    const double step = 3000.0, order = 40.0 + 5.0 * static_cast<double>(program.rules()),
+                 square = 0.25 * static_cast<double>(program.inner_sums());
+    int best = lowest;
+    double least = std::numeric_limits<double>::infinity();
+    for (int p = lowest; p < highest; ++p) {
+        const double cost = (step + order * p + square * p * p) * std::pow(tolerance, -1.0 / p);
+        if (cost < least) best = p;
+        least = std::min(least, cost);
+    }
+    return best;
+}
+
+}  // namespace
+
+Taylor::Taylor(const Model& model, const Run& run)
+    : n_(static_cast<std::size_t>(model.n())),
+      width_(2 * n_ + 1),
+      tolerance_(std::max(run.options.tolerance, 0x1p-53)),
+      flight_(model.flight_series(), run.parameters),
+      contact_(model.contact_series(), run.parameters),
+      flight_order_(best_order(model.flight_series(), tolerance_)),
+      contact_order_(best_order(model.contact_series(), tolerance_)),
+      rows_((highest + 1) * width_, 0.0),
+      scaled_(rows_.size(), 0.0),
+      units_(width_, 0.0) {}
+
+void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
+    motion_ = motion;
+    gap_ = gap;
+    to_ = state;
+}
+
+// Where h_0 + h_1 t + h_2 t^2 comes down to zero, or `longest`: after a release, say, all three are nothing.
+double Taylor::parabola_root(double longest) const {
+    const double h0 = std::max(gap_.h, 0.0), h1 = gap_.hdot, h2 = row(2)[2 * n_];
+    if (!(h2 < 0.0) || (h0 == 0.0 && h1 <= 0.0)) return longest;
+    const double root = std::sqrt(h1 * h1 - 4.0 * h0 * h2);
+    return std::min(longest, h1 > 0.0 ? (h1 + root) / (-2.0 * h2) : 2.0 * h0 / (root - h1));
+}
+
+// m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
+double Taylor::magnitude(int k) const {
+    const double* const c = row(k);
+    double largest = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < width_; ++i) {
+        const double size = std::abs(c[i]) * units_[i];
+        largest = std::max(largest, size);
+        sum += size;
+    }
+    return sum < std::numeric_limits<double>::infinity() ? largest : sum;
+}
+
+// The series at the state where the stepper stands, to the order that is needed.
+Obstacle Taylor::expand(double longest) {
+    ++evaluations_;
+    const bool flying = motion_ == Motion::flight;
+    SeriesEvaluator& series = flying ? flight_ : contact_;
+    const std::size_t w = 2 * n_;
+    double* c = row(0);
+    for (std::size_t i = 0; i < n_; ++i) {
+        c[i] = to_.q[static_cast<Eigen::Index>(i)];
+        c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
+    }
+    for (std::size_t i = 0; i < w; ++i) {
+        if (!(std::abs(c[i]) < 1e150)) return Obstacle::not_a_number;
+        units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
+    }
+    series.begin(c);
+    for (std::size_t i = 0; i < n_; ++i)
+        if (!(series.start(n_ + 1 + i) > 0.0)) return Obstacle::left_the_domain;
+    c[w] = flying ? gap_.h : series.start(n_);
+    units_[w] = 1.0 / (tolerance_ * (1.0 + std::abs(c[w])));
+
+    double target = longest, power = 1.0;
+    bool small = false;  // the last term was
+    int zeros = 0;
+    const int most = flying ? flight_order_ : contact_order_;
+    for (order_ = 1;; ++order_) {
+        const int k = order_;
+        const double* const below = c;
+        c = row(k);
+        const double inverse = 1.0 / k;
+        for (std::size_t i = 0; i < n_; ++i) {
+            c[i] = below[n_ + i] * inverse;
+            c[n_ + i] = (k == 1 ? series.start(i) : series.output(i)) * inverse;
+        }
+        series.extend(k, c);
+        c[w] = flying && k == 1 ? gap_.hdot : series.output(n_);
+        if (k == 2 && flying) {
+            // A flight is short where its parabola is; what is watched must be known well against its height.
+            target = std::min(longest, 1.05 * parabola_root(longest));
+            const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target;
+            if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
+        }
+        const double m = magnitude(k);
+        magnitude_[static_cast<std::size_t>(k)] = m;
+        if (!std::isfinite(m)) {
+            --order_;
+            return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
+        }
+        power = k == 2 ? target * target : power * target;
+        const bool now = m * power <= 1.0;
+        zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
+        if (k >= most || (k >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
+        small = now;
+    }
+}
+
+// Where the last two terms reach 1. By symmetry they may be much smaller than the first ones left out; the two before
+// them tell: half of the step is within their reach. In a series that was cut early these are large by right.
+double Taylor::natural_step() const {
+    double exponent = std::numeric_limits<double>::infinity();  // of 2
+    const int counted = order_ < guarded ? 2 : 4;
+    for (int k = order_; k > order_ - counted; --k) {
+        const double m = magnitude_[static_cast<std::size_t>(k)];
+        if (m > 0.0) exponent = std::min(exponent, (k > order_ - 2 ? 0.0 : 1.0) - std::log2(m) / k);
+    }
+    return std::exp2(exponent);
+}
+
+void Taylor::evaluate(double duration) {
+    span_ = duration;
+    double power = 1.0;
+    for (int k = 0; k <= order_; ++k, power *= duration) {
+        const double* const c = row(k);
+        double* const s = scaled_.data() + static_cast<std::size_t>(k) * width_;
+        for (std::size_t i = 0; i < width_; ++i) s[i] = c[i] * power;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+        double q = 0.0, v = 0.0;  // from the smallest terms on
+        for (std::size_t k = static_cast<std::size_t>(order_) + 1; k-- > 0;) {
+            q += scaled_[k * width_ + i];
+            v += scaled_[k * width_ + n_ + i];
+        }
+        to_.q[static_cast<Eigen::Index>(i)] = q;
+        to_.v[static_cast<Eigen::Index>(i)] = v;
+    }
+}
+
+Obstacle Taylor::do_step(double longest, double, double least) {
+    if (const Obstacle obstacle = expand(longest); obstacle != Obstacle::none) return obstacle;
+    const double step = std::min(longest, natural_step());
+    if (!(step > least)) return Obstacle::step_too_small;
+    evaluate(step);
+    return Obstacle::none;
+}
+
+Obstacle Taylor::redo_step(double duration, double least) {
+    if (!(duration > least)) return Obstacle::step_too_small;
+    evaluate(duration);
+    return Obstacle::none;
+}
+
+Polynomial Taylor::watched() const {
+    Polynomial p;
+    p.degree = order_;
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); ++k) p.c[k] = scaled_[k * width_ + 2 * n_];
+    return p;
+}
+
+std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
+    const auto block = [&](int k) { return scaled_.begin() + k * static_cast<std::ptrdiff_t>(width_); };
+    int degree = order_;
+    while (degree > 1 && std::all_of(block(degree), block(degree) + static_cast<std::ptrdiff_t>(2 * n_),
+                                     [](double x) { return x == 0.0; }))
+        --degree;
+    for (int k = 0; k <= degree; ++k)
+        coefficients.insert(coefficients.end(), block(k), block(k) + static_cast<std::ptrdiff_t>(2 * n_));
+    return static_cast<std::uint32_t>(degree);
+}
+
+// The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
+// than the last two together.
+double Taylor::remainder() const {
+    double terms = 0.0, size = 0.0;
+    for (int k = 0; k <= order_; ++k) {
+        const double term = std::abs(scaled_[static_cast<std::size_t>(k) * width_ + 2 * n_]);
+        size += term;
+        if (k >= order_ - 1) terms += term;
+    }
+    return terms + 4.0 * 0x1p-53 * size;
+}
+
+std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {
+    return std::make_unique<Taylor>(model, run);
+}
+
+}  // namespace achilles

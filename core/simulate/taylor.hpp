@@ -1,0 +1,56 @@
+// A Taylor series of the motion, of high order, as a stepper: the step ends where the series stops being exact.
+#pragma once
+
+#include "series/series.hpp"
+#include "simulate/stepper.hpp"
+
+namespace achilles {
+
+// With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. The gap (in
+// flight) and hddot (in contact) are outputs of the same program, so their series come with it.
+//
+// Order and step: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last
+// terms reach 1. How far the next event can be is often known from the first terms (a flight ends about where its
+// parabola does); then the order is the first one whose terms are that small there, and a short flight costs a few
+// orders. Else it is the order at which the cost of a step over its length is least.
+class Taylor : public Stepper {
+ public:
+    Taylor(const Model& model, const Run& run);
+
+    void initialize(Motion motion, const State& state, const Gap& gap) override;
+    Obstacle do_step(double longest, double first, double least) override;
+    Obstacle redo_step(double duration, double least) override;
+    double current_time() const override { return span_; }
+    const State& current_state() const override { return to_; }
+    Polynomial watched() const override;
+    std::uint32_t coefficients(std::vector<double>& coefficients) const override;
+    double remainder() const override;
+    bool is_expansion() const override { return true; }
+    long evaluations() const override { return evaluations_; }
+
+ private:
+    double* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width_; }
+    const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
+    Obstacle expand(double longest);
+    double parabola_root(double longest) const;
+    double magnitude(int k) const;
+    double natural_step() const;
+    void evaluate(double duration);
+
+    std::size_t n_, width_;  // width: q, v, what is watched
+    double tolerance_;
+    SeriesEvaluator flight_, contact_;
+    int flight_order_, contact_order_;
+    Motion motion_ = Motion::flight;
+    Gap gap_;
+    State to_;
+    std::vector<double> rows_;                                            // coefficients, order by order: q, v, watched
+    std::vector<double> scaled_;                                          // the same times span^k
+    std::vector<double> units_;                                           // 1/(tolerance of each component)
+    std::array<double, SeriesEvaluator::highest_order + 1> magnitude_{};  // m_k
+    int order_ = 0;                                                       // of the last expansion
+    double span_ = 0.0;
+    long evaluations_ = 0;
+};
+
+}  // namespace achilles

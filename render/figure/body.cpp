@@ -1,0 +1,126 @@
+#include "figure/body.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+
+namespace achilles {
+
+namespace {
+
+// Solves A x = b for the two unknowns of a symmetric 2 x 2 matrix, in the directions that it has: of a body that moves
+// on a line only that direction counts.
+Eigen::Vector2d solved(const Eigen::Matrix2d& A, const Eigen::Vector2d& b) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(A);
+    Eigen::Vector2d x = Eigen::Vector2d::Zero();
+    for (int i = 0; i < 2; ++i) {
+        const double eigenvalue = parts.eigenvalues()[i];
+        if (!(eigenvalue > 1e-9 * parts.eigenvalues().maxCoeff()) || !(eigenvalue > 0.0)) continue;
+        const Eigen::Vector2d direction = parts.eigenvectors().col(i);
+        x += direction * direction.dot(b) / eigenvalue;
+    }
+    return x;
+}
+
+Eigen::Matrix2d gram(const Vector& jx, const Vector& jy) {
+    Eigen::Matrix2d A;
+    A << jx.dot(jx), jx.dot(jy), jx.dot(jy), jy.dot(jy);
+    return A;
+}
+
+}  // namespace
+
+std::optional<Body> Body::of(Grip& grip, const State& state) {
+    const Grip::Hold here = grip.at(state);
+    if (!std::isfinite(here.at.x) || !std::isfinite(here.at.y)) return std::nullopt;
+    Body body;
+    body.at_ = here.at;
+    body.radius_ = here.radius;
+    const auto n = state.q.size();
+    body.jx_ = body.jy_ = Vector::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        State moved = state;
+        const double step = 1e-6 * std::max(1.0, std::abs(state.q[i]));
+        moved.q[i] = state.q[i] + step;
+        const Point after = grip.at(moved).at;
+        moved.q[i] = state.q[i] - step;
+        const Point before = grip.at(moved).at;
+        body.jx_[i] = (after.x - before.x) / (2.0 * step);
+        body.jy_[i] = (after.y - before.y) / (2.0 * step);
+    }
+    if (!body.jx_.allFinite() || !body.jy_.allFinite()) return std::nullopt;
+    return body;
+}
+
+Point Body::velocity(const Vector& v) const { return {jx_.dot(v), jy_.dot(v)}; }
+
+std::optional<Point> Body::force(const Vector& Q) const {
+    const Eigen::Vector2d F = solved(gram(jx_, jy_), {jx_.dot(Q), jy_.dot(Q)});
+    const Vector rest = Q - F[0] * jx_ - F[1] * jy_;
+    if (!(rest.norm() <= 1e-5 * Q.norm())) return std::nullopt;
+    return Point{F[0], F[1]};
+}
+
+std::optional<Vector> Body::rates(const Vector& v, const Point& velocity) const {
+    const Point now = this->velocity(v);
+    const Eigen::Vector2d missing(velocity.x - now.x, velocity.y - now.y);
+    const Eigen::Vector2d u = solved(gram(jx_, jy_), missing);
+    const Vector result = v + u[0] * jx_ + u[1] * jy_;
+    if (!result.allFinite()) return std::nullopt;
+    return result;
+}
+
+std::optional<Vector> held_at(Grip& grip, State state, const Point& place) {
+    constexpr int rounds = 30;
+    double distance = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < rounds; ++round) {
+        const auto body = Body::of(grip, state);
+        if (!body) return std::nullopt;
+        const Point missing{place.x - body->at().x, place.y - body->at().y};
+        const double before = distance;
+        distance = std::hypot(missing.x, missing.y);
+        if (distance < 1e-12 || std::abs(before - distance) < 1e-12 * (1.0 + distance)) break;
+        const Vector zero = Vector::Zero(state.q.size());
+        const auto step = body->rates(zero, missing);
+        if (!step) return std::nullopt;
+        // Half a turn at most in one step: far beyond, an angle's first order means nothing.
+        state.q += *step / std::max(1.0, step->norm());
+    }
+    return state.q;
+}
+
+Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
+    const Model& model = *trajectory.model;
+    const auto n = sample.state.q.size();
+    Vector Q = Vector::Zero(n);
+    if (!sample.contact) return Q;
+    auto force = model.evaluator(model.force(), trajectory.run.parameters);
+    auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
+    put(force, sample.state);
+    put(surface, sample.state);
+    force.run();
+    surface.run();
+    for (Eigen::Index i = 0; i < n; ++i) Q[i] = force.output(0) * surface.output(static_cast<std::size_t>(2 + n + i));
+    return Q;
+}
+
+Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples) {
+    Trail trail;
+    auto grip = mechanism.grip(trajectory.run.parameters);
+    if (!grip) return trail;
+    const std::size_t stride = 1 + samples.size() / 300;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const State& state = samples[i].state;
+        trail.points.push_back(grip->at(state).at);
+        if (i % stride != 0) continue;
+        const auto body = Body::of(*grip, state);
+        if (!body) continue;
+        const Point v = body->velocity(state.v);
+        trail.fastest = std::max(trail.fastest, std::hypot(v.x, v.y));
+        if (const auto F = body->force(contact_force(trajectory, samples[i])))
+            trail.strongest = std::max(trail.strongest, std::hypot(F->x, F->y));
+    }
+    return trail;
+}
+
+}  // namespace achilles

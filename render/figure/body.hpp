@@ -1,0 +1,48 @@
+// The point of a mechanism that stands for it (see Grip): where its trail, its velocity and the contact force are
+// drawn, and where a hand takes hold.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "figure/mechanism.hpp"
+
+namespace achilles {
+
+class Body {
+ public:
+    // At a state, with p = p(q) its place in the world and J = dp/dq by central differences. Nothing where these are
+    // not finite.
+    static std::optional<Body> of(Grip& grip, const State& state);
+
+    const Point& at() const { return at_; }
+    double radius() const { return radius_; }  // of its disc, in world units; 0 without one
+    // J v.
+    Point velocity(const Vector& v) const;
+    // The force F at the body that does what the generalised force Q does, J'F = Q; nothing where no force there can.
+    std::optional<Point> force(const Vector& Q) const;
+    // The rates nearest to v that give the body this velocity; nothing where it cannot have it.
+    std::optional<Vector> rates(const Vector& v, const Point& velocity) const;
+
+ private:
+    Point at_;
+    double radius_ = 0.0;
+    Vector jx_, jy_;  // rows of J
+};
+
+// The coordinates nearest to the state's that bring the body to this place, by Gauss and Newton; as near as it can be
+// where the body moves on a line. Nothing where it does not get there.
+std::optional<Vector> held_at(Grip& grip, State state, const Point& place);
+
+// The body along a whole run.
+struct Trail {
+    std::vector<Point> points;  // one a sample; none where the mechanism has no body
+    double fastest = 0.0;       // largest speed of the body
+    double strongest = 0.0;     // largest contact force at it
+};
+Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
+
+// The contact force lambda g' of a sample, as a generalised force; zero in flight.
+Vector contact_force(const Trajectory& trajectory, const Sample& sample);
+
+}  // namespace achilles

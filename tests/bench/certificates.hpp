@@ -1,0 +1,37 @@
+// What a run's certificates cost: every question it asked, asked again.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "certify/truncation.hpp"
+#include "simulate/impact.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::bench {
+
+// Every collision at which a run asked for a certificate: its impacts, and those it was cut at.
+inline std::vector<Collision> collisions(const Trajectory& trajectory) {
+    Surface surface(*trajectory.model, trajectory.run);
+    std::vector<Collision> result;
+    for (const Event& event : trajectory.events) {
+        if (event.kind == Event::Kind::release) continue;
+        const State before{event.truncation ? event.truncation->q : event.q,
+                           event.truncation ? event.truncation->v_before : event.v_before};
+        const Contact contact = surface.at(before);
+        const auto kind = trajectory.run.options.truncation.reinitialization;
+        result.push_back({event.truncation ? event.truncation->t : event.t, before, -contact.hdot,
+                          reinitialize(contact, before.v, Reinitialization::kinetic),
+                          reinitialize(contact, before.v, kind)});
+    }
+    return result;
+}
+
+// Asks as the run did, with conditions built anew. Nothing else is in it, and what it reads is in the cache, so it is
+// at most what the certificates cost inside the run.
+inline void ask_again(const Model& model, const Run& run, const std::vector<Collision>& asked) {
+    const auto conditions = truncation_conditions(model, run);
+    for (const Collision& collision : asked) conditions->hold(collision);
+}
+
+}  // namespace achilles::bench

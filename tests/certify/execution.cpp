@@ -1,0 +1,88 @@
+#include "certify/execution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace achilles::test {
+
+Point point_of(const State& state) {
+    Point point;
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+        point.q.emplace_back(state.q[i]);
+        point.v.emplace_back(state.v[i]);
+    }
+    return point;
+}
+
+TrueRuns::TrueRuns(const Model& model, const Run& run)
+    : n_(static_cast<std::size_t>(model.n())),
+      motion_(model, run),
+      e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
+    if (!(e_ >= 0 && e_ <= 1)) throw std::invalid_argument("true runs need 0 <= e <= 1");
+}
+
+TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
+    end_time_ = end_time;
+    cut_ = cut;
+    result_ = {};
+    flight_ = {start, 0, 0};
+    contact_ = false;
+    expected_ = end_time;
+    while (flight_.time < end_time_) {
+        if (contact_) {
+            stay();
+        } else {
+            fly();
+        }
+    }
+    result_.end = flight_.point;
+    result_.end_phase = contact_ ? Phase::Kind::constrained : Phase::Kind::hybrid;
+    return std::move(result_);
+}
+
+void TrueRuns::fly() {
+    // The lower a flight, the less it may err.
+    const double rise = flight_.known == 1 ? static_cast<double>(motion_.contact(flight_.point).hdot) : 1.0;
+    const double tolerance = precision * std::min(1.0, rise);
+    if (!motion_.fly(flight_, end_time_ - flight_.time, expected_, tolerance)) {
+        flight_.time = end_time_;
+        return;
+    }
+    const auto contact = motion_.contact(flight_.point);
+    const Real w = -contact.hdot;
+    Point& point = flight_.point;
+    const Point slid = motion_.restart(point, Reinitialization::kinetic);
+    const Real a = -motion_.normal_acceleration(slid);
+    if (a > 0 && e_ < 1 && (e_ == 0 || w < cut_)) {
+        const Real rest = 2 * e_ * w / (a * (1 - e_));
+        result_.events.push_back({Event::Kind::zeno, flight_.time + rest, w, point});
+        point = slid;
+        contact_ = true;
+        return;
+    }
+    result_.events.push_back({Event::Kind::impact, flight_.time, w, point});
+    for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * contact.n[i];
+    flight_.known = e_ > 0 ? 1 : 2;
+    const double left = static_cast<double>(end_time_ - flight_.time);
+    expected_ = a > 0 && e_ > 0 ? std::min(left, 2.2 * static_cast<double>(e_ * w / a)) : left;
+}
+
+void TrueRuns::stay() {
+    if (!motion_.stay(flight_, end_time_ - flight_.time, precision)) {
+        flight_.time = end_time_;
+        return;
+    }
+    result_.events.push_back({Event::Kind::release, flight_.time, 0, flight_.point});
+    contact_ = false;
+    flight_.known = 3;
+    expected_ = static_cast<double>(end_time_ - flight_.time);
+}
+
+std::optional<Dip> TrueRuns::first_dip(const Point& start, double within) {
+    Flight flight{start, 0, 0};
+    if (!motion_.fly_to_dip(flight, within, within, 1e-22)) return std::nullopt;
+    return Dip{flight.time, motion_.contact(flight.point).h, motion_.normal_acceleration(flight.point)};
+}
+
+}  // namespace achilles::test

@@ -1,0 +1,58 @@
+// The whole completed execution in 34 digits, from a start in the air to an end time: every impact down to speeds far
+// below what double precision resolves, Zeno points, releases. What simulate() computes is judged by it.
+#pragma once
+
+#include <vector>
+
+#include "certify/bouncing.hpp"
+
+namespace achilles::test {
+
+struct TrueEvent {
+    Event::Kind kind = Event::Kind::impact;
+    Real t;
+    Real speed;   // impact: |hdot| before
+    Point point;  // before it
+};
+
+struct TrueExecution {
+    std::vector<TrueEvent> events;  // in time
+    Point end;
+    Phase::Kind end_phase = Phase::Kind::hybrid;
+};
+
+// A dip of the gap in free motion.
+struct Dip {
+    Real t, gap;
+    Real curvature;  // hddot there
+};
+
+Point point_of(const State& state);
+
+class TrueRuns {
+ public:
+    // 0 <= e <= 1.
+    TrueRuns(const Model& model, const Run& run);
+
+    // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut`; what is left is a geometric
+    // series and the plastic restart, which errs by O(cut^3).
+    TrueExecution run(const Point& start, double end_time, double cut = 1e-9);
+    // Where the gap first stops falling and rises again, if free motion from the start does that within the time.
+    std::optional<Dip> first_dip(const Point& start, double within);
+
+ private:
+    static constexpr double precision = 1e-26;  // of a step
+    void fly();
+    void stay();
+
+    std::size_t n_;
+    TrueMotion motion_;
+    Real e_, end_time_;
+    Real cut_;
+    TrueExecution result_;
+    Flight flight_;
+    bool contact_ = false;
+    double expected_ = 0.0;
+};
+
+}  // namespace achilles::test

@@ -1,0 +1,116 @@
+// Never under the floor: a sample of what bench_floor does at length, over every system there is.
+#include "floor/floor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "simulate/many.hpp"
+#include "systems.hpp"
+
+namespace achilles::test {
+namespace {
+
+std::vector<std::string> all_systems() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+Run started(const Model& model, const State& start) {
+    Run run = model.default_run();
+    run.q = start.q;
+    run.v = start.v;
+    return run;
+}
+
+class Floor : public testing::TestWithParam<std::string> {};
+
+TEST_P(Floor, IsNeverPassedFromRandomStarts) {
+    const auto model = load(GetParam());
+    Starts starts(model, 7);
+    std::vector<achilles::Run> runs;
+    for (int i = 0; i < 300; ++i) runs.push_back(started(*model, starts.next()));
+    const auto faults = simulate_many(model, runs, [](std::size_t, Attempt&& attempt) {
+        if (std::holds_alternative<InputError>(attempt)) return std::string();  // not defined there
+        const auto& trajectory = std::get<Trajectory>(attempt);
+        // Between the ends of steps dense output is an interpolation, not better than the tolerance allows.
+        const std::string wrong = fault(trajectory, 100.0 * trajectory.run.options.tolerance);
+        return wrong.empty() ? wrong : wrong + start_of(trajectory);
+    });
+    for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
+}
+
+TEST_P(Floor, IsMetWhenThe34DigitsSay) {
+    const auto model = load(GetParam());
+    Starts starts(model, 8);
+    for (int i = 0; i < 4; ++i) {
+        auto run = started(*model, starts.next());
+        run.options.tolerance = 1e-12;
+        run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
+        const Trajectory trajectory = simulate(model, run);
+        const Comparison comparison = Judge(model, run).compare(trajectory);
+        EXPECT_TRUE(comparison.agrees()) << comparison.error << " off, sensitivity " << comparison.sensitivity
+                                         << ", at " << comparison.where << start_of(trajectory);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Floor, testing::ValuesIn(all_systems()),
+                         [](const auto& system) { return system.param; });
+
+// What the comparison must not let pass: an impact left out, and one moved by 1e-6.
+TEST(FloorJudge, CatchesALie) {
+    const auto model = load("ball_on_sine");
+    auto run = model->default_run();
+    run.options.tolerance = 1e-12;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
+    Judge judge(model, run);
+    Trajectory trajectory = simulate(model, run);
+    EXPECT_TRUE(judge.compare(trajectory).agrees());
+    Trajectory moved = trajectory;
+    const double sensitivity = judge.compare(trajectory).sensitivity;
+    EXPECT_LT(sensitivity, 1e4);
+    moved.end.v[0] += 2e-8 * sensitivity;
+    EXPECT_FALSE(judge.compare(moved).agrees());
+    Trajectory fewer = trajectory;
+    fewer.events.erase(fewer.events.begin());
+    EXPECT_FALSE(judge.compare(fewer).agrees());
+    Trajectory under = trajectory;
+    under.statistics.least_gap = -2e-12;
+    EXPECT_NE(fault(under, 1e-8), "");
+    EXPECT_EQ(fault(trajectory, 1e-8), "");
+    under = trajectory;
+    under.coefficients[under.pieces[0].first + 1] -= 5.0;  // y of the first step, below the floor inside it
+    EXPECT_NE(fault(under, 1e-8), "");
+}
+
+// A flight whose least gap is +1e-10, -1e-10 or 1e-13 meets the floor when it should, and not otherwise. The starts
+// were tuned in 34 digits.
+TEST(Grazing, IsRightAtATightToleranceAndNeverWrongAtTheDefault) {
+    for (const std::string& system : all_systems()) {
+        const auto model = load(system);
+        const int count = system == "double_pendulum" ? 1 : 5;  // whose dips take a second each to find
+        GrazingStarts source(model, 96);
+        for (const double least : {1e-10, -1e-10, 1e-13}) {
+            for (int i = 0; i < count; ++i) {
+                const Grazing grazing = source.next(least);
+                for (const double tolerance : {1e-14, model->default_run().options.tolerance}) {
+                    auto run = started(*model, grazing.start);
+                    run.options.tolerance = tolerance;
+                    run.options.end_time = static_cast<double>(grazing.dip.t) + 0.01;
+                    const Trajectory trajectory = simulate(model, run);
+                    if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+                        EXPECT_GT(tolerance, 1e-14) << trajectory.outcome.message << start_of(trajectory);
+                        continue;
+                    }
+                    const double until = static_cast<double>(grazing.dip.t) + 0.005;
+                    const bool met = !trajectory.events.empty() && trajectory.events[0].t < until;
+                    EXPECT_EQ(met, grazing.dip.gap < 0) << grazing.dip.gap << start_of(trajectory);
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,82 @@
+// Never under the floor: random starts over the ranges a description shows, what simulate() makes of them, and whether
+// that is what happens in 34 digits.
+#pragma once
+
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "certify/execution.hpp"
+#include "model/model.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+
+// Reproducible starts in the air: uniform over the ranges of coordinates and rates, where h is above 1e-6 (a start
+// closer to the floor is a question about the start, not about the motion). Written out, since the standard's
+// distributions differ between libraries.
+class Starts {
+ public:
+    Starts(std::shared_ptr<const Model> model, unsigned seed);
+    State next();
+    double uniform(double low, double high);
+
+ private:
+    std::shared_ptr<const Model> model_;
+    Evaluator<double> gap_;
+    std::mt19937_64 random_;
+};
+
+// What is wrong with a trajectory by itself: an outcome other than the end time, or a gap below -1e-12 at the end of a
+// step, or below -`between` inside one, where dense output is an interpolation. Empty if nothing is.
+std::string fault(const Trajectory& trajectory, double between);
+
+// The start of a trajectory in digits that give the same bits back, for a bug report.
+std::string start_of(const Trajectory& trajectory);
+
+// A trajectory beside the truth.
+struct Comparison {
+    // Largest difference between the times of impacts before truncation, of Zeno points (beyond what is certified) and
+    // of releases, and in the end state. Infinite if phases differ.
+    double error = 0.0;
+    std::string where;  // the largest difference
+    // The same between the run and runs from starts moved by 1e-7, over 1e-7, and at least 1. Infinite if phases
+    // differ.
+    double sensitivity = 1.0;
+    bool agrees() const { return error <= 1e-8 * sensitivity; }
+};
+
+class Judge {
+ public:
+    Judge(std::shared_ptr<const Model> model, const Run& run);
+    Comparison compare(const Trajectory& trajectory);
+
+ private:
+    std::shared_ptr<const Model> model_;
+    TrueRuns truth_;
+};
+
+// A start whose free motion dips to a given least gap, and back up, before anything else happens.
+struct Grazing {
+    State start;
+    Dip dip;  // of the start as rounded to doubles
+};
+
+class GrazingStarts {
+ public:
+    GrazingStarts(std::shared_ptr<const Model> model, unsigned seed);
+    Grazing next(double least_gap);
+
+ private:
+    bool dips_near_the_floor(const State& start);
+    std::optional<Grazing> tune(State start, double least_gap);
+    std::shared_ptr<const Model> model_;
+    Run run_;
+    double soon_;  // s, a dip later than this is not looked for
+    Starts starts_;
+    Evaluator<double> flight_, gap_;
+    TrueRuns truth_;
+};
+
+}  // namespace achilles::test

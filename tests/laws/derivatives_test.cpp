@@ -1,0 +1,204 @@
+// Every program of every model against finite differences of L and h, in 50 digits, where these differences are as good
+// as exact: what simulate() evaluates is what Euler, Lagrange and THEORY section 1 say.
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <functional>
+#include <random>
+
+#include "laws/laws.hpp"
+
+namespace achilles::test {
+namespace {
+
+using Real = boost::multiprecision::cpp_bin_float_50;
+using Reals = std::vector<Real>;
+
+// A function of the state x = (q, v), and its derivative along a direction.
+using Function = std::function<Real(const Reals&)>;
+
+Reals moved(Reals x, const Reals& direction, const Real& by) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += by * direction[i];
+    return x;
+}
+
+// Truncation h^2 and cancellation 1e-50/h are both about 1e-32.
+Real along(const Function& function, const Reals& x, const Reals& direction) {
+    const Real h = 1e-16;
+    return (function(moved(x, direction, h)) - function(moved(x, direction, -h))) / (2 * h);
+}
+
+Reals joined(const Reals& a, const Reals& b) {
+    Reals result = a;
+    result.insert(result.end(), b.begin(), b.end());
+    return result;
+}
+
+void expect_same(const Real& found, const Real& expected, const std::string& what) {
+    const Real scale = std::max<Real>(1, abs(expected));
+    EXPECT_LE(abs(found - expected), 1e-12 * scale) << what << ": " << found << " and not " << expected;
+}
+
+class Derivatives : public Law {
+ protected:
+    void SetUp() override {
+        model_ = model_of(GetParam().system);
+        n_ = static_cast<std::size_t>(model_->n());
+    }
+
+    // Outputs [first, first + count) of a program at (q, v); sigma where the program has it.
+    Reals evaluate(const Program& program, const Reals& x, std::size_t first, std::size_t count, Real sigma = 0) const {
+        auto evaluator = model_->evaluator<Real>(program, model_->default_run().parameters);
+        for (std::size_t i = 0; i < 2 * n_; ++i) evaluator.input(i) = x[i];
+        evaluator.input(model_->layout().sigma()) = sigma;
+        evaluator.run();
+        Reals result;
+        for (std::size_t i = first; i < first + count; ++i) result.push_back(evaluator.output(i));
+        return result;
+    }
+    Function output(const Program& program, std::size_t index, Real sigma = 0) const {
+        return [this, &program, index, sigma](const Reals& x) { return evaluate(program, x, index, 1, sigma)[0]; };
+    }
+    Reals unit(std::size_t i) const {
+        Reals e(2 * n_, 0);
+        e[i] = 1;
+        return e;
+    }
+    Reals q(const Reals& x) const { return {x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_)}; }
+    Reals v(const Reals& x) const { return {x.begin() + static_cast<std::ptrdiff_t>(n_), x.end()}; }
+    // dT/dv_i, and M times a vector: what dT/dv would be at this velocity.
+    Real momentum(const Reals& x, std::size_t i) const { return along(output(model_->energy(), 1), x, unit(n_ + i)); }
+    Real mass_times(const Reals& x, const Reals& vector, std::size_t i) const {
+        return momentum(joined(q(x), vector), i);
+    }
+
+    // Some states of the sliders' ranges at which M is positive definite and everything is finite.
+    std::vector<Reals> states() const {
+        std::mt19937 random(7);
+        std::vector<Reals> result;
+        const auto& coordinates = model_->description().coordinates;
+        while (result.size() < 4) {
+            Reals x;
+            for (const auto& c : coordinates)
+                x.push_back(std::uniform_real_distribution(c.range[0], c.range[1])(random));
+            for (const auto& c : coordinates)
+                x.push_back(std::uniform_real_distribution(c.rate_range[0], c.rate_range[1])(random));
+            const Reals flight = evaluate(model_->flight(), x, 0, 2 * n_ + 1);
+            bool regular = true;
+            for (std::size_t i = 0; i < flight.size(); ++i)
+                regular = regular && isfinite(flight[i]) && (i <= n_ || flight[i] > 0);
+            if (regular) result.push_back(x);
+        }
+        return result;
+    }
+
+    std::shared_ptr<const Model> model_;
+    std::size_t n_ = 0;
+};
+
+// d/dt dL/dv = dL/dq along f, which keeps the energy.
+TEST_P(Derivatives, FreeMotionIsLagranges) {
+    for (const Reals& x : states()) {
+        const Reals motion = joined(v(x), evaluate(model_->flight(), x, 0, n_));
+        const Function energy = output(model_->energy(), 0), T = output(model_->energy(), 1),
+                       V = output(model_->energy(), 2);
+        expect_same(along(energy, x, motion), 0, "the rate of the energy");
+        expect_same(energy(x), T(x) + V(x), "the energy");
+        for (std::size_t i = 0; i < n_; ++i) {
+            const Real rate = along([&](const Reals& at) { return momentum(at, i); }, x, motion);
+            expect_same(rate, along(T, x, unit(i)) - along(V, x, unit(i)), "the momentum's rate");
+        }
+    }
+}
+
+// hdot, hddot along f; W and n by M; f_c keeps hdot, its force is g' lambda; h''' along f_c.
+TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
+    const Program& surface = model_->surface();
+    const Function gap = output(model_->gap(), 0), hdot = output(surface, 1), hddot = output(model_->flight(), n_);
+    for (const Reals& x : states()) {
+        const Reals f = evaluate(model_->flight(), x, 0, n_), f_c = evaluate(model_->contact(), x, 0, n_);
+        const Reals n = evaluate(surface, x, 2, n_), g = evaluate(surface, x, 2 + n_, n_);
+        const Real W = evaluate(surface, x, 2 + 2 * n_, 1)[0], lambda = evaluate(model_->force(), x, 0, 1)[0];
+        const Reals free = joined(v(x), f), held = joined(v(x), f_c);
+        expect_same(output(surface, 0)(x), gap(x), "h");
+        expect_same(hdot(x), along(gap, x, free), "hdot");
+        expect_same(hddot(x), along(hdot, x, free), "hddot");
+        expect_same(along(hdot, x, held), 0, "hddot in contact");
+        expect_same(lambda, -hddot(x) / W, "lambda");
+        Reals push = f_c;
+        Real gn = 0;
+        for (std::size_t i = 0; i < n_; ++i) {
+            push[i] -= f[i];
+            gn += g[i] * n[i];
+        }
+        expect_same(gn, 1, "g n");
+        for (std::size_t i = 0; i < n_; ++i) {
+            expect_same(g[i], along(gap, x, unit(i)), "g");
+            expect_same(W * mass_times(x, n, i), g[i], "W M n");
+            expect_same(mass_times(x, push, i), lambda * g[i], "the contact force");
+        }
+        const Real jerk = along(hddot, x, held);
+        expect_same(output(model_->contact(), n_)(x), hddot(x), "hddot of the contact program");
+        expect_same(output(model_->contact(), 2 * n_ + 1)(x), jerk, "h''' of the contact program");
+        expect_same(output(model_->release(), 0)(x), hddot(x), "hddot of the release program");
+        expect_same(output(model_->release(), 1)(x), jerk, "h''' of the release program");
+        expect_same(output(model_->bounds(), 0)(x), hddot(x), "hddot of the bounds");
+        for (std::size_t i = 0; i < n_; ++i) {
+            expect_same(output(model_->bounds(), 1 + i)(x), n[i], "n of the bounds");
+            expect_same(output(model_->bounds(), 1 + n_ + i)(x), f[i], "f of the bounds");
+        }
+    }
+}
+
+// In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and what the shadowing bound differentiates (THEORY section
+// 5).
+TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
+    const Bouncing& bouncing = model_->bouncing();
+    for (const Reals& x : states()) {
+        const auto tangential = [&](const Reals& at, std::size_t i) {
+            return at[n_ + i] - evaluate(model_->surface(), at, 2 + i, 1)[0] * output(model_->surface(), 1)(at);
+        };
+        Reals s;
+        for (std::size_t i = 0; i < n_; ++i) s.push_back(tangential(x, i));
+        const Real sigma = output(model_->surface(), 1)(x);
+        const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->flight(), x, 0, n_));
+        const Program &hddot = bouncing.hddot, &shadow = bouncing.shadow;
+        expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->flight(), n_)(x), "hddot");
+        const Real h = 1e-16;
+        const Real by_sigma =
+            (evaluate(hddot, y, 0, 1, sigma + h)[0] - evaluate(hddot, y, 0, 1, sigma - h)[0]) / (2 * h);
+        expect_same(evaluate(bouncing.gradient, y, 2 * n_, 1, sigma)[0], by_sigma, "d hddot/d sigma");
+        const Reals A = evaluate(shadow, y, 0, n_, sigma), B = evaluate(shadow, y, 2 * n_, n_, sigma);
+        const Reals D = evaluate(shadow, y, 3 * n_, n_, sigma), rate = evaluate(bouncing.motion, y, n_, n_, sigma);
+        const Reals motion = joined(v(x), rate);
+        for (std::size_t i = 0; i < n_; ++i) {
+            expect_same(evaluate(bouncing.motion, y, i, 1, sigma)[0], x[n_ + i], "v");
+            expect_same(rate[i], along([&](const Reals& at) { return tangential(at, i); }, x, free), "s'");
+            expect_same(A[i] + B[i] * sigma + D[i] * sigma * sigma, rate[i], "A + B sigma + D sigma^2");
+            expect_same(A[i], output(model_->contact(), i)(y), "A");
+            expect_same(evaluate(shadow, y, n_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
+            expect_same(evaluate(shadow, y, 4 * n_ + i, 1, sigma)[0], along(output(shadow, n_ + i, sigma), y, motion),
+                        "ndot");
+            expect_same(evaluate(shadow, y, 5 * n_ + i, 1, sigma)[0],
+                        along(output(shadow, 2 * n_ + i, sigma), y, motion), "Bdot");
+            for (std::size_t k = 0; k < 2 * n_; ++k) {  // dA/dq, then dA/ds, row by row
+                const std::size_t block = k < n_ ? 6 * n_ : 6 * n_ + n_ * n_;
+                expect_same(evaluate(shadow, y, block + i * n_ + k % n_, 1, sigma)[0],
+                            along(output(shadow, i, sigma), y, unit(k)), "dA");
+            }
+        }
+        for (std::size_t k = 0; k < 2 * n_; ++k)
+            expect_same(evaluate(bouncing.gradient, y, k, 1, sigma)[0], along(output(hddot, 0, sigma), y, unit(k)),
+                        "d hddot");
+    }
+}
+
+// The models do not depend on the method.
+std::vector<Case> systems() {
+    std::vector<Case> cases = all_cases();
+    std::erase_if(cases, [&](const Case& one) { return one.method != cases.front().method; });
+    return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, Derivatives, testing::ValuesIn(systems()), name_of);
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,111 @@
+// What must not change a motion: another zero of the potential, L in other units of energy, other units of time and of
+// the coordinates. The texts of the system are rewritten, so that everything is derived and certified anew.
+#include <cctype>
+
+#include "laws/laws.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+namespace {
+
+class Invariance : public Law {
+ protected:
+    SystemDescription description() const { return model_of(GetParam().system)->description(); }
+
+    // A system's motion with other texts, whose time runs `faster` times as fast and whose coordinates are `larger`
+    // times as large, in the units of the file.
+    Trajectory rewritten(const SystemDescription& description, double faster = 1.0, double larger = 1.0) const {
+        auto run = run_of(GetParam());
+        run.options.tolerance = 1e-11;
+        run.options.end_time /= faster;
+        run.q *= larger;
+        run.v *= larger * faster;
+        auto& truncation = run.options.truncation;
+        truncation.eps_q = 1e-7 * larger;
+        truncation.eps_v = 1e-7 * larger * faster;
+        truncation.eps_t = 1e-7 / faster;
+        Trajectory trajectory = simulate(std::make_shared<const Model>(description), run);
+        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        for (Event& event : trajectory.events) event.t *= faster;
+        trajectory.end = {trajectory.end.q / larger, trajectory.end.v / (larger * faster)};
+        return trajectory;
+    }
+};
+
+// Steps, and the impact at which the bouncing is cut, may differ where error norms see other units.
+void expect_same(const Trajectory& a, const Trajectory& b) {
+    EXPECT_LE(distance(a.end, b.end), 1e-6);
+    std::vector<Event> of_a, of_b;
+    for (const auto& [from, to] : {std::pair(&a, &of_a), std::pair(&b, &of_b)})
+        for (const Event& event : from->events)
+            if (event.kind != Event::Kind::impact) to->push_back(event);
+    ASSERT_EQ(of_a.size(), of_b.size());
+    for (std::size_t i = 0; i < of_a.size(); ++i) {
+        EXPECT_EQ(of_a[i].kind, of_b[i].kind);
+        EXPECT_NEAR(of_a[i].t, of_b[i].t, 1e-7);
+    }
+}
+
+void wrap(Text& text, const std::string& before, const std::string& after) { text.text = before + text.text + after; }
+
+// A text with every coordinate c replaced by (factor c).
+std::string rescaled(const SystemDescription& system, const std::string& text, const std::string& factor) {
+    std::string result;
+    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t end = i;
+        while (end < text.size() && is_part(text[end])) ++end;
+        end = std::max(end, i + 1);
+        const std::string word = text.substr(i, end - i);
+        bool coordinate = false;
+        for (const auto& c : system.coordinates) coordinate = coordinate || c.name == word;
+        if (coordinate && end < text.size() && text[end] == '\'') ++end;
+        result += coordinate ? "(" + factor + "*" + text.substr(i, end - i) + ")" : word;
+        i = end;
+    }
+    return result;
+}
+
+TEST_P(Invariance, AnotherZeroOfThePotential) {
+    SystemDescription changed = description();
+    wrap(changed.potential, "", " + 7.25");
+    expect_same(rewritten(changed), rewritten(description()));
+}
+
+TEST_P(Invariance, LInOtherUnitsOfEnergy) {
+    SystemDescription changed = description();
+    wrap(changed.kinetic, "1000*(", ")");
+    wrap(changed.potential, "1000*(", ")");
+    expect_same(rewritten(changed), rewritten(description()));
+    // The contact force is in these units.
+    const auto force = [&](const SystemDescription& system) {
+        const Model model(system);
+        const auto run = model.default_run();
+        auto lambda = model.evaluator(model.force(), run.parameters);
+        put(lambda, State{run.q, run.v});
+        lambda.run();
+        return lambda.output(0);
+    };
+    EXPECT_NEAR(force(changed), 1000.0 * force(description()), 1e-9 * std::abs(force(changed)));
+}
+
+// In minutes, say: rates are 60 times as large, accelerations 3600 times.
+TEST_P(Invariance, OtherUnitsOfTime) {
+    SystemDescription changed = description();
+    wrap(changed.potential, "3600*(", ")");
+    expect_same(rewritten(changed, 60.0), rewritten(description()));
+}
+
+// Coordinates in units a hundredth as large, angles too.
+TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
+    SystemDescription changed = description();
+    for (Text* text : {&changed.kinetic, &changed.potential, &changed.gap})
+        text->text = rescaled(changed, text->text, "0.01");
+    ASSERT_NE(changed.gap.text, description().gap.text);
+    expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Execution, Invariance, testing::ValuesIn(all_cases()), name_of);
+
+}  // namespace
+}  // namespace achilles::test
