@@ -52,7 +52,8 @@ class Functions {
 const Real step("1e-11");
 
 // d f/dx_i at a point, x one of its two vectors.
-Real slope(const std::function<Real(const Point&)>& f, Point at, Reals Point::*x, Eigen::Index i) {
+Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals Point::*x, Eigen::Index i) {
+    Point at = point;
     const Real middle = (at.*x)[i];
     (at.*x)[i] = middle + step;
     const Real up = f(at);
