@@ -203,7 +203,8 @@ class Search {
         bool unknown = false;
         try {
             const Factored all = factor(zeno.hddot, algebra);
-            zeno.positive.number = abs(all.number);
+            zeno.positive.number = all.number;
+            if (all.number < 0) zeno.positive.number *= -1;
             zeno.decisive.number = all.number < 0 ? -1 : all.number == 0 ? 0 : 1;
             for (const auto& [base, exponent] : all.factors) {
                 Positivity positivity(algebra, signs_);

@@ -166,7 +166,7 @@ Obstacle Dopri5::accept() {
 // Steps from `from` by dt, or less if the error control or the domain asks for it.
 Obstacle Dopri5::advance(double dt, double least) {
     bool finite = true;
-    for (; dt > least; dt *= 0.25) {
+    while (dt > least) {
         set(dt);
         try {
             dense_.do_step(system());
@@ -175,6 +175,7 @@ Obstacle Dopri5::advance(double dt, double least) {
         }
         finite = accept() == Obstacle::none;
         if (finite) return span_ > least ? Obstacle::none : Obstacle::step_too_small;
+        dt *= 0.25;
     }
     return finite ? Obstacle::step_too_small : obstacle_here();
 }
