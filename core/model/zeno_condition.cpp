@@ -204,7 +204,7 @@ class Search {
         try {
             const Factored all = factor(zeno.hddot, algebra);
             zeno.positive.number = all.number;
-            if (all.number < 0) zeno.positive.number *= -1;
+            if (all.number < 0) zeno.positive.number.backend().negate();
             zeno.decisive.number = all.number < 0 ? -1 : all.number == 0 ? 0 : 1;
             for (const auto& [base, exponent] : all.factors) {
                 Positivity positivity(algebra, signs_);
