@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "expression/nearest.hpp"
 #include "model/input_error.hpp"
@@ -94,7 +95,7 @@ std::array<Text, 2> Fields::point(std::string_view key, const TomlValue& value) 
 }
 
 std::string Fields::string_or(std::string_view key, std::string otherwise) const {
-    return find(key) ? string(key).text : otherwise;
+    return find(key) ? string(key).text : std::move(otherwise);
 }
 
 double Fields::number_or(std::string_view key, double otherwise) const { return find(key) ? number(key) : otherwise; }

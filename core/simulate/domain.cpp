@@ -92,7 +92,7 @@ Values point(const State& state) {
 
 std::string edge_of_domain(const Model& model, const Run& run, double t, const State& state) {
     const double scale = std::max(1e-3, std::abs(t));
-    for (double reach = 1e-16; reach <= 1e-9; reach *= 10.0) {
+    for (const double reach : {1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9}) {
         Values box = point(state);
         for (Eigen::Index i = 0; i < state.q.size(); ++i) {
             const double ahead = state.q[i] + reach * scale * state.v[i];
