@@ -5,13 +5,13 @@
 #include "figure/layout.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
+#include "paint/sheet.hpp"
 #include "surface/curves.hpp"
 
 namespace achilles {
 
 namespace {
 
-// Puts the items of a sheet on a list, one after the other.
 class Brush {
  public:
     explicit Brush(ImDrawList* list) : list_(list) {}
@@ -37,12 +37,12 @@ class Brush {
     ImDrawList* list_;
 };
 
+}  // namespace
+
 void paint(const Sheet& sheet, ImDrawList* list) {
     const Brush brush(list);
     for (const auto& item : sheet) std::visit(brush, item);
 }
-
-}  // namespace
 
 void paint(const Figure& figure, ImDrawList* list, Rectangle area, double scale) {
     paint(layout(figure, label_width, area, scale), list);
