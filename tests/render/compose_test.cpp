@@ -66,7 +66,7 @@ TEST(Ticks, AreRoundAndHaveTheFewestDigits) {
     EXPECT_EQ(labels(-0.02, 0.02), "−0.02 −0.01 0.00 0.01 0.02");
     EXPECT_EQ(labels(2.7251, 2.7252), "2.72510 2.72512 2.72514 2.72516 2.72518 2.72520");
     EXPECT_EQ(labels(0, 4e-7), "0 1×10⁻⁷ 2×10⁻⁷ 3×10⁻⁷ 4×10⁻⁷");
-    EXPECT_EQ(labels(0, 300000), "0 1×10⁵ 2×10⁵ 3×10⁵");
+    EXPECT_EQ(labels(0, 3e6), "0 1×10⁶ 2×10⁶ 3×10⁶");
     EXPECT_EQ(labels(3, 3), "2.8 3.0 3.2");
     EXPECT_EQ(labels(0, 0), "−1.0 −0.5 0.0 0.5 1.0");
     EXPECT_EQ(labels(std::nan(""), 1), "0.0 0.2 0.4 0.6 0.8 1.0");
