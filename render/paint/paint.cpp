@@ -37,12 +37,12 @@ class Brush {
     ImDrawList* list_;
 };
 
+}  // namespace
+
 void paint(const Sheet& sheet, ImDrawList* list) {
     const Brush brush(list);
     for (const auto& item : sheet) std::visit(brush, item);
 }
-
-}  // namespace
 
 void paint(const Figure& figure, ImDrawList* list, Rectangle area, double scale) {
     paint(layout(figure, label_width, area, scale), list);

@@ -76,7 +76,7 @@ const Refusal refusals[] = {
     {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; did you mean 'simulate'?\n"
-     "the commands are: explore, simulate, figure, paper, screenshot, reproduce, check, list\n"},
+     "the commands are: explore, simulate, figure, frames, paper, screenshot, reproduce, check, list\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
     {"no_system", "simulate", "achilles: SYSTEM is required" + more},
@@ -211,7 +211,7 @@ TEST(Cli, HelpAndVersion) {
     const Folder folder;
     EXPECT_EQ(folder.run("--version").out, "achilles 0.1.0\n");
     for (const char* arguments : {"--help", "simulate --help", "paper --help", "list --help", "explore --help",
-                                  "screenshot --help", "figure --help", "reproduce --help"}) {
+                                  "screenshot --help", "figure --help", "frames --help", "reproduce --help"}) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 0) << arguments;
         EXPECT_NE(answer.out.find("Usage: achilles"), std::string::npos) << arguments;
