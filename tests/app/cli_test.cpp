@@ -319,11 +319,11 @@ TEST(Cli, AMissingDisplayIsOneMessageAndCostsNoJournal) {
     EXPECT_EQ(folder.files().size(), 1u);
 }
 
-TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {
+TEST(Cli, PaperDrawsSixFiguresTwoPagesAndATable) {
     const Folder folder;
     const Answer answer = folder.run("paper");
     ASSERT_EQ(answer.status, 0) << answer.err;
-    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4"}) {
+    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4", "zeno"}) {
         const auto file = folder.path() / "achilles-paper" / (std::string(name) + ".png");
         EXPECT_EQ(content(file).substr(1, 3), "PNG") << name;
         EXPECT_NE(answer.out.find("/achilles-paper/" + std::string(name) + ".png\n"), std::string::npos) << answer.out;

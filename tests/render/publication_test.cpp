@@ -97,6 +97,25 @@ TEST_F(Publication, no_legend_covers_data) {
     EXPECT_EQ(labels, 3);
 }
 
+// A long title stands above a legend that leaves no room beside it, a short one in its line.
+TEST_F(Publication, titles_and_legends_do_not_overlap) {
+    for (const char* name : {"rates", "the rates of both coordinates of the ball, each in a colour of its own"}) {
+        const Sheet sheet =
+            layout(of({view(name, "t", {"x'", "y'"}), view("b", "t", {"y"})}), half, {0, 0, 700, 700}, 1.0);
+        const auto find = [&](const std::string& label) {
+            for (const auto& item : sheet)
+                if (const auto* words = std::get_if<Words>(&item); words != nullptr && words->label == label)
+                    return *words;
+            ADD_FAILURE() << label;
+            return Words{};
+        };
+        const Words title = find("(a)\u00A0\u00A0" + std::string(name)), key = find("𝑥\u0307");
+        const bool apart = title.x + half(title.label, title.size) <= key.x || title.y + title.size <= key.y;
+        EXPECT_TRUE(apart) << name;
+        EXPECT_GE(title.y, 0.0F);
+    }
+}
+
 TEST_F(Publication, a_transparent_figure_has_no_background) {
     const std::vector<ViewDescription> views{view("height", "t", {"y"})};
     const Figure figure = publication(trajectory, views, {0, true});
