@@ -70,22 +70,16 @@ bool is_frame(const fs::path& file, const Notes& notes) {
 std::string frame_name(std::size_t number) { return fmt::format("{}{:05}", prefix, number); }
 
 FrameFolder::FrameFolder(fs::path folder) : folder_(std::move(folder)) {
-    std::error_code problem;
-    made_ = fs::create_directories(folder_, problem);
-    if (!fs::is_directory(folder_))
-        throw InputError(folder_.string(), {}, fmt::format("the folder cannot be made: {}", problem.message()));
-    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    lock_ = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     // Some file systems know no locks: then nobody is kept out.
     if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         ::close(lock_);
-        throw InputError(folder_.string(), {}, "another process is drawing into this folder");
+        throw InputError(folder_.path().string(), {}, "another process is drawing into this folder");
     }
 }
 
 FrameFolder::~FrameFolder() {
     if (lock_ >= 0) ::close(lock_);
-    std::error_code ignored;
-    if (made_) fs::remove(folder_, ignored);  // only if it is empty
 }
 
 std::vector<std::size_t> FrameFolder::missing(std::size_t count,
@@ -94,7 +88,7 @@ std::vector<std::size_t> FrameFolder::missing(std::size_t count,
     std::vector<bool> there(count, false);
     std::vector<std::pair<std::size_t, fs::path>> frames;
     std::vector<fs::path> waste;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
         const auto name = parsed(entry.path().filename().string());
         if (!name) continue;
         if (name->second == ending) frames.emplace_back(name->first, entry.path());

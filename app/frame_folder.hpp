@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "image/note.hpp"
+#include "output_folder.hpp"
 
 namespace achilles {
 
@@ -19,7 +20,6 @@ class FrameFolder {
     // Makes the folder where it is missing, and keeps other processes of this program out while it lives. Throws
     // InputError if it cannot be made or is in use.
     explicit FrameFolder(std::filesystem::path folder);
-    // Takes a folder away that was made and is still empty.
     ~FrameFolder();
     FrameFolder(const FrameFolder&) = delete;
     FrameFolder& operator=(const FrameFolder&) = delete;
@@ -30,15 +30,14 @@ class FrameFolder {
     std::vector<std::size_t> missing(std::size_t count, const std::function<Notes(const std::string& name)>& notes_of,
                                      bool overwrite) const;
 
-    std::filesystem::path file(std::size_t number) const { return folder_ / (frame_name(number) + ".png"); }
+    std::filesystem::path file(std::size_t number) const { return folder_.path() / (frame_name(number) + ".png"); }
     // Puts a picture there, whole or not at all. Throws InputError if it cannot be written.
     void write(std::size_t number, std::string png) const;
     // Tries whether that will be possible.
     void try_to_write(std::size_t number) const;
 
  private:
-    std::filesystem::path folder_;
-    bool made_ = false;
+    OutputFolder folder_;
     int lock_ = -1;
 };
 

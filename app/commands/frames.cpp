@@ -63,7 +63,7 @@ class Painter {
         SurfaceOptions options;
         options.width = size.width;
         options.height = size.height;
-        options.scale = size.scale * still_scale;
+        options.scale = still_scale(size);
         options.text_size = still_title_size;
         return options;
     }

@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
 #include "figure/publication.hpp"
 #include "model/model.hpp"
+#include "output_folder.hpp"
 #include "simulate/simulate.hpp"
 #include "studio.hpp"
 
@@ -26,12 +28,8 @@ Trajectory run(Inputs& inputs, const std::string& system) {
 }
 
 int draw_paper(const fs::path& folder, const std::string& format, double scale, Studio& studio) {
-    std::error_code problem;
-    if (!studio.reproduces()) {
-        fs::create_directories(folder, problem);
-        if (!fs::is_directory(folder))
-            throw InputError(folder.string(), {}, fmt::format("the folder cannot be made: {}", problem.message()));
-    }
+    std::optional<OutputFolder> made;
+    if (!studio.reproduces()) made.emplace(folder);
     const Trajectory ball = run(studio.inputs(), "ball_on_sine"), pendulum = run(studio.inputs(), "double_pendulum");
     const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
     const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";

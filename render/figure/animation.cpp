@@ -34,6 +34,12 @@ void append(std::vector<Point>& all, const std::vector<Point>& more) {
 
 }  // namespace
 
+double still_scale(const StillSize& size) {
+    constexpr double wide = 1600.0, high = 1000.0, at_that = 1.3, least = 0.5, most = 11.0;
+    const double fitting = std::max(at_that * std::min(size.width / wide, size.height / high), least);
+    return std::min(size.scale * fitting, most);
+}
+
 StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
     StillAreas areas;
     areas.world = area;
@@ -66,7 +72,7 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
       trail_(trail_of(mechanism_, trajectory, samples_)),
       limits_(mechanism_.limits(trajectory, samples_)) {
     for (const ViewDescription& view : views) views_.emplace_back(*trajectory.model, view);
-    const float heading = heading_height(size.scale * still_scale);
+    const float heading = heading_height(still_scale(size));
     const double shape = (limits_.x_high - limits_.x_low) / (limits_.y_high - limits_.y_low);
     areas_ = still_areas(shape, views.size(),
                          {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
@@ -115,16 +121,35 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     panel.markers.push_back(dot);
 }
 
+// The way in flight is behind the mechanism; that in contact lies on a surface, which must not hide it. The body, if it
+// has a disc, is in front of both.
+void Animation::add_trail(std::vector<Shape>& shapes, const Sample& now) const {
+    const auto body = [&] {
+        auto grip = mechanism_.grip(trajectory_.run.parameters);
+        if (!grip) return shapes.end();
+        const Point at = grip->at(now.state).at;
+        return std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) {
+            return shape.kind == Shape::Kind::disc && shape.points[0].x == at.x && shape.points[0].y == at.y;
+        });
+    }();
+    if (body != shapes.end()) std::rotate(body, body + 1, shapes.end());
+    const auto front = shapes.size() - (body != shapes.end() ? 1 : 0);
+    std::vector<Shape> behind, before;
+    for (Shape& shape : trail_until(trail_, samples_, now.t, light_theme()))
+        (shape.stroke.dash.empty() ? before : behind).push_back(std::move(shape));
+    shapes.insert(shapes.begin() + static_cast<std::ptrdiff_t>(front), before.begin(), before.end());
+    shapes.insert(shapes.begin(), behind.begin(), behind.end());
+}
+
 Still Animation::at(double t) {
     const Sample now = sampler_.at(t);
     const Theme theme = light_theme();
     const SystemDescription& description = trajectory_.model->description();
     Still still;
     still.areas = areas_;
-    const double scale = still.scale = size_.scale * still_scale;
+    const double scale = still.scale = still_scale(size_);
     still.world = mechanism_.draw(now.state, trajectory_.run.parameters, limits_, theme);
-    const std::vector<Shape> way = trail_until(trail_, samples_, t, theme);
-    still.world.shapes.insert(still.world.shapes.begin(), way.begin(), way.end());
+    add_trail(still.world.shapes, now);
     still.plots = figure_;
     for (std::size_t i = 0; i < views_.size(); ++i) add_present(still.plots.panels[i], views_[i], now);
 

@@ -18,9 +18,14 @@ struct StillAreas {
 // The plots to the right of a world or below it, as shows a world of this shape (width over height) larger.
 StillAreas still_areas(double shape, std::size_t plots, Rectangle area);
 
-// Text and strokes are made for a picture about as wide as a screen: a still's own scale at --scale 1.
-constexpr double still_scale = 1.3;
+struct StillSize {
+    int width = 1600, height = 1000;  // pixels
+    double scale = 1.0;               // of text and strokes, over what fits the size
+};
 constexpr double still_title_size = 17.0;  // pixels at scale 1
+
+// The scale of everything in a still: a small film is a large one made smaller, as long as it can be read.
+double still_scale(const StillSize& size);
 
 // One picture of an animation.
 struct Still {
@@ -34,11 +39,6 @@ struct Still {
 // The still as text, what moves with 9 significant digits: for tests.
 std::string to_text(const Still& still);
 
-struct StillSize {
-    int width = 1600, height = 1000;  // pixels
-    double scale = 1.0;               // of text and strokes, times still_scale
-};
-
 class Animation {
  public:
     // Refers to the trajectory. `step`: seconds of the run from one still to the next, which decide the digits of the
@@ -48,6 +48,7 @@ class Animation {
     Still at(double t);
 
  private:
+    void add_trail(std::vector<Shape>& shapes, const Sample& now) const;
     void add_present(Panel& panel, const PreparedView& view, const Sample& now) const;
 
     const Trajectory& trajectory_;

@@ -264,7 +264,9 @@ Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double 
     if (figure.panels.empty()) return sheet;
     const Metrics m(figure, width, scale);
     const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
-    if (!figure.keys.empty()) {
+    // A small picture shows its data rather than what they mean.
+    constexpr float most_of_height = 0.3F;
+    if (!figure.keys.empty() && keys.height(m) < most_of_height * area.height) {
         const float top = std::round(m.text * 0.5F), height = keys.height(m);
         keys.lay(sheet, area.x + area.width / 2.0F, area.y + top, 0.5F, figure, m);
         area.y += top + height;

@@ -331,6 +331,14 @@ TEST(Cli, PaperDrawsSixFiguresTwoPagesAndATable) {
     EXPECT_NE(answer.out.find("2.72514217"), std::string::npos);
     EXPECT_EQ(answer.out.rfind(content(folder.path() / "achilles-paper/table.txt"), 0), 0u);
     EXPECT_EQ(folder.run("paper --out /dev/null/x").status, 2);
+    // Nothing is left of what could not be drawn, and a folder that was there stays.
+    const Answer refused = folder.run("paper --out new", "ACHILLES_OFFSCREEN=none");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "achilles: ACHILLES_OFFSCREEN must be osmesa or egl, not 'none'\n");
+    std::filesystem::create_directory(folder.path() / "old");
+    EXPECT_EQ(folder.run("paper --out old", "ACHILLES_OFFSCREEN=none").status, 2);
+    EXPECT_EQ(folder.files().size(), 2u);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "old"));
 }
 
 }  // namespace

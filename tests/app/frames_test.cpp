@@ -187,6 +187,16 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"film"});
 }
 
+TEST(Frames, TooLittleMemoryIsAMessage) {
+    const Folder folder;
+    const Answer answer =
+        folder.run("frames ball_on_sine --end 1 --fps 1 --size 16384x16384 --jobs 1 --out film", "ulimit -v 1200000;");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err.rfind("achilles: ", 0), 0u) << answer.err;
+    EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+    EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(Frames, AFolderInUseIsLeftAlone) {
     const Folder folder;
     fs::create_directory(folder.path() / "film");
@@ -349,6 +359,14 @@ TEST(Animation, PutsThePlotsWhereTheWorldIsLarger) {
     EXPECT_EQ(still_areas(1.0, 0, screen).world.width, 1600.0F);
 }
 
+TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {
+    EXPECT_DOUBLE_EQ(still_scale({1600, 1000, 1.0}), 1.3);
+    EXPECT_DOUBLE_EQ(still_scale({3200, 2000, 1.0}), 2.6);
+    EXPECT_DOUBLE_EQ(still_scale({3200, 1000, 2.0}), 2.6);
+    EXPECT_DOUBLE_EQ(still_scale({320, 200, 1.0}), 0.5);
+    EXPECT_DOUBLE_EQ(still_scale({16384, 16384, 8.0}), 11.0);
+}
+
 TEST(Animation, ShowsThePresentAndFillsThePlots) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -379,9 +397,15 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     EXPECT_EQ(second.markers[3].points[0].x, 3.2);
     EXPECT_EQ(second.markers[4].points[0].x, 3.2);
     EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
-    // The ball itself.
-    const Shape& disc = *std::find_if(after.world.shapes.begin(), after.world.shapes.end(),
-                                      [](const Shape& shape) { return shape.kind == Shape::Kind::disc; });
+    // The ball in front of its way in contact, which is in front of the surface, then the way in flight.
+    const std::vector<Shape>& shapes = after.world.shapes;
+    ASSERT_EQ(shapes.size(), 4u);
+    const Shape& disc = shapes[3];
+    EXPECT_EQ(disc.kind, Shape::Kind::disc);
+    EXPECT_TRUE(shapes[2].stroke.dash.empty());
+    EXPECT_EQ(shapes[2].stroke.color.r, phase_color(light_theme(), Phase::Kind::constrained).r);
+    EXPECT_EQ(shapes[1].stroke.color, light_theme().surface);
+    EXPECT_FALSE(shapes[0].stroke.dash.empty());
     EXPECT_NEAR(disc.points[0].x, Sampler(trajectory).at(3.2).state.q[0], 1e-12);
 }
 

@@ -134,6 +134,19 @@ TEST_F(Publication, as_text_tells_its_keys_and_shared_axes) {
     EXPECT_NE(text.find("panel \"(b)\u00A0\u00A0rates\" legend above\n"), std::string::npos) << text;
 }
 
+TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
+    const Figure figure = of({view("height", "t", {"y"})});
+    const auto holds = [&](float width, float height, const std::string& label) {
+        bool found = false;
+        for (const auto& item : layout(figure, half, {0, 0, width, height}, 1.0))
+            if (const auto* words = std::get_if<Words>(&item)) found = found || words->label == label;
+        return found;
+    };
+    EXPECT_TRUE(holds(600, 400, "constrained"));
+    EXPECT_FALSE(holds(200, 150, "constrained"));
+    EXPECT_TRUE(holds(200, 150, "2"));
+}
+
 TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
     const auto ticks_in = [](float width) {
         Figure figure;
