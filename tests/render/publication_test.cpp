@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/systems.hpp"
 #include "figure/layout.hpp"
 #include "render/samples.hpp"
@@ -95,6 +97,17 @@ TEST_F(Publication, no_legend_covers_data) {
         labels += words->label == "𝑥\u0307" || words->label == "𝑦\u0307" || words->label == "hybrid" ? 1 : 0;
     }
     EXPECT_EQ(labels, 3);
+}
+
+// Limits are those of the data: a legend above the panel needs no room in it.
+TEST_F(Publication, several_curves_fill_their_panel) {
+    const Panel panel = of({view("all", "t", {"x", "y", "x'", "y'", "gap"})}).panels[0];
+    EXPECT_TRUE(panel.legend);
+    double most = 0.0;
+    for (const Curve& curve : panel.curves)
+        for (const Point& p : curve.points) most = std::max(most, std::isnan(p.y) ? 0.0 : p.y);
+    EXPECT_GT(panel.y.high, most);
+    EXPECT_LT(panel.y.high, 1.15 * most);
 }
 
 // A long title stands above a legend that leaves no room beside it, a short one in its line.
