@@ -16,15 +16,7 @@ namespace {
 
 constexpr std::string_view bare_letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%^";
 
-// A word as a shell reads it.
-std::string quoted(const std::string& word) {
-    if (!word.empty() && word.find_first_not_of(bare_letters) == std::string::npos) return word;
-    std::string text = "'";
-    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-    return text + "'";
-}
-
-// Takes a word that quoted() wrote off the text's front.
+// Takes a word that shell_word() wrote off the text's front.
 std::string take_word(std::string_view& text) {
     const auto refuse = [] { return std::runtime_error("its origin is damaged: a word without end or beginning"); };
     std::string word;
@@ -95,17 +87,30 @@ std::string certificates_text(const Trajectory& trajectory) {
 
 }  // namespace
 
+std::string shell_word(const std::string& word) {
+    if (!word.empty() && word.find_first_not_of(bare_letters) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
+
+namespace {
+
+// Where a picture goes and how it is worked at, rather than what it shows.
+bool is_where(const std::string& option) { return option == "--out" || option == "--jobs" || option == "--overwrite"; }
+
+}  // namespace
+
 std::string command_line(const std::vector<std::string>& words) {
     std::string text = "achilles";
     bool options_end = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string name = words[i].substr(0, words[i].find('='));
         options_end = options_end || words[i] == "--";
-        if (!options_end && words[i] == "--out") {
-            ++i;
-            continue;
-        }
-        if (!options_end && words[i].rfind("--out=", 0) == 0) continue;
-        text += " " + quoted(words[i]);
+        if (options_end || !is_where(name))
+            text += " " + shell_word(words[i]);
+        else if (name == words[i] && name != "--overwrite")
+            ++i;  // its value is the next word
     }
     return text;
 }
@@ -136,7 +141,7 @@ Notes notes(const Origin& origin, const std::vector<Shown>& runs) {
         add("Achilles Options", name + options_text(run.trajectory->run.options));
         add("Achilles Certificates", name + certificates_text(*run.trajectory));
     }
-    for (const Source& source : origin.sources) add(key_of(source.kind), quoted(source.name) + "\n" + source.text);
+    for (const Source& source : origin.sources) add(key_of(source.kind), shell_word(source.name) + "\n" + source.text);
     return result;
 }
 

@@ -13,12 +13,14 @@ namespace achilles {
 
 struct Origin {
     std::string software;  // "Achilles 0.1.0"
-    std::string command;   // as a shell reads it, without --out
+    std::string command;   // as a shell reads it, without --out and what else does not change the picture
     std::string picture;   // which of the command's; "" where it makes one
     std::vector<Source> sources;
 };
 
-// "achilles" and the words, without --out and what follows it; quoted for a shell where need be.
+// A word as a shell reads it, quoted if need be.
+std::string shell_word(const std::string& word);
+// "achilles" and the words, quoted for a shell where need be, without --out, --jobs, --overwrite and their values.
 std::string command_line(const std::vector<std::string>& words);
 // The words again. Throws std::runtime_error if the text is no such command line.
 std::vector<std::string> words_of(std::string_view command_line);

@@ -7,7 +7,6 @@
 #include "output/output.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
-#include "surface/offscreen.hpp"
 
 namespace achilles {
 
@@ -20,10 +19,14 @@ void Studio::add(const std::string& path) {
     if (!reproduces_) files_.add(path);
 }
 
+Notes Studio::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
+    return notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs);
+}
+
 void Studio::put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs,
                  const Make& make) {
     if (reproduces_ && picture != wanted_) return;
-    const std::string bytes = make(notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs));
+    const std::string bytes = make(notes_of(picture, runs));
     if (reproduces_)
         made_ = bytes;
     else
@@ -38,6 +41,21 @@ void Studio::commit() {
     if (!reproduces_) files_.commit();
 }
 
+namespace {
+
+SurfaceOptions with_fonts(SurfaceOptions options) {
+    options.fonts = assets() / "fonts";
+    return options;
+}
+
+}  // namespace
+
+PictureSurface::PictureSurface(const SurfaceOptions& options) : surface_(with_fonts(options)) {}
+
+std::string PictureSurface::png(const FrameFunction& draw, const Notes& notes) {
+    return with_notes(png_bytes(surface_.frame(draw)), notes);
+}
+
 std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
     SurfaceOptions options;
     options.width = size.width;
@@ -46,11 +64,8 @@ std::string png_of(const Figure& figure, const PictureSize& size, const Notes& n
     options.text_size = options.figure_text_size = figure.text_size;
     options.curve_fineness = 2;
     options.transparent = figure.background.a < 255;
-    options.fonts = assets() / "fonts";
-    Offscreen surface(options);
     const Rectangle area{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
-    const Image image = surface.frame([&] { paint(figure, ImGui::GetBackgroundDrawList(), area, size.scale); });
-    return with_notes(png_bytes(image), notes);
+    return PictureSurface(options).png([&] { paint(figure, ImGui::GetBackgroundDrawList(), area, size.scale); }, notes);
 }
 
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes) {

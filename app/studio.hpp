@@ -9,6 +9,7 @@
 
 #include "figure/figure.hpp"
 #include "origin.hpp"
+#include "surface/offscreen.hpp"
 #include "write_files.hpp"
 
 namespace achilles {
@@ -22,6 +23,9 @@ class Studio {
 
     Inputs& inputs() { return inputs_; }
     bool reproduces() const { return reproduces_; }
+
+    // What such a picture carries.
+    Notes notes_of(const std::string& picture, const std::vector<Shown>& runs) const;
 
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end. Throws InputError.
     void add(const std::string& path);
@@ -41,6 +45,16 @@ class Studio {
     std::string command_, wanted_;
     bool reproduces_ = false;
     std::optional<std::string> made_;
+};
+
+// Pictures of one size, one after the other: whoever fills the frame draws into its background list.
+class PictureSurface {
+ public:
+    explicit PictureSurface(const SurfaceOptions& options);
+    std::string png(const FrameFunction& draw, const Notes& notes);
+
+ private:
+    Offscreen surface_;
 };
 
 // A figure as a PNG or SVG file with these notes. Throws std::runtime_error where it cannot be drawn.

@@ -17,6 +17,7 @@ void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
 // Those that make pictures.
 void add_figure(CLI::App& program, int& status, Studio& studio);
+void add_frames(CLI::App& program, int& status, Studio& studio);
 void add_paper(CLI::App& program, int& status, Studio& studio);
 void add_screenshot(CLI::App& program, int& status, Studio& studio);
 void add_pictures(CLI::App& program, int& status, Studio& studio);  // all of them

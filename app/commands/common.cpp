@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -55,6 +56,47 @@ double number_from(const std::string& option, std::string_view text) {
     if (!value || !std::isfinite(*value))
         throw InputError(fmt::format("{} {}", option, text), {}, "this is not a finite number");
     return *value;
+}
+
+void add_system_argument(CLI::App& command, std::string& system) {
+    command.add_option("SYSTEM", system, "a path to a .toml file, or a name from 'achilles list'")
+        ->required()
+        ->type_name("");
+}
+
+void add_format_option(CLI::App& command, std::string& format, const std::string& about) {
+    command.add_option("--format", format, about)->type_name("png|svg")->check(CLI::IsMember({"png", "svg"}));
+}
+
+void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about) {
+    command.add_option("--view", views, about)
+        ->type_name("NAME")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names) {
+    std::vector<ViewDescription> views;
+    if (names.empty()) {
+        views = description.views;
+        std::stable_partition(views.begin(), views.end(),
+                              [](const ViewDescription& view) { return view.x.text == "t"; });
+        return views;
+    }
+    std::vector<std::string> known;
+    for (const ViewDescription& view : description.views) known.push_back(view.name);
+    for (const std::string& name : names) {
+        const auto at = std::find(known.begin(), known.end(), name);
+        if (at == known.end()) {
+            std::string all;
+            for (const std::string& view : known) all += (all.empty() ? "" : ", ") + view;
+            throw InputError("--view " + name, {},
+                             fmt::format("this system has no view '{}'{}", name, did_you_mean(name, known)),
+                             "its views are: " + all);
+        }
+        views.push_back(description.views[static_cast<std::size_t>(at - known.begin())]);
+    }
+    return views;
 }
 
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides) {

@@ -13,6 +13,18 @@ class App;
 
 namespace achilles {
 
+// SYSTEM, which must be given.
+void add_system_argument(CLI::App& command, std::string& system);
+
+// --format png|svg.
+void add_format_option(CLI::App& command, std::string& format, const std::string& about);
+
+// --view NAME, as often as wished for.
+void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about);
+// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
+// Throws InputError for a name that is none.
+std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names);
+
 // --set and everything that goes over a system's options.
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
 

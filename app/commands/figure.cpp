@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
-#include "expression/nearest.hpp"
 #include "figure/publication.hpp"
 #include "model/model.hpp"
 #include "simulate/simulate.hpp"
@@ -34,36 +32,11 @@ bool wants_svg(const Arguments& arguments) {
                      "end it in .png or .svg, or add --format png or --format svg");
 }
 
-// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
-std::vector<ViewDescription> chosen(const SystemDescription& description, const std::vector<std::string>& names) {
-    std::vector<ViewDescription> views;
-    if (names.empty()) {
-        views = description.views;
-        std::stable_partition(views.begin(), views.end(),
-                              [](const ViewDescription& view) { return view.x.text == "t"; });
-        return views;
-    }
-    std::vector<std::string> known;
-    for (const ViewDescription& view : description.views) known.push_back(view.name);
-    for (const std::string& name : names) {
-        const auto at = std::find(known.begin(), known.end(), name);
-        if (at == known.end()) {
-            std::string all;
-            for (const std::string& view : known) all += (all.empty() ? "" : ", ") + view;
-            throw InputError("--view " + name, {},
-                             fmt::format("this system has no view '{}'{}", name, did_you_mean(name, known)),
-                             "its views are: " + all);
-        }
-        views.push_back(description.views[static_cast<std::size_t>(at - known.begin())]);
-    }
-    return views;
-}
-
 int draw(const Arguments& arguments, Studio& studio) {
     const bool as_svg = wants_svg(arguments);
     const auto model = std::make_shared<const Model>(
         adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
-    const std::vector<ViewDescription> views = chosen(model->description(), arguments.views);
+    const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
     const Run run = model->default_run();
     model->check(run);
     studio.add(arguments.out);
@@ -92,19 +65,12 @@ void take_columns(const std::string& text, int& columns) {
 void add_figure(CLI::App& program, int& status, Studio& studio) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG or SVG");
-    command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
-        ->required()
-        ->type_name("");
+    add_system_argument(*command, arguments->system);
     command->add_option("--out", arguments->out, "the picture; - is standard output")
         ->required()
         ->type_name("F.png|F.svg");
-    command->add_option("--view", arguments->views, "a view of the system; may be given again (default: all)")
-        ->type_name("NAME")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    command->add_option("--format", arguments->format, "where the name of --out does not tell")
-        ->type_name("png|svg")
-        ->check(CLI::IsMember({"png", "svg"}));
+    add_view_option(*command, arguments->views, "a view of the system; may be given again (default: all)");
+    add_format_option(*command, arguments->format, "where the name of --out does not tell");
     command
         ->add_option_function<std::string>(
             "--columns", [arguments](const std::string& text) { take_columns(text, arguments->style.columns); },

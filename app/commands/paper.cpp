@@ -4,10 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <optional>
 
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
+#include "figure/publication.hpp"
 #include "model/model.hpp"
+#include "output_folder.hpp"
 #include "simulate/simulate.hpp"
 #include "studio.hpp"
 
@@ -24,24 +27,22 @@ Trajectory run(Inputs& inputs, const std::string& system) {
     return simulate(model, paper);
 }
 
-int draw_paper(const fs::path& folder, double scale, Studio& studio) {
-    std::error_code problem;
-    if (!studio.reproduces()) {
-        fs::create_directories(folder, problem);
-        if (!fs::is_directory(folder))
-            throw InputError(folder.string(), {}, fmt::format("the folder cannot be made: {}", problem.message()));
-    }
+int draw_paper(const fs::path& folder, const std::string& format, double scale, Studio& studio) {
+    std::optional<OutputFolder> made;
+    if (!studio.reproduces()) made.emplace(folder);
     const Trajectory ball = run(studio.inputs(), "ball_on_sine"), pendulum = run(studio.inputs(), "double_pendulum");
     const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
     const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";
-    const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + ".png")).string(); };
+    const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + "." + format)).string(); };
     for (const NamedFigure& figure : figures) studio.add(file_of(figure));
     studio.add(table_file);
     for (const NamedFigure& figure : figures) {
         const PictureSize size{static_cast<int>(std::lround(figure.width * scale)),
-                               static_cast<int>(std::lround(figure.height * scale)), scale};
+                               static_cast<int>(std::lround(figure.height * scale)), scale * publication_scale};
         studio.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
-                   [&](const Notes& notes) { return png_of(figure.figure, size, notes); });
+                   [&](const Notes& notes) {
+                       return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
+                   });
     }
     studio.put_text(table_file, table);
     studio.commit();
@@ -62,15 +63,19 @@ int draw_paper(const fs::path& folder, double scale, Studio& studio) {
 
 void add_paper(CLI::App& program, int& status, Studio& studio) {
     struct Arguments {
-        std::string out = "achilles-paper";
+        std::string out = "achilles-paper", format = "png";
         double scale = 1.0;
     };
     const auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = program.add_subcommand("paper", "Figure 4 (a)-(f) of the paper, and its numbers beside ours");
-    command->add_option("--out", arguments->out, "the folder for the PNG files (default ./achilles-paper)")
+    CLI::App* command =
+        program.add_subcommand("paper", "Figure 4 (a)-(f) of the paper, its numbers beside ours, and the proofs");
+    command->add_option("--out", arguments->out, "the folder for the pictures (default ./achilles-paper)")
         ->type_name("DIR");
+    add_format_option(*command, arguments->format, "of the pictures (default png)");
     add_scale_option(*command, arguments->scale);
-    command->callback([arguments, &status, &studio] { status = draw_paper(arguments->out, arguments->scale, studio); });
+    command->callback([arguments, &status, &studio] {
+        status = draw_paper(arguments->out, arguments->format, arguments->scale, studio);
+    });
 }
 
 }  // namespace achilles

@@ -68,6 +68,7 @@ int reproduce(const std::string& picture, const std::string& out) {
 
 void add_pictures(CLI::App& program, int& status, Studio& studio) {
     add_figure(program, status, studio);
+    add_frames(program, status, studio);
     add_paper(program, status, studio);
     add_screenshot(program, status, studio);
 }
@@ -79,7 +80,7 @@ void add_reproduce(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
         "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
-    command->add_option("PICTURE", arguments->picture, "a PNG or SVG file of figure, paper or screenshot")
+    command->add_option("PICTURE", arguments->picture, "a PNG or SVG file of figure, frames, paper or screenshot")
         ->required()
         ->type_name("");
     command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")

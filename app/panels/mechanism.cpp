@@ -60,24 +60,6 @@ Drawing world(const Session& session, const Rectangle& area) {
     return drawing;
 }
 
-// The way of the body until now, each phase in its colour.
-std::vector<Shape> trail(const Session& session) {
-    std::vector<Shape> shapes;
-    const auto& points = session.trail().points;
-    const auto samples = session.samples();
-    for (std::size_t i = 0; i < points.size() && samples[i].t <= session.time(); ++i) {
-        const Phase::Kind phase = samples[i].phase;
-        if (i == 0 || phase != samples[i - 1].phase) {
-            Shape& shape = shapes.emplace_back();
-            shape.stroke = phase_stroke(session.theme(), phase, 0, 1);
-            shape.stroke.color.a = 150;
-            if (i > 0) shape.points.push_back(points[i - 1]);
-        }
-        shapes.back().points.push_back(points[i]);
-    }
-    return shapes;
-}
-
 void arrow(const Point& from, const Point& to, const Color& color) {
     const double length = std::hypot(to.x - from.x, to.y - from.y), head = units(9.0F);
     if (!(length > 0.5 * head)) return;
@@ -113,7 +95,8 @@ Picture paint_picture(const Session& session, const Rectangle& area) {
     Drawing drawing =
         session.mechanism().draw(session.now().state, session.run().parameters, world(session, area), session.theme());
     if (session.scene().shows("trail")) {
-        std::vector<Shape> shapes = trail(session);
+        const std::vector<Shape> shapes =
+            trail_until(session.trail(), session.samples(), session.time(), session.theme());
         drawing.shapes.insert(drawing.shapes.begin(), shapes.begin(), shapes.end());
     }
     // Behind everything the pinned run at the same instant.

@@ -193,7 +193,7 @@ void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
             bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
 }
 
-void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float lift,
               const Metrics& m) {
     const float width = plot.width + 2.0F * m.line;
     bar(sheet, plot.x - m.line, plot.y - m.line, width, m.line, style.ink);
@@ -204,7 +204,8 @@ void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     lay_y(panel, style, sheet, plot, room, m);
     if (panel.title.empty()) return;
     const float size = fitting(panel.title, m, plot.width + room.right);
-    sheet.push_back(Words{plot.x - m.line, plot.y - m.line - m.gap - m.text, 0.0F, panel.title, style.ink, size});
+    sheet.push_back(
+        Words{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, panel.title, style.ink, size});
 }
 
 }  // namespace achilles

@@ -47,8 +47,8 @@ struct PanelMap {
 };
 
 void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& metrics);
-// Box, ticks, all labels and the title, in the room of the margins.
+// Box, ticks, all labels and, lifted by so much, the title, in the room of the margins.
 void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& margins,
-              const Metrics& metrics);
+              float title_lift, const Metrics& metrics);
 
 }  // namespace achilles

@@ -123,4 +123,20 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
     return trail;
 }
 
+std::vector<Shape> trail_until(const Trail& trail, std::span<const Sample> samples, double t, const Theme& theme) {
+    constexpr std::uint8_t faint = 150;
+    std::vector<Shape> shapes;
+    for (std::size_t i = 0; i < trail.points.size() && samples[i].t <= t; ++i) {
+        const Phase::Kind phase = samples[i].phase;
+        if (i == 0 || phase != samples[i - 1].phase) {
+            Shape& shape = shapes.emplace_back();
+            shape.stroke = phase_stroke(theme, phase, 0, 1);
+            shape.stroke.color.a = faint;
+            if (i > 0) shape.points.push_back(trail.points[i - 1]);
+        }
+        shapes.back().points.push_back(trail.points[i]);
+    }
+    return shapes;
+}
+
 }  // namespace achilles

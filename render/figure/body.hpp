@@ -42,6 +42,9 @@ struct Trail {
 };
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
 
+// The way of the body until t, each phase in its colour.
+std::vector<Shape> trail_until(const Trail& trail, std::span<const Sample> samples, double t, const Theme& theme);
+
 // The contact force lambda g' of a sample, as a generalised force; zero in flight.
 Vector contact_force(const Trajectory& trajectory, const Sample& sample);
 

@@ -159,13 +159,14 @@ void trace(Panel& panel, std::span<const Sample> samples, Values& values, const 
     }
 }
 
-void add_markers(Panel& panel, const Trajectory& trajectory, Values& values, const Framing& framing,
+// Of the events until `end`.
+void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values& values, const Framing& framing,
                  const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         for (const Event& event : trajectory.events) {
-            if (event.kind != kind) continue;
+            if (event.kind != kind || event.t > end) continue;
             values.set(at_event(event));
             for (std::size_t i = 0; i < curves; ++i) {
                 if (framing.hidden.contains(i)) continue;
@@ -227,7 +228,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     y_range.positive = framing.log_y;
     add_curves(panel, view, theme);
     trace(panel, samples, values, framing, x_range, y_range);
-    add_markers(panel, trajectory, values, framing, theme);
+    if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
     const bool whole_run = over_time && !framing.log_x;
     if (whole_run) x_range.low = 0.0, x_range.high = trajectory.end_time;
     set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);

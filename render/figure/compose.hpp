@@ -53,8 +53,8 @@ struct Framing {
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 
-// The panel of one view: hybrid phases dashed, constrained ones solid, squares at impacts, markers at Zeno points and
-// releases.
+// The panel of one view until the last of the samples: hybrid phases dashed, constrained ones solid, squares at
+// impacts, markers at Zeno points and releases.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme, const Framing& framing = {});
 

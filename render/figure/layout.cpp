@@ -186,11 +186,15 @@ struct KeyLines {
 };
 
 // The legend above the plot, ending at its right side; the title stands to its left where there is room, else above.
+bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, const Metrics& m) {
+    const float title = panel.title.empty() ? 0.0F : m.width(panel.title, m.text) + m.text;
+    return title + keys.longest() <= plot_width;
+}
+
 float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     if (!panel.legend || !panel.legend_above) return 0.0F;
     const KeyLines keys(keys_of(panel), plot_width, m);
-    const float title = panel.title.empty() ? 0.0F : m.width(panel.title, m.text) + m.text;
-    const float spare = title + keys.longest() <= plot_width ? m.text * 1.35F : 0.0F;
+    const float spare = title_beside(panel, keys, plot_width, m) ? m.text * 1.35F : 0.0F;
     return std::max(keys.height(m) - spare, 0.0F);
 }
 
@@ -201,12 +205,14 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     if (style.background.a > 0) sheet.push_back(Fill{inner, style.background});
     lay_grid(panel, style, sheet, inner, m);
     lay_data(panel, sheet, inner, m);
-    lay_axes(panel, style, sheet, inner, room, m);
-    if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
+    float lift = 0.0F;
     if (panel.legend && panel.legend_above) {
         const KeyLines keys(keys_of(panel), inner.width, m);
         keys.lay(sheet, inner.x + inner.width, inner.y - m.gap - keys.height(m), 1.0F, style, m);
+        if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }
+    lay_axes(panel, style, sheet, inner, room, lift, m);
+    if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
     return inner;
 }
 
@@ -258,7 +264,9 @@ Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double 
     if (figure.panels.empty()) return sheet;
     const Metrics m(figure, width, scale);
     const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
-    if (!figure.keys.empty()) {
+    // A small picture shows its data rather than what they mean.
+    constexpr float most_of_height = 0.3F;
+    if (!figure.keys.empty() && keys.height(m) < most_of_height * area.height) {
         const float top = std::round(m.text * 0.5F), height = keys.height(m);
         keys.lay(sheet, area.x + area.width / 2.0F, area.y + top, 0.5F, figure, m);
         area.y += top + height;

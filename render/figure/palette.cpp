@@ -8,6 +8,9 @@ namespace {
 
 constexpr Color blue{0, 114, 178, 255}, vermilion{213, 94, 0, 255}, green{0, 158, 115, 255}, purple{170, 68, 153, 255};
 constexpr Color sky{86, 180, 233, 255}, orange{240, 165, 40, 255}, mint{70, 200, 160, 255}, pink{225, 135, 190, 255};
+constexpr Color olive{165, 150, 20, 255}, slate{110, 116, 124, 255}, wine{136, 34, 85, 255};
+constexpr Color yellow{235, 235, 120, 255}, silver{170, 180, 180, 255}, coral{255, 120, 110, 255},
+    lavender{150, 140, 255, 255};
 
 }  // namespace
 
@@ -27,7 +30,8 @@ Color phase_color(const Theme& theme, Phase::Kind kind) {
 }
 
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves) {
-    const std::array<Color, 4> light{blue, vermilion, green, purple}, dark{sky, orange, mint, pink};
+    const std::array<Color, 8> light{blue, vermilion, green, purple, olive, sky, slate, wine},
+        dark{sky, orange, mint, pink, yellow, lavender, silver, coral};
     Stroke stroke;
     stroke.color = curves == 1 ? phase_color(theme, kind) : (theme.dark ? dark : light)[curve % light.size()];
     stroke.width = kind == Phase::Kind::hybrid ? 1.6 : 2.0;

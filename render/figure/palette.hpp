@@ -18,7 +18,7 @@ Theme light_theme();
 Theme dark_theme();
 
 // Hybrid phases are dashed, constrained ones solid. One curve in a panel has the phase's colour; the i-th of several
-// has a hue of its own, and the dash still tells the phase.
+// has a hue of its own (the ninth has the first's again), and the dash still tells the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.

@@ -32,23 +32,30 @@ Markers for_print(Markers markers, Event::Kind kind) {
     return markers;
 }
 
+// Whether a phase or an event of that kind occurs in any of the runs.
+template <class Thing>
+bool any_of(std::span<const Trajectory* const> runs, std::vector<Thing> Trajectory::*things,
+            typename Thing::Kind kind) {
+    return std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
+        return std::any_of((run->*things).begin(), (run->*things).end(),
+                           [&](const Thing& thing) { return thing.kind == kind; });
+    });
+}
+
 // Markers and dashes mean the same in every panel, so one legend tells them all; what does not occur is not in it.
-std::vector<Key> keys_of(const Trajectory& trajectory, const std::vector<Panel>& panels, const Theme& theme) {
+std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
+                         const Theme& theme) {
     std::vector<Key> keys;
     // Panels of several curves have hues of their own: there only the dash tells the phase.
     const bool hues = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.legend; });
     for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
-        if (std::none_of(trajectory.phases.begin(), trajectory.phases.end(),
-                         [&](const Phase& phase) { return phase.kind == kind; }))
-            continue;
+        if (!any_of(runs, &Trajectory::phases, kind)) continue;
         Stroke stroke = phase_stroke(theme, kind, 0, 1);
         if (hues) stroke.color = theme.ink;
         keys.push_back({legend_text(kind), stroke});
     }
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
-        if (std::none_of(trajectory.events.begin(), trajectory.events.end(),
-                         [&](const Event& event) { return event.kind == kind; }))
-            continue;
+        if (!any_of(runs, &Trajectory::events, kind)) continue;
         const Markers markers = for_print(event_markers(theme, kind), kind);
         keys.push_back({markers.label + (kind == Event::Kind::zeno ? ", \U0001D70F_{\u221E}" : ""), markers});
     }
@@ -70,13 +77,9 @@ void share_axes(Figure& figure) {
     }
 }
 
-Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
-                   const PublicationStyle& style) {
-    const Theme theme = light_theme();
-    Figure figure = compose(trajectory, views, theme, 1);
-    if (style.transparent) figure.background.a = 0;
+void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
     figure.grid.a = 0;
-    figure.keys = keys_of(trajectory, figure.panels, theme);
+    figure.keys = keys_of(runs, figure.panels, light_theme());
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;
         constexpr std::array kinds{Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
@@ -85,6 +88,24 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
             panel.markers[i].label.clear();
         }
     }
+}
+
+Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
+                   const PublicationStyle& style) {
+    const Theme theme = light_theme();
+    Figure figure;
+    figure.background = theme.background;
+    figure.ink = theme.ink;
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    Framing framing;
+    framing.legend = false;  // in a corner, for which it would make room
+    for (const ViewDescription& view : views) {
+        figure.panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme, framing));
+        figure.panels.back().legend = view.y.size() > 1;
+    }
+    if (style.transparent) figure.background.a = 0;
+    const Trajectory* const run = &trajectory;
+    dress_for_print(figure, {&run, 1});
     const bool lone = figure.panels.size() == 1;
     for (std::size_t i = 0; i < figure.panels.size(); ++i)
         figure.panels[i].title = lone ? "" : lettered(i, figure.panels[i].title);

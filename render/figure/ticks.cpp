@@ -54,13 +54,16 @@ std::string power_of_ten(int exponent) { return "10" + superscript(exponent); }
 
 std::string tick_label(double value, double step, double largest) {
     const double size = std::max({std::abs(value), step, largest});
-    if (size < 1e5 && (step >= 1e-4 || size >= 1e-2))
+    if (size < 1e6 && (step >= 1e-4 || size >= 1e-2))
         return with_minus(fmt::format("{:.{}f}", value, decimals_of(step)));
     if (value == 0.0) return "0";
     const double scale = std::max(std::abs(value), largest);
-    const int exponent = static_cast<int>(std::floor(std::log10(scale) + 1e-12));
+    const int finest = static_cast<int>(std::floor(std::log10(step) + 1e-9));
+    int exponent = static_cast<int>(std::floor(std::log10(scale) + 1e-12));
+    // 2, 4, ... 10 times a power reads better than 0.2, 0.4, ... 1.0 times the next.
+    if (exponent == finest + 1) exponent = finest;
     const double mantissa = value / std::pow(10.0, exponent);
-    const int decimals = std::max(0, exponent - static_cast<int>(std::floor(std::log10(step) + 1e-9)));
+    const int decimals = std::max(0, exponent - finest);
     return with_minus(fmt::format("{:.{}f}", mantissa, std::min(decimals, 12))) + "\u00D710" + superscript(exponent);
 }
 

@@ -11,7 +11,7 @@ namespace achilles {
 // become [0, 1].
 void set_ticks(Axis& axis, double low, double high, double margin, int most = 6);
 
-// A number as a tick label: U+2212 for minus, never "-0", the digits that `step` needs; in powers of ten from 1e5 on.
+// A number as a tick label: U+2212 for minus, never "-0", the digits that `step` needs; in powers of ten from 1e6 on.
 // `largest` is the greatest size on the axis: it decides the form and the power, so that all labels of an axis agree.
 std::string tick_label(double value, double step, double largest = 0.0);
 

@@ -15,6 +15,7 @@ namespace achilles {
 namespace {
 
 constexpr double text_size = 14.0;
+constexpr double still_margin = 16.0;  // around the mechanism of a still
 
 double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -122,6 +123,14 @@ Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double
     for (const Shape& shape : drawing.shapes) paint_shape(shape, list, placement, scale);
     list->PopClipRect();
     return placement;
+}
+
+void paint(const Still& still, ImDrawList* list) {
+    paint(still.heading, list);
+    const auto room = static_cast<float>(std::round(still_margin * still.scale));
+    const Rectangle& w = still.areas.world;
+    paint(still.world, list, {w.x + room, w.y, w.width - 2.0F * room, w.height - room}, still.scale);
+    if (!still.plots.panels.empty()) paint(still.plots, list, still.areas.plots, still.scale);
 }
 
 }  // namespace achilles

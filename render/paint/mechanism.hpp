@@ -1,6 +1,7 @@
 // The mechanism onto an ImGui draw list: strokes only, no memory.
 #pragma once
 
+#include "figure/animation.hpp"
 #include "figure/drawing.hpp"
 #include "paint/paint.hpp"
 
@@ -18,5 +19,8 @@ Placement place(const Drawing& drawing, Rectangle area);
 
 // Draws the shapes, clipped to the area; scale multiplies text sizes and stroke widths.
 Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale = 1.0);
+
+// A still of an animation.
+void paint(const Still& still, ImDrawList* list);
 
 }  // namespace achilles

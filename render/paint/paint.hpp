@@ -9,6 +9,8 @@ namespace achilles {
 
 // Draws the whole figure into the area; scale multiplies text sizes and stroke widths.
 void paint(const Figure& figure, ImDrawList* list, Rectangle area, double scale = 1.0);
+// What is laid out already.
+void paint(const Sheet& sheet, ImDrawList* list);
 // One panel: returns the plot area inside the axes, for a cursor or the mouse.
 Rectangle paint(const Panel& panel, const Figure& style, ImDrawList* list, Rectangle area, double scale = 1.0);
 // A label with its combining dots placed over their letters; returns its width. `angle`: 0, or 90 for a vertical axis

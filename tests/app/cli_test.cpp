@@ -76,7 +76,7 @@ const Refusal refusals[] = {
     {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; did you mean 'simulate'?\n"
-     "the commands are: explore, simulate, figure, paper, screenshot, reproduce, check, list\n"},
+     "the commands are: explore, simulate, figure, frames, paper, screenshot, reproduce, check, list\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
     {"no_system", "simulate", "achilles: SYSTEM is required" + more},
@@ -211,7 +211,7 @@ TEST(Cli, HelpAndVersion) {
     const Folder folder;
     EXPECT_EQ(folder.run("--version").out, "achilles 0.1.0\n");
     for (const char* arguments : {"--help", "simulate --help", "paper --help", "list --help", "explore --help",
-                                  "screenshot --help", "figure --help", "reproduce --help"}) {
+                                  "screenshot --help", "figure --help", "frames --help", "reproduce --help"}) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 0) << arguments;
         EXPECT_NE(answer.out.find("Usage: achilles"), std::string::npos) << arguments;
@@ -319,11 +319,11 @@ TEST(Cli, AMissingDisplayIsOneMessageAndCostsNoJournal) {
     EXPECT_EQ(folder.files().size(), 1u);
 }
 
-TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {
+TEST(Cli, PaperDrawsSixFiguresTwoPagesAndATable) {
     const Folder folder;
     const Answer answer = folder.run("paper");
     ASSERT_EQ(answer.status, 0) << answer.err;
-    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4"}) {
+    for (const char* name : {"fig4a", "fig4b", "fig4c", "fig4d", "fig4e", "fig4f", "fig4", "zeno"}) {
         const auto file = folder.path() / "achilles-paper" / (std::string(name) + ".png");
         EXPECT_EQ(content(file).substr(1, 3), "PNG") << name;
         EXPECT_NE(answer.out.find("/achilles-paper/" + std::string(name) + ".png\n"), std::string::npos) << answer.out;
@@ -331,6 +331,14 @@ TEST(Cli, PaperDrawsSixFiguresAPageAndATable) {
     EXPECT_NE(answer.out.find("2.72514217"), std::string::npos);
     EXPECT_EQ(answer.out.rfind(content(folder.path() / "achilles-paper/table.txt"), 0), 0u);
     EXPECT_EQ(folder.run("paper --out /dev/null/x").status, 2);
+    // Nothing is left of what could not be drawn, and a folder that was there stays.
+    const Answer refused = folder.run("paper --out new", "ACHILLES_OFFSCREEN=none");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err, "achilles: ACHILLES_OFFSCREEN must be osmesa or egl, not 'none'\n");
+    std::filesystem::create_directory(folder.path() / "old");
+    EXPECT_EQ(folder.run("paper --out old", "ACHILLES_OFFSCREEN=none").status, 2);
+    EXPECT_EQ(folder.files().size(), 2u);
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "old"));
 }
 
 }  // namespace

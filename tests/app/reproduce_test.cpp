@@ -106,6 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Origin, Reproduced, testing::Values("png", "svg"));
 TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     const Folder folder;
     ASSERT_EQ(folder.run("paper --scale 0.5").status, 0);
+    ASSERT_EQ(folder.run("paper --format svg --out svg").status, 0);
     folder.put("drop.toml", drop);
     folder.put("tour.journal",
                "open ./drop.toml\r\nset g 2 # Gr\xC3\xB6\xC3\x9F"
@@ -116,7 +117,8 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     std::filesystem::create_directory(folder.path() / "assets");
     const auto fonts = std::filesystem::path(ACHILLES_BINARY_DIR) / "assets/fonts";
     std::filesystem::create_directory_symlink(fonts, folder.path() / "assets/fonts");
-    for (const std::string picture : {"achilles-paper/fig4d.png", "achilles-paper/fig4.png", "s.png"}) {
+    for (const std::string picture : {"achilles-paper/fig4d.png", "achilles-paper/fig4.png", "achilles-paper/zeno.png",
+                                      "svg/fig4e.svg", "svg/zeno.svg", "s.png"}) {
         // Assets without systems: nothing is left to read but the picture.
         const Answer answer = folder.run("reproduce " + picture + " --out again.png", "ACHILLES_ASSETS=assets");
         EXPECT_EQ(answer.status, 0) << answer.err;

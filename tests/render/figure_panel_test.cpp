@@ -38,9 +38,9 @@ int distance(const Color& a, const Color& b) { return std::abs(a.r - b.r) + std:
 TEST(Palette, TellsPhasesEventsAndCurvesApart) {
     for (const Theme& theme : {light_theme(), dark_theme()}) {
         std::vector<Color> hues;
-        for (std::size_t i = 0; i < 4; ++i) {
-            const Stroke flight = phase_stroke(theme, Phase::Kind::hybrid, i, 4);
-            const Stroke contact = phase_stroke(theme, Phase::Kind::constrained, i, 4);
+        for (std::size_t i = 0; i < 8; ++i) {
+            const Stroke flight = phase_stroke(theme, Phase::Kind::hybrid, i, 8);
+            const Stroke contact = phase_stroke(theme, Phase::Kind::constrained, i, 8);
             EXPECT_EQ(flight.color, contact.color);
             EXPECT_FALSE(flight.dash.empty());
             EXPECT_TRUE(contact.dash.empty());

@@ -73,10 +73,12 @@ TEST(LinearTicks, EndForEveryRange) {
 
 TEST(LinearTicks, ShareOneFormOnAnAxis) {
     const auto labels = [](double low, double high) { return axis_of(false, low, high).text; };
-    EXPECT_EQ(labels(0, 2e5), "0 0.5×10⁵ 1.0×10⁵ 1.5×10⁵ 2.0×10⁵");
-    EXPECT_EQ(labels(-2e5, 2e5), "−2×10⁵ −1×10⁵ 0 1×10⁵ 2×10⁵");
-    EXPECT_EQ(labels(9.9e4, 1.01e5), "0.990×10⁵ 0.995×10⁵ 1.000×10⁵ 1.005×10⁵ 1.010×10⁵");
-    EXPECT_EQ(labels(0, 1.2e-4), "0 0.5×10⁻⁴ 1.0×10⁻⁴");
+    EXPECT_EQ(labels(0, 1e5), "0 20000 40000 60000 80000 100000");
+    EXPECT_EQ(labels(9.9e4, 1.01e5), "99000 99500 100000 100500 101000");
+    EXPECT_EQ(labels(0, 1e6), "0 2×10⁵ 4×10⁵ 6×10⁵ 8×10⁵ 10×10⁵");
+    EXPECT_EQ(labels(-2e6, 2e6), "−2×10⁶ −1×10⁶ 0 1×10⁶ 2×10⁶");
+    EXPECT_EQ(labels(9.9e6, 1.01e7), "0.990×10⁷ 0.995×10⁷ 1.000×10⁷ 1.005×10⁷ 1.010×10⁷");
+    EXPECT_EQ(labels(0, 1.2e-4), "0 5×10⁻⁵ 10×10⁻⁵");
     EXPECT_EQ(labels(0, 8e4), "0 20000 40000 60000 80000");
     EXPECT_EQ(labels(0.00999, 0.01001), "0.009990 0.009995 0.010000 0.010005 0.010010");
 }

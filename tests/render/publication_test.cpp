@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/systems.hpp"
 #include "figure/layout.hpp"
 #include "render/samples.hpp"
@@ -97,6 +99,36 @@ TEST_F(Publication, no_legend_covers_data) {
     EXPECT_EQ(labels, 3);
 }
 
+// Limits are those of the data: a legend above the panel needs no room in it.
+TEST_F(Publication, several_curves_fill_their_panel) {
+    const Panel panel = of({view("all", "t", {"x", "y", "x'", "y'", "gap"})}).panels[0];
+    EXPECT_TRUE(panel.legend);
+    double most = 0.0;
+    for (const Curve& curve : panel.curves)
+        for (const Point& p : curve.points) most = std::max(most, std::isnan(p.y) ? 0.0 : p.y);
+    EXPECT_GT(panel.y.high, most);
+    EXPECT_LT(panel.y.high, 1.15 * most);
+}
+
+// A long title stands above a legend that leaves no room beside it, a short one in its line.
+TEST_F(Publication, titles_and_legends_do_not_overlap) {
+    for (const char* name : {"rates", "the rates of both coordinates of the ball, each in a colour of its own"}) {
+        const Sheet sheet =
+            layout(of({view(name, "t", {"x'", "y'"}), view("b", "t", {"y"})}), half, {0, 0, 700, 700}, 1.0);
+        const auto find = [&](const std::string& label) {
+            for (const auto& item : sheet)
+                if (const auto* words = std::get_if<Words>(&item); words != nullptr && words->label == label)
+                    return *words;
+            ADD_FAILURE() << label;
+            return Words{};
+        };
+        const Words title = find("(a)\u00A0\u00A0" + std::string(name)), key = find("𝑥\u0307");
+        const bool apart = title.x + half(title.label, title.size) <= key.x || title.y + title.size <= key.y;
+        EXPECT_TRUE(apart) << name;
+        EXPECT_GE(title.y, 0.0F);
+    }
+}
+
 TEST_F(Publication, a_transparent_figure_has_no_background) {
     const std::vector<ViewDescription> views{view("height", "t", {"y"})};
     const Figure figure = publication(trajectory, views, {0, true});
@@ -113,6 +145,19 @@ TEST_F(Publication, as_text_tells_its_keys_and_shared_axes) {
     EXPECT_NE(text.find("key \"release\"\n"), std::string::npos) << text;
     EXPECT_NE(text.find("x \"𝑡 (s)\" [0, 20] labelled below: 0 5"), std::string::npos) << text;
     EXPECT_NE(text.find("panel \"(b)\u00A0\u00A0rates\" legend above\n"), std::string::npos) << text;
+}
+
+TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
+    const Figure figure = of({view("height", "t", {"y"})});
+    const auto holds = [&](float width, float height, const std::string& label) {
+        bool found = false;
+        for (const auto& item : layout(figure, half, {0, 0, width, height}, 1.0))
+            if (const auto* words = std::get_if<Words>(&item)) found = found || words->label == label;
+        return found;
+    };
+    EXPECT_TRUE(holds(600, 400, "constrained"));
+    EXPECT_FALSE(holds(200, 150, "constrained"));
+    EXPECT_TRUE(holds(200, 150, "2"));
 }
 
 TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {

@@ -1,0 +1,29 @@
+// How far a long work has come, for a person at a terminal.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace achilles {
+
+// "[#####.....]  50%  60/120 frames  11.3/s  0:05 left"; without times before the first is done.
+std::string progress_line(std::size_t done, std::size_t count, double seconds, const std::string& things);
+
+// A line on standard error that is written over and over, and taken away at the end; nothing where that is no terminal.
+class Progress {
+ public:
+    Progress(std::size_t count, std::string things);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    void show(std::size_t done);
+
+ private:
+    std::size_t count_;
+    std::string things_;
+    bool on_terminal_;
+    std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,182 @@
+#include "figure/animation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/label.hpp"
+#include "figure/publication.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Curves of what is still to come.
+constexpr std::uint8_t pale = 70;
+
+// Pixels for a unit of a world of this shape and of height 1.
+double unit_in(const Rectangle& area, double shape) { return std::min(area.width / shape, double{area.height}); }
+
+float heading_height(double scale) { return static_cast<float>(std::round(2.0 * still_title_size * scale)); }
+
+// What moves between two instants changes the last digit of the clock at least.
+int decimals_for(double step) { return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 2, 9); }
+
+bool has_units(const SystemDescription& description) {
+    return std::any_of(description.coordinates.begin(), description.coordinates.end(),
+                       [](const CoordinateDescription& c) { return !c.unit.empty(); });
+}
+
+void append(std::vector<Point>& all, const std::vector<Point>& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+double still_scale(const StillSize& size) {
+    constexpr double wide = 1600.0, high = 1000.0, at_that = 1.3, least = 0.5, most = 11.0;
+    const double fitting = std::max(at_that * std::min(size.width / wide, size.height / high), least);
+    return std::min(size.scale * fitting, most);
+}
+
+StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
+    StillAreas areas;
+    areas.world = area;
+    if (plots == 0) return areas;
+    constexpr float least = 0.4F, most = 0.62F, beside = 0.56F;  // of the picture, for the world
+    const float right = std::round(beside * area.width);
+    const float below =
+        std::round(std::clamp(static_cast<float>(area.width / shape), least * area.height, most * area.height));
+    const Rectangle left_world{area.x, area.y, right, area.height}, upper_world{area.x, area.y, area.width, below};
+    if (unit_in(left_world, shape) >= unit_in(upper_world, shape)) {
+        areas.world = left_world;
+        areas.plots = {area.x + right, area.y, area.width - right, area.height};
+        areas.columns = plots > 4 ? 2 : 1;
+    } else {
+        areas.world = upper_world;
+        areas.plots = {area.x, area.y + below, area.width, area.height - below};
+        areas.columns = static_cast<int>(plots > 4 ? (plots + 1) / 2 : plots);
+    }
+    return areas;
+}
+
+Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size,
+                     double step)
+    : trajectory_(trajectory),
+      size_(size),
+      decimals_(decimals_for(step)),
+      sampler_(trajectory),
+      samples_(plot_samples(trajectory)),
+      mechanism_(*trajectory.model),
+      trail_(trail_of(mechanism_, trajectory, samples_)),
+      limits_(mechanism_.limits(trajectory, samples_)) {
+    for (const ViewDescription& view : views) views_.emplace_back(*trajectory.model, view);
+    const float heading = heading_height(still_scale(size));
+    const double shape = (limits_.x_high - limits_.x_low) / (limits_.y_high - limits_.y_low);
+    areas_ = still_areas(shape, views.size(),
+                         {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
+    figure_ = publication(trajectory, views, {areas_.columns, false});
+    for (Panel& panel : figure_.panels) {
+        for (Markers& markers : panel.markers) markers.points.clear();
+        for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
+    }
+}
+
+// The curves until now in full colour, what happened until now, and a dot where the run is.
+void Animation::add_present(Panel& panel, const PreparedView& view, const Sample& now) const {
+    const auto end = std::upper_bound(samples_.begin(), samples_.end(), now.t,
+                                      [](double t, const Sample& sample) { return t < sample.t; });
+    std::vector<Sample> past(samples_.begin(), end);
+    past.push_back(now);
+    const Theme theme = light_theme();
+    Framing framing;
+    framing.x = {panel.x.low, panel.x.high};
+    framing.y = {panel.y.low, panel.y.high};
+    framing.legend = false;
+    const Panel present = compose(trajectory_, past, view, theme, framing);
+    for (std::size_t i = 0; i < present.curves.size(); ++i) {
+        // The legend shows the full colour.
+        panel.curves.push_back(present.curves[i]);
+        panel.curves.back().label = panel.curves[i].label;
+        panel.curves[i].label.clear();
+    }
+    for (std::size_t i = 0; i < panel.markers.size(); ++i) append(panel.markers[i].points, present.markers[i].points);
+
+    const std::vector<double> values = values_at(trajectory_, now, view);
+    if (view.quantities()[0].is_time) {
+        Markers cursor;
+        cursor.shape = Markers::Shape::bar;
+        cursor.fill = theme.surface;
+        cursor.points = {{values[0], 0.0}};
+        panel.markers.push_back(cursor);
+    }
+    Markers dot;
+    dot.shape = Markers::Shape::circle;
+    dot.fill = theme.body;
+    dot.edge = theme.background;
+    dot.size = 10.0;
+    for (std::size_t i = 1; i < values.size(); ++i)
+        if (std::isfinite(values[0]) && std::isfinite(values[i])) dot.points.push_back({values[0], values[i]});
+    panel.markers.push_back(dot);
+}
+
+// The way in flight is behind the mechanism; that in contact lies on a surface, which must not hide it. The body, if it
+// has a disc, is in front of both.
+void Animation::add_trail(std::vector<Shape>& shapes, const Sample& now) const {
+    const auto body = [&] {
+        auto grip = mechanism_.grip(trajectory_.run.parameters);
+        if (!grip) return shapes.end();
+        const Point at = grip->at(now.state).at;
+        return std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) {
+            return shape.kind == Shape::Kind::disc && shape.points[0].x == at.x && shape.points[0].y == at.y;
+        });
+    }();
+    if (body != shapes.end()) std::rotate(body, body + 1, shapes.end());
+    const auto front = shapes.size() - (body != shapes.end() ? 1 : 0);
+    std::vector<Shape> behind, before;
+    for (Shape& shape : trail_until(trail_, samples_, now.t, light_theme()))
+        (shape.stroke.dash.empty() ? before : behind).push_back(std::move(shape));
+    shapes.insert(shapes.begin() + static_cast<std::ptrdiff_t>(front), before.begin(), before.end());
+    shapes.insert(shapes.begin(), behind.begin(), behind.end());
+}
+
+Still Animation::at(double t) {
+    const Sample now = sampler_.at(t);
+    const Theme theme = light_theme();
+    const SystemDescription& description = trajectory_.model->description();
+    Still still;
+    still.areas = areas_;
+    const double scale = still.scale = still_scale(size_);
+    still.world = mechanism_.draw(now.state, trajectory_.run.parameters, limits_, theme);
+    add_trail(still.world.shapes, now);
+    still.plots = figure_;
+    for (std::size_t i = 0; i < views_.size(); ++i) add_present(still.plots.panels[i], views_[i], now);
+
+    const auto width = static_cast<float>(size_.width), height = static_cast<float>(size_.height);
+    const auto text = static_cast<float>(std::round(still_title_size * scale));
+    still.heading.push_back(Fill{{0.0F, 0.0F, width, height}, theme.background});
+    still.heading.push_back(Words{text, 0.5F * text, 0.0F, description.title, theme.ink, text});
+    const std::string clock = fmt::format("{} = {:.{}f}", typeset("t"), t, decimals_);
+    still.heading.push_back(
+        Words{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
+    // Left of the longest clock.
+    const float room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
+    still.heading.push_back(
+        Words{width - text - room, 0.5F * text, 1.0F, legend_text(now.phase), phase_color(theme, now.phase), text});
+    return still;
+}
+
+std::string to_text(const Still& still) {
+    std::string text;
+    for (const auto& item : still.heading)
+        if (const auto* words = std::get_if<Words>(&item)) text += words->label + "\n";
+    for (const Shape& shape : still.world.shapes) {
+        if (shape.points.empty()) continue;
+        const Point& last = shape.points.back();
+        text += fmt::format("shape of {} points to {:.9g} {:.9g}\n", shape.points.size(), last.x, last.y);
+    }
+    return text + to_text(still.plots);
+}
+
+}  // namespace achilles

@@ -1,0 +1,75 @@
+// Stills: where the parts stand, what fills as time passes.
+#include "figure/animation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/systems.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+namespace {
+
+TEST(Animation, PutsThePlotsWhereTheWorldIsLarger) {
+    const Rectangle screen{0, 0, 1600, 950};
+    const StillAreas wide = still_areas(4.0, 3, screen), tall = still_areas(0.8, 3, screen);
+    EXPECT_EQ(wide.columns, 3);
+    EXPECT_EQ(wide.world.width, 1600.0F);
+    EXPECT_EQ(wide.plots.y, wide.world.y + wide.world.height);
+    EXPECT_EQ(tall.columns, 1);
+    EXPECT_EQ(tall.world.height, 950.0F);
+    EXPECT_EQ(tall.plots.x, tall.world.width);
+    EXPECT_EQ(still_areas(1.0, 0, screen).world.width, 1600.0F);
+}
+
+TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {
+    EXPECT_DOUBLE_EQ(still_scale({1600, 1000, 1.0}), 1.3);
+    EXPECT_DOUBLE_EQ(still_scale({3200, 2000, 1.0}), 2.6);
+    EXPECT_DOUBLE_EQ(still_scale({3200, 1000, 2.0}), 2.6);
+    EXPECT_DOUBLE_EQ(still_scale({320, 200, 1.0}), 0.5);
+    EXPECT_DOUBLE_EQ(still_scale({16384, 16384, 8.0}), 11.0);
+}
+
+TEST(Animation, ShowsThePresentAndFillsThePlots) {
+    const auto model = test::load("ball_on_sine");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const std::vector<ViewDescription> views{model->description().views[1]};  // height
+    Animation animation(trajectory, views, {1600, 1000, 1.0}, 1.0 / 30.0);
+    const Still before = animation.at(1.0), after = animation.at(3.2);
+    EXPECT_EQ(to_text(before).substr(0, to_text(before).find("shape")),
+              "Ball bouncing on a sinusoidal surface\n𝑡 = 1.00 s\nhybrid\n");
+    EXPECT_NE(to_text(after).find("𝑡 = 3.20 s\nconstrained\n"), std::string::npos);
+
+    const Panel &first = before.plots.panels[0], &second = after.plots.panels[0];
+    EXPECT_EQ(first.y.low, second.y.low);
+    EXPECT_EQ(first.y.high, second.y.high);
+    // Pale curves of the whole run, then the curves until now.
+    ASSERT_EQ(first.curves.size(), 4u);
+    EXPECT_EQ(first.curves[0].points.size(), second.curves[0].points.size());
+    EXPECT_LT(first.curves[0].stroke.color.a, 100);
+    EXPECT_EQ(first.curves[2].points.back().x, 1.0);
+    EXPECT_TRUE(first.curves[3].points.empty());
+    EXPECT_EQ(second.curves[3].points.back().x, 3.2);
+    // Impacts until now, then the cursor and the dot.
+    ASSERT_EQ(second.markers.size(), 5u);
+    EXPECT_TRUE(first.markers[0].points.empty());
+    EXPECT_GT(second.markers[0].points.size(), 3u);
+    for (const Point& p : second.markers[0].points) EXPECT_LE(p.x, 3.2);
+    EXPECT_EQ(second.markers[1].points.size(), 1u);  // one Zeno point
+    EXPECT_TRUE(second.markers[2].points.empty());   // no release yet
+    EXPECT_EQ(second.markers[3].points[0].x, 3.2);
+    EXPECT_EQ(second.markers[4].points[0].x, 3.2);
+    EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
+    // The ball in front of its way in contact, which is in front of the surface, then the way in flight.
+    const std::vector<Shape>& shapes = after.world.shapes;
+    ASSERT_EQ(shapes.size(), 4u);
+    const Shape& disc = shapes[3];
+    EXPECT_EQ(disc.kind, Shape::Kind::disc);
+    EXPECT_TRUE(shapes[2].stroke.dash.empty());
+    EXPECT_EQ(shapes[2].stroke.color.r, phase_color(light_theme(), Phase::Kind::constrained).r);
+    EXPECT_EQ(shapes[1].stroke.color, light_theme().surface);
+    EXPECT_FALSE(shapes[0].stroke.dash.empty());
+    EXPECT_NEAR(disc.points[0].x, Sampler(trajectory).at(3.2).state.q[0], 1e-12);
+}
+
+}  // namespace
+}  // namespace achilles
