@@ -167,6 +167,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     cell(number_at, std::to_string(index + 1), faint_color());
     cell(kind_at, markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
+    if (has_card(session)) return;
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
     paint_label(list, std::floor(at.x + units(state_at)), at.y,
                 state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());

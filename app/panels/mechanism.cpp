@@ -70,7 +70,9 @@ std::vector<Shape> trail(const Session& session) {
         if (i == 0 || phase != samples[i - 1].phase) {
             Shape& shape = shapes.emplace_back();
             shape.stroke = phase_stroke(session.theme(), phase, 0, 1);
-            shape.stroke.color.a = 150;
+            // In contact it lies on the line of the surface, which must not shine through.
+            shape.stroke.color.a = phase == Phase::Kind::constrained ? 255 : 150;
+            if (phase == Phase::Kind::constrained) shape.stroke.width = 3.0;
             if (i > 0) shape.points.push_back(points[i - 1]);
         }
         shapes.back().points.push_back(points[i]);
@@ -114,7 +116,10 @@ Picture paint_picture(const Session& session, const Rectangle& area) {
         session.mechanism().draw(session.now().state, session.run().parameters, world(session, area), session.theme());
     if (session.scene().shows("trail")) {
         std::vector<Shape> shapes = trail(session);
-        drawing.shapes.insert(drawing.shapes.begin(), shapes.begin(), shapes.end());
+        // Over the world, where a motion in contact would be hidden by the surface, and under what moves.
+        const auto first =
+            std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const Shape& shape) { return shape.moves; });
+        drawing.shapes.insert(first, shapes.begin(), shapes.end());
     }
     // Behind everything the pinned run at the same instant.
     if (const auto then = session.pinned_now()) {
