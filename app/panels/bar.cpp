@@ -67,6 +67,8 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     if (item("All of the motion", nullptr, state, false, scene.look().has_value()))
         commands.emplace_back(command::LookAll{});
     ImGui::Separator();
+    const bool loops = scene.loops();
+    if (item("Play again at the end", nullptr, state, loops)) commands.emplace_back(command::Loop{!loops});
     if (item("Dark theme", "Ctrl+D", state, session.theme().dark))
         commands.emplace_back(command::UseTheme{!session.theme().dark});
 }

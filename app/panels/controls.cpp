@@ -220,6 +220,8 @@ void show_system(const Session& session, PanelState& state, Commands& commands) 
 
 void show_controls(const Session& session, PanelState& state, Commands& commands) {
     describe_system(session);
+    // Rows close enough that most systems need no scrolling.
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});
     const Run file = session.model()->default_run();
     const bool has_parameters = !file.parameters.empty();
     if (has_parameters) first_section("Parameters", session, file, state, commands);
@@ -232,6 +234,7 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
         for (const bool is_rate : {false, true}) start_value(session, file, i, is_rate, state, commands);
     truncation(session, file, state, commands);
     integration(session, file, state, commands);
+    ImGui::PopStyleVar();
 }
 
 }  // namespace achilles

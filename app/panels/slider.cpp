@@ -21,11 +21,19 @@ bool is_logarithmic(const Slider& slider) { return slider.low > 0.0 && slider.hi
 
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 
-// "30°", "2 m".
-std::string shown(const Slider& slider, double value) {
+// "30°", "2 m", with so many digits.
+std::string shown(const Slider& slider, double value, int digits = 6) {
     const bool joined = slider.unit.empty() || slider.unit[0] == '\xc2';
-    return number(rounded(value * slider.factor, slider.digits + 2), "{:.6g}") +
+    return number(rounded(value * slider.factor, std::min(digits, slider.digits + 2))) +
            (joined ? slider.unit : "\u00a0" + slider.unit);
+}
+
+// With as many digits as there is room for.
+std::string shown_in(float width, const Slider& slider, double value) {
+    for (int digits = 6; digits > 2; --digits)
+        if (const std::string text = shown(slider, value, digits); ImGui::CalcTextSize(text.c_str()).x <= width)
+            return text;
+    return fitted(shown(slider, value, 2), width);
 }
 
 std::string explanation(const Slider& slider) {
@@ -146,7 +154,7 @@ bool moved(Slider& slider, PanelState& state) {
     remember(state, "value of " + slider.id);
     tooltip(about);
     changed = clicked(slider, before, state.typed) || changed;
-    const std::string text = fitted(shown(slider, slider.value), width - track - units(4.0F));
+    const std::string text = shown_in(width - track - units(4.0F), slider, slider.value);
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x + width - track - ImGui::CalcTextSize(text.c_str()).x),
                                          at.y + ImGui::GetStyle().FramePadding.y},
                                         packed(is_changed ? current_theme().accent : text_color()), text.c_str());

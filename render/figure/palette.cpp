@@ -24,6 +24,7 @@ Theme light_theme() {
     theme.border = {203, 207, 213, 255};
     theme.faint = {98, 104, 112, 255};
     theme.accent = {33, 102, 184, 255};
+    theme.selected = {223, 233, 245, 255};
     theme.error = {178, 34, 34, 255};
     theme.error_card = {253, 236, 234, 255};
     return theme;
@@ -41,6 +42,7 @@ Theme dark_theme() {
     theme.border = {66, 71, 80, 255};
     theme.faint = {150, 156, 166, 255};
     theme.accent = {92, 156, 235, 255};
+    theme.selected = {36, 48, 66, 255};
     theme.error = {255, 138, 128, 255};
     theme.error_card = {62, 28, 28, 255};
     return theme;
@@ -96,6 +98,10 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
     stroke.width = kind == Phase::Kind::hybrid ? 1.6 : 2.0;
     if (kind == Phase::Kind::hybrid) stroke.dash = {6.0, 3.5};
     return stroke;
+}
+
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke) {
+    return {theme.dark ? Color{112, 118, 128, 255} : Color{140, 146, 154, 255}, 1.2, stroke.dash};
 }
 
 Markers event_markers(const Theme& theme, Event::Kind kind) {

@@ -18,6 +18,7 @@ struct Theme {
     Color border;             // lines between groups, the track of a slider
     Color faint;              // text that is less important
     Color accent;             // what the hand can move, and what it changed
+    Color selected;           // behind the chosen line of a list
     Color error, error_card;  // what is wrong, and behind it
 };
 
@@ -33,6 +34,8 @@ Color on_theme(const Color& color, const Theme& theme);
 // has a hue of its own, and the dash still tells the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
+// Of a run that others are compared with: it stands back.
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
 // What a legend calls them.

@@ -54,9 +54,9 @@ void colors(ImGuiStyle& style, const Theme& theme) {
     c[ImGuiCol_Button] = plain(theme.frame);
     c[ImGuiCol_ButtonHovered] = touched(0.2F);
     c[ImGuiCol_ButtonActive] = touched(0.36F);
-    c[ImGuiCol_Header] = mixed(theme.background, theme.accent, theme.dark ? 0.24F : 0.14F);
-    c[ImGuiCol_HeaderHovered] = mixed(theme.background, theme.accent, theme.dark ? 0.32F : 0.2F);
-    c[ImGuiCol_HeaderActive] = mixed(theme.background, theme.accent, theme.dark ? 0.42F : 0.3F);
+    c[ImGuiCol_Header] = plain(theme.selected);
+    c[ImGuiCol_HeaderHovered] = mixed(theme.selected, theme.accent, 0.08F);
+    c[ImGuiCol_HeaderActive] = mixed(theme.selected, theme.accent, 0.16F);
     c[ImGuiCol_ScrollbarBg] = {0.0F, 0.0F, 0.0F, 0.0F};
     c[ImGuiCol_ScrollbarGrab] = plain(theme.border);
     c[ImGuiCol_ScrollbarGrabHovered] = mixed(theme.border, theme.ink, 0.25F);

@@ -16,7 +16,7 @@ TEST(Palette, measures_contrast_as_the_standard_does) {
 
 TEST(Palette, text_can_be_read) {
     for (const Theme& theme : {light_theme(), dark_theme()}) {
-        for (const Color& paper : {theme.background, theme.page, theme.frame}) {
+        for (const Color& paper : {theme.background, theme.page, theme.frame, theme.selected}) {
             EXPECT_GE(contrast(theme.ink, paper), 7.0) << theme.dark;
             EXPECT_GE(contrast(theme.faint, paper), of_text) << theme.dark;
             EXPECT_GE(contrast(theme.accent, paper), of_text) << theme.dark;
@@ -37,6 +37,7 @@ TEST(Palette, curves_and_signs_can_be_seen) {
         for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
             for (const Color& paper : {theme.background, theme.page})
                 EXPECT_GE(contrast(event_markers(theme, kind).fill, paper), of_signs);
+        EXPECT_GE(contrast(pinned_stroke(theme, {}).color, theme.background), of_signs);
         EXPECT_GE(contrast(theme.surface, theme.background), of_signs);
         EXPECT_GE(contrast(theme.body, theme.background), of_text);
         // Lines of a grid are there, and quiet.
