@@ -5,110 +5,15 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "expression/nearest.hpp"
+#include "words.hpp"
 
 namespace achilles {
 
 namespace {
-
-constexpr std::string_view spaces = " \t\r";
-
-// What would end the line or the word, and how it is written: \n.
-constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
-
-char meant_by(char letter) {
-    for (const auto& [written, meant] : escapes)
-        if (written == letter) return meant;
-    return letter;
-}
-
-struct Word {
-    std::string text;
-    int column = 1;
-};
-
-// The words of one line and where they stand, to complain about.
-class Line {
- public:
-    Line(std::string_view text, const std::string& file, int number) : text_(text), file_(file), number_(number) {
-        for (std::size_t at = skip_space(0); at < text.size() && text[at] != '#'; at = skip_space(at)) {
-            const int column = static_cast<int>(at) + 1;
-            words_.push_back({text[at] == '"' ? quoted(at) : plain(at), column});
-        }
-    }
-
-    InputError error(int column, const std::string& message, const std::string& hint = {}) const {
-        return {file_, {number_, column}, message, hint, std::string(text_)};
-    }
-    const Word& word(std::size_t i) const { return words_[i]; }
-    std::size_t count() const { return words_.size(); }
-    void expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
-        if (count() < least + 1) throw error(end_column(), fmt::format("'{}' needs more", words_[0].text), usage);
-        if (count() > most + 1)
-            throw error(words_[most + 1].column, fmt::format("'{}' is too much", words_[most + 1].text), usage);
-    }
-    double number(std::size_t i) const {
-        const std::string& text = words_[i].text;
-        double value = 0.0;
-        const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (problem != std::errc() || rest != text.data() + text.size() || !std::isfinite(value))
-            throw error(words_[i].column, fmt::format("'{}' is not a finite number", text));
-        return value;
-    }
-    int whole_number(std::size_t i) const {
-        const double value = number(i);
-        if (value != std::floor(value) || std::abs(value) > 1e9)
-            throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
-        return static_cast<int>(value);
-    }
-
- private:
-    std::size_t skip_space(std::size_t at) const { return std::min(text_.find_first_not_of(spaces, at), text_.size()); }
-    int end_column() const { return static_cast<int>(text_.find_last_not_of(spaces)) + 2; }
-    std::string plain(std::size_t& at) const {
-        const std::size_t begin = at;
-        at = std::min(text_.find_first_of(spaces, at), text_.size());
-        return std::string(text_.substr(begin, at - begin));
-    }
-    std::string quoted(std::size_t& at) const {
-        const int column = static_cast<int>(at) + 1;
-        std::string result;
-        for (++at; at < text_.size() && text_[at] != '"'; ++at) {
-            const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
-            if (escaped) ++at;
-            result += escaped ? meant_by(text_[at]) : text_[at];
-        }
-        if (at == text_.size()) throw error(column, "the quotes are not closed");
-        ++at;
-        return result;
-    }
-
-    std::string_view text_;
-    const std::string& file_;
-    int number_;
-    std::vector<Word> words_;
-};
-
-std::string quoted(const std::string& word) {
-    std::string text = "\"";
-    for (const char c : word) {
-        const auto* special =
-            std::find_if(escapes.begin(), escapes.end(), [c](const auto& e) { return e.second == c; });
-        if (special != escapes.end() || c == '"' || c == '\\') text += '\\';
-        text += special != escapes.end() ? special->first : c;
-    }
-    return text + '"';
-}
-
-std::string quoted_where_needed(const std::string& word) {
-    const bool is_plain = !word.empty() && word[0] != '#' && word.find_first_of(" \t\r\n\"\\") == std::string::npos;
-    return is_plain ? word : quoted(word);
-}
 
 Command read_eps(const Line& line) {
     line.expect_arguments(1, 3, "write: eps 1e-6, or: eps POSITION VELOCITY TIME");
@@ -219,20 +124,6 @@ Command read_step(const Line& line) {
     return command::Step{line.whole_number(1)};
 }
 
-// The words from number `first` on.
-std::vector<std::string> words_from(const Line& line, std::size_t first) {
-    std::vector<std::string> result;
-    for (std::size_t i = first; i < line.count(); ++i) result.push_back(line.word(i).text);
-    return result;
-}
-
-bool read_switch(const Line& line, std::size_t i, const std::string& usage) {
-    const std::string& text = line.word(i).text;
-    if (text != "on" && text != "off")
-        throw line.error(line.word(i).column, fmt::format("'{}' is neither on nor off", text), usage);
-    return text == "on";
-}
-
 Command read_grid(const Line& line) {
     line.expect_arguments(2, 2, "write: grid COLUMNS ROWS");
     return command::Grid{line.whole_number(1), line.whole_number(2)};
@@ -240,7 +131,7 @@ Command read_grid(const Line& line) {
 
 Command read_plot(const Line& line) {
     line.expect_arguments(3, 12, "write: plot NUMBER X Y..., expressions with spaces in double quotes");
-    return command::PlotView{line.whole_number(1), line.word(2).text, words_from(line, 3)};
+    return command::PlotView{line.whole_number(1), line.word(2).text, line.words_from(3)};
 }
 
 Command read_zoom(const Line& line) {
@@ -258,23 +149,47 @@ Command read_log(const Line& line) {
     line.expect_arguments(3, 3, usage);
     const std::string& axis = line.word(2).text;
     if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
-    return command::AxisScale{line.whole_number(1), axis == "x", read_switch(line, 3, usage)};
+    return command::AxisScale{line.whole_number(1), axis == "x", line.is_on(3, usage)};
 }
 
 Command read_curve(const Line& line) {
     const std::string usage = "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off";
     line.expect_arguments(3, 3, usage);
-    return command::ShowCurve{line.whole_number(1), line.whole_number(2), read_switch(line, 3, usage)};
+    return command::ShowCurve{line.whole_number(1), line.whole_number(2), line.is_on(3, usage)};
 }
 
 template <class Kind>
 Command read_on_off(const Line& line) {
     const std::string usage = fmt::format("write: {0} on, or: {0} off", line.word(0).text);
     line.expect_arguments(1, 1, usage);
-    return Kind{read_switch(line, 1, usage)};
+    return Kind{line.is_on(1, usage)};
 }
 
-constexpr std::array<Verb, 33> verbs{{{"open", read_open},
+Command read_theme(const Line& line) {
+    const std::string usage = "write: theme light, or: theme dark";
+    line.expect_arguments(1, 1, usage);
+    const std::string& name = line.word(1).text;
+    if (name != "light" && name != "dark")
+        throw line.error(line.word(1).column, fmt::format("there is no theme '{}'", name), usage);
+    return command::UseTheme{name == "dark"};
+}
+
+Command read_size(const Line& line) {
+    const std::string usage = "write: size controls 0.3 (a share of the window), or: size plots auto";
+    line.expect_arguments(2, 2, usage);
+    const std::string& panel = line.word(1).text;
+    const auto& panels = command::sized_panels;
+    if (std::find(panels.begin(), panels.end(), panel) == panels.end())
+        throw line.error(line.word(1).column,
+                         fmt::format("there is no panel '{}'{}", panel, did_you_mean(panel, panels)), usage);
+    if (line.word(2).text == "auto") return command::Size{panel, 0.0};
+    const double share = line.number(2);
+    if (!(share > 0.0 && share < 1.0))
+        throw line.error(line.word(2).column, fmt::format("a panel cannot take {} of the window", share), usage);
+    return command::Size{panel, share};
+}
+
+constexpr std::array<Verb, 36> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -306,7 +221,10 @@ constexpr std::array<Verb, 33> verbs{{{"open", read_open},
                                       {"redo", read_alone<command::Redo>},
                                       {"pin", read_pin<true>},
                                       {"unpin", read_pin<false>},
-                                      {"lens", read_number<command::Lens>}}};
+                                      {"lens", read_number<command::Lens>},
+                                      {"theme", read_theme},
+                                      {"size", read_size},
+                                      {"reset", read_alone<command::Reset>}}};
 
 const char* on_off(bool on) { return on ? "on" : "off"; }
 
@@ -368,17 +286,17 @@ struct Print {
     std::string operator()(const command::ShowCurve& c) const {
         return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
     }
+    std::string operator()(const command::UseTheme& c) const { return c.dark ? "theme dark" : "theme light"; }
+    std::string operator()(const command::Size& c) const {
+        return c.share > 0.0 ? fmt::format("size {} {}", c.panel, c.share) : fmt::format("size {} auto", c.panel);
+    }
+    std::string operator()(const command::Reset&) const { return "reset"; }
     std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
 };
 
 }  // namespace
 
 std::string to_text(const Command& command) { return std::visit(Print{}, command); }
-
-bool is_blank(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(spaces);
-    return first == std::string_view::npos || line[first] == '#';
-}
 
 Command parse_command(std::string_view text, const std::string& file, int line_number) {
     const Line line(text, file, line_number);

@@ -10,6 +10,8 @@
 //     start x 0.3 x' 1.5       look 2 0.5 8 (middle, width)   look all    speed 0.1    loop on     step -1
 //     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
 //     zoom 1 0 5 -1 2.5        fit 1              log 1 y on         curve 1 2 off
+//     theme dark               hide plots         size controls 0.3 (a share of the window)   size events auto
+//     reset (every value and option as the file has it)
 //
 // Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes",
 // where \n is a new line, \t a tab, \r a carriage return and \ before anything else that itself.
@@ -91,6 +93,20 @@ struct Show {
     friend bool operator==(const Show&, const Show&) = default;
 };
 
+inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots"};
+struct Size {
+    std::string panel;   // the editor in place of the controls has a width of its own
+    double share = 0.0;  // of the window's width, for events of its height; 0: as it fits
+    friend bool operator==(const Size&, const Size&) = default;
+};
+struct UseTheme {
+    bool dark = false;
+    friend bool operator==(const UseTheme&, const UseTheme&) = default;
+};
+
+struct Reset {  // every value and option as the file has it
+    friend bool operator==(const Reset&, const Reset&) = default;
+};
 struct Start {  // several values at once: the run in between might be none
     std::vector<std::pair<std::string, double>> values;
     friend bool operator==(const Start&, const Start&) = default;
@@ -174,15 +190,12 @@ using Command =
                  command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
                  command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link, command::Start,
                  command::Look, command::LookAll, command::Speed, command::Loop, command::Step, command::Undo,
-                 command::Redo, command::Pin, command::Lens>;
+                 command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);
 
 // Reads one line. Throws InputError that names file, line and column. A line must hold a command: see parse_journal.
 Command parse_command(std::string_view text, const std::string& file = "<command>", int line = 1);
-
-// Whether a line holds nothing but space and a comment.
-bool is_blank(std::string_view line);
 
 }  // namespace achilles

@@ -1,5 +1,7 @@
 #include "journal.hpp"
 
+#include "words.hpp"
+
 namespace achilles {
 
 std::vector<Command> parse_journal(std::string_view text, const std::string& name) {

@@ -46,6 +46,17 @@ void Scene::perform(const command::Loop& command) { loops_ = command.on; }
 
 void Scene::perform(const command::Lens& command) { lens_ = std::clamp(command.from, -100.0, 1e9); }
 
+double Scene::share(const std::string& panel) const {
+    const auto found = shares_.find(panel);
+    return found == shares_.end() ? 0.0 : found->second;
+}
+
+void Scene::perform(const command::Size& command) {
+    if (!(command.share >= 0.0 && command.share < 1.0))
+        throw refusal(fmt::format("a panel cannot take {} of the window", command.share));
+    shares_[command.panel] = command.share;
+}
+
 std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
@@ -54,6 +65,8 @@ std::string to_text(const Scene& scene) {
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
+    for (const std::string& panel : command::sized_panels)
+        if (const double share = scene.share(panel); share > 0.0) text += fmt::format("size {} {:.9g}\n", panel, share);
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";

@@ -1,6 +1,7 @@
 // How the mechanism is looked at and how time passes. A value: it knows no run.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,6 +22,9 @@ class Scene {
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
 
+    // The share of the window that the user gave a panel; 0: as it fits.
+    double share(const std::string& panel) const;
+
     // Each throws InputError and changes nothing where it makes no sense.
     void perform(const command::Look& command);
     void perform(const command::LookAll& command);
@@ -28,6 +32,7 @@ class Scene {
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
     void perform(const command::Lens& command);
+    void perform(const command::Size& command);
 
     // Another system: another world, but the same taste.
     void forget_place() { look_.reset(), lens_.reset(); }
@@ -38,6 +43,7 @@ class Scene {
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<double> lens_;
+    std::map<std::string, double> shares_;
 };
 
 // What is not as at the beginning, for the session's text.

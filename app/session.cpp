@@ -55,6 +55,7 @@ Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const 
       limits(system->mechanism.limits(trajectory, samples)),
       trail(trail_of(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
+      dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
 Session::Session(const std::string& name, const SystemDescription& first, Library library, Patience patience)
@@ -76,55 +77,14 @@ void Session::apply(const Command& command) {
             std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
             std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command);
         if (!moves_time_only) error_.clear();
-        remember(command, before);
+        history_.remember(command, before);
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
 }
 
-namespace {
-
-template <class... Kinds>
-bool is_one_of(const Command& command) {
-    return (std::holds_alternative<Kinds>(command) || ...);
-}
-
-// Commands that undo takes back. More of the same kind and for the same thing, as a dragged slider gives, are one
-// change.
-bool is_change(const Command& command) {
-    return is_one_of<command::Open, command::New, command::Text, command::Start, command::Set, command::End,
-                     command::Tolerance, command::Eps, command::UseConditions, command::UseReinitialization,
-                     command::Grid, command::PlotView, command::Zoom, command::Fit, command::AxisScale,
-                     command::ShowCurve>(command);
-}
-
-bool goes_on(const Command& last, const Command& next) {
-    if (last.index() != next.index()) return false;
-    if (const auto* set = std::get_if<command::Set>(&next)) return std::get<command::Set>(last).name == set->name;
-    if (const auto* zoom = std::get_if<command::Zoom>(&next)) return std::get<command::Zoom>(last).plot == zoom->plot;
-    return is_one_of<command::Start, command::End, command::Tolerance, command::Eps>(next);
-}
-
-}  // namespace
-
-void Session::remember(const Command& command, const Moment& before) {
-    constexpr std::size_t most = 200;
-    if (!is_change(command)) {
-        // Something else was done in between: the next change is one of its own. (Seeking is part of dragging.)
-        if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
-        return;
-    }
-    if (!changed_by_ || !goes_on(*changed_by_, command)) undone_to_.push_back(before);
-    if (undone_to_.size() > most) undone_to_.erase(undone_to_.begin());
-    redone_to_.clear();
-    changed_by_ = command;
-}
-
-void Session::go_back(std::vector<Moment>& from, std::vector<Moment>& to) {
-    to.push_back(moment());
-    Moment back = std::move(from.back());
-    from.pop_back();
-    changed_by_.reset();
+// As it was at another moment.
+void Session::restore(Moment back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
     if (back.system != system_) return change_system(back.system, back.plots, back.run);
@@ -133,13 +93,22 @@ void Session::go_back(std::vector<Moment>& from, std::vector<Moment>& to) {
 }
 
 void Session::perform(const command::Undo&) {
-    if (undone_to_.empty()) throw refusal("there is nothing to undo");
-    go_back(undone_to_, redone_to_);
+    if (!can_undo()) throw refusal("there is nothing to undo");
+    restore(history_.undo(moment()));
 }
 
 void Session::perform(const command::Redo&) {
-    if (redone_to_.empty()) throw refusal("there is nothing to do again");
-    go_back(redone_to_, undone_to_);
+    if (!can_redo()) throw refusal("there is nothing to do again");
+    restore(history_.redo(moment()));
+}
+
+void Session::perform(const command::Reset&) { rerun(system_->model->default_run()); }
+
+void Session::perform(const command::UseTheme& command) {
+    theme_ = command.dark ? dark_theme() : light_theme();
+    pinned_revision_ = -1;
+    compose_plots();
+    compose_pinned();
 }
 
 void Session::perform(const command::Pin& command) {
@@ -384,8 +353,9 @@ void Session::perform(const Other& command) {
 }
 
 void Session::compose_plots() {
-    if (motion_->revision == plots_.revision()) return;
+    if (motion_->revision == plots_.revision() && motion_->dark == theme_.dark) return;
     motion_->revision = plots_.revision();
+    motion_->dark = theme_.dark;
     motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
     compose_pinned();
 }
@@ -413,6 +383,7 @@ std::string to_text(const Session& session) {
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
     text += to_text(session.plotted()) + to_text(session.scene());
+    if (session.theme().dark) text += "theme dark\n";
     if (!session.error().empty()) text += "error " + session.error() + "\n";
     if (session.document().is_changed()) text += "the text is not saved\n";
     for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());

@@ -13,6 +13,7 @@
 #include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
+#include "history.hpp"
 #include "plots.hpp"
 #include "scene.hpp"
 #include "simulate/simulate.hpp"
@@ -71,8 +72,8 @@ class Session {
     const std::vector<Panel>& pinned_plots() const { return pinned_plots_; }
     // The pinned mechanism at the present time, of the same system; nothing otherwise.
     std::optional<Sample> pinned_now() const;
-    bool can_undo() const { return !undone_to_.empty(); }
-    bool can_redo() const { return !redone_to_.empty(); }
+    bool can_undo() const { return history_.can_undo(); }
+    bool can_redo() const { return history_.can_redo(); }
 
     // Its body along the run that is shown, a point a sample.
     const Trail& trail() const { return motion_->trail; }
@@ -112,7 +113,8 @@ class Session {
         std::vector<Sample> samples;
         Drawing limits;
         Trail trail;
-        int revision = 0;  // of what is plotted
+        int revision = 0;   // of what is plotted
+        bool dark = false;  // in which theme
         std::vector<Panel> plots;
     };
 
@@ -135,6 +137,8 @@ class Session {
     void perform(const command::Redo& command);
     void perform(const command::Pin& command);
     void perform(const command::Step& command);
+    void perform(const command::Reset& command);
+    void perform(const command::UseTheme& command);
     // Everything else is about how the run is looked at.
     template <class Other>
     void perform(const Other& command);
@@ -146,8 +150,7 @@ class Session {
         Run run;
     };
     Moment moment() const { return {document_, system_, plots_, asked_}; }
-    void remember(const Command& command, const Moment& before);
-    void go_back(std::vector<Moment>& from, std::vector<Moment>& to);
+    void restore(Moment back);
     void compose_pinned();
     void begin_document(Document document);
     void read_document();
@@ -174,8 +177,7 @@ class Session {
     bool playing_ = false;
     int selected_ = 0;
     std::string error_;
-    std::vector<Moment> undone_to_, redone_to_;
-    std::optional<Command> changed_by_;  // the last change, which more of its kind go on with
+    History<Moment> history_;
     std::shared_ptr<Motion> pinned_;
     std::vector<Panel> pinned_plots_;
     int pinned_revision_ = -1;

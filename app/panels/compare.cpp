@@ -22,15 +22,20 @@ std::vector<double> zeno_times(const Trajectory& trajectory) {
 
 void row(const std::string& name, const std::string& pinned, const std::string& present, const std::string& change,
          bool is_head = false) {
+    constexpr float column = 130.0F, first = 110.0F;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float size = ImGui::GetFontSize();
+    const float room = ImGui::GetContentRegionAvail().x, size = ImGui::GetFontSize();
+    const float step = std::min(1.0F, room / units(first + 3.0F * column));
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Color color = is_head ? faint_color() : text_color();
-    paint_label(list, at.x, at.y, name, faint_color(), size);
-    paint_label(list, at.x + units(110.0F), at.y, pinned, color, size);
-    paint_label(list, at.x + units(240.0F), at.y, present, color, size);
-    paint_label(list, at.x + units(370.0F), at.y, change, color, size);
-    ImGui::Dummy({units(470.0F), ImGui::GetTextLineHeight()});
+    float x = 0.0F, width = step * units(first);
+    for (const std::string* text : {&name, &pinned, &present, &change}) {
+        paint_label(list, at.x + x, at.y, fitted(*text, width - units(6.0F)), text == &name ? faint_color() : color,
+                    size);
+        x += width;
+        width = step * units(column);
+    }
+    ImGui::Dummy({std::min(room, x), ImGui::GetTextLineHeight()});
 }
 
 void row(const std::string& name, double pinned, double present) {

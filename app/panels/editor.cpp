@@ -52,6 +52,7 @@ void paint_line_numbers(const Page& page, int lines, const std::vector<InputErro
     const int last = std::min(lines, static_cast<int>((page.all.y + page.all.height - page.top) / page.line) + 1);
     const float right = page.text.x - units(gutter_padding);
     for (int number = first; number <= last; ++number) {
+        if (page.y(number) + page.line > page.all.y + page.all.height + 1.0F) continue;  // half a line has no number
         const bool is_wrong = std::any_of(problems.begin(), problems.end(),
                                           [number](const InputError& problem) { return problem.at.line == number; });
         const std::string text = std::to_string(number);

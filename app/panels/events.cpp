@@ -9,6 +9,7 @@
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
+#include "panels/turns.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -70,18 +71,54 @@ std::string typeset_sentence(const Certificate& certificate) {
     return text;
 }
 
-std::vector<Row> rows(const Session& session, bool impacts, float width) {
-    std::vector<Row> result;
-    const auto& events = session.trajectory().events;
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        if (events[i].kind == Event::Kind::impact && !impacts) continue;
-        result.push_back({i, ""});
-        if (!events[i].certificate || has_card(session)) continue;
-        for (std::string& line : wrapped(typeset_sentence(*events[i].certificate), width))
-            result.push_back({i, std::move(line)});
+// The lines of the list: every event, or only those that are no impacts, each certificate in as many lines as it needs.
+// A run may have a hundred thousand impacts: only what is seen is made.
+class Rows {
+ public:
+    Rows(const Session& session, bool impacts, float width) : impacts_(impacts) {
+        turns_ = turns(session.trajectory());
+        const auto& events = session.trajectory().events;
+        count_ = impacts ? events.size() : turns_.size();
+        for (std::size_t i = 0; i < turns_.size(); ++i) {
+            const Event& event = events[turns_[i]];
+            if (!event.certificate || has_card(session)) continue;
+            const std::size_t row = impacts ? turns_[i] : i;
+            notes_.push_back({row + added_, wrapped(typeset_sentence(*event.certificate), width)});
+            added_ += notes_.back().lines.size();
+        }
     }
-    return result;
-}
+    std::size_t size() const { return count_ + added_; }
+    Row at(std::size_t index) const {
+        std::size_t before = 0;  // lines of certificates above
+        for (const Note& note : notes_) {
+            if (index <= note.row) break;
+            const std::size_t line = index - note.row - 1;
+            if (line < note.lines.size()) return {event_of(note.row - before), note.lines[line]};
+            before += note.lines.size();
+        }
+        return {event_of(index - before), ""};
+    }
+    // The first row of this event, or of the next one that has a row.
+    std::size_t row_of(std::size_t event) const {
+        const auto turn = std::lower_bound(turns_.begin(), turns_.end(), event);
+        std::size_t row = impacts_ ? event : static_cast<std::size_t>(turn - turns_.begin());
+        for (const Note& note : notes_)
+            if (note.row < row) row += note.lines.size();
+        return row;
+    }
+
+ private:
+    struct Note {
+        std::size_t row;  // of its event
+        std::vector<std::string> lines;
+    };
+    std::size_t event_of(std::size_t plain_row) const { return impacts_ ? plain_row : turns_[plain_row]; }
+
+    bool impacts_;
+    std::vector<std::size_t> turns_;
+    std::vector<Note> notes_;
+    std::size_t count_ = 0, added_ = 0;
+};
 
 // The last event that the present has reached, or none.
 int reached(const Session& session) {
@@ -167,6 +204,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     cell(number_at, std::to_string(index + 1), faint_color());
     cell(kind_at, markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
+    if (has_card(session)) return;
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
     paint_label(list, std::floor(at.x + units(state_at)), at.y,
                 state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
@@ -187,17 +225,17 @@ void show_row(const Session& session, const Row& row, int index, bool is_reached
     if (is_event)
         paint_event(session, row.event, at);
     else
-        ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(faint_color()),
+        ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y},
+                                            packed(is_selected ? text_color() : faint_color()),
                                             row.certificate.c_str());
 }
 
 // Scrolls so that the row is seen, once whenever another row is the one to see.
-void follow(const std::vector<Row>& all, int event, PanelState& state) {
+void follow(const Rows& all, int event, PanelState& state) {
     if (event == state.followed) return;
     state.followed = event;
-    const auto row =
-        std::find_if(all.begin(), all.end(), [&](const Row& r) { return static_cast<int>(r.event) >= event; });
-    const float y = static_cast<float>(row - all.begin()) * ImGui::GetTextLineHeightWithSpacing();
+    const float y =
+        static_cast<float>(all.row_of(static_cast<std::size_t>(event))) * ImGui::GetTextLineHeightWithSpacing();
     const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
     // By whole lines: none is cut at the top.
     if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
@@ -218,15 +256,15 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     const float list_width = has_card(session) ? units(speed_at) : 0.0F;
     ImGui::BeginChild("list", {list_width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
     const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
-    const std::vector<Row> all = rows(session, state.show_impacts, width);
+    const Rows all(session, state.show_impacts, width);
     const int present = reached(session);
-    if (all.empty()) ImGui::TextDisabled("  nothing happens in this run");
+    if (all.size() == 0) ImGui::TextDisabled("  nothing happens in this run");
     follow(all, session.selected() > 0 ? session.selected() - 1 : std::max(present, 0), state);
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const Row& row = all[static_cast<std::size_t>(i)];
+            const Row row = all.at(static_cast<std::size_t>(i));
             show_row(session, row, i, static_cast<int>(row.event) == present, state, commands);
         }
     ImGui::EndChild();

@@ -1,8 +1,11 @@
 // The frame: what stands where.
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "panels/arrangement.hpp"
 #include "panels/widgets.hpp"
+#include "surface/interface.hpp"
 
 namespace achilles {
 
@@ -16,50 +19,63 @@ constexpr ImGuiWindowFlags still_window =
 
 constexpr float card_padding = 10.0F;
 
-// A window that fills its part of the surface.
+// A window that fills its part of the surface, if it has one.
 template <class Content>
 void part(const char* name, const Rectangle& area, ImGuiWindowFlags flags, const Content& content) {
+    if (area.width < 1.0F || area.height < 1.0F) return;
     ImGui::SetNextWindowPos({area.x, area.y});
-    ImGui::SetNextWindowSize({std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
+    ImGui::SetNextWindowSize({area.width, area.height});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-    if (ImGui::Begin(name, nullptr, flags)) content();
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0F, 1.0F});
+    const bool is_seen = ImGui::Begin(name, nullptr, flags);
+    ImGui::PopStyleVar(3);  // menus and lists that open from here have their own
+    if (is_seen) content();
     ImGui::End();
-    ImGui::PopStyleVar();
 }
-
-struct Parts {
-    Rectangle controls, mechanism, timeline, plots, events, status, error;
-};
 
 float card_height(const std::string& message, float width) {
-    const float inside = width - 2.0F * (ImGui::GetStyle().WindowPadding.x + units(card_padding));
-    return ImGui::GetStyle().WindowPadding.y + 2.0F * units(card_padding) + message_height(message, inside);
+    if (message.empty()) return 0.0F;
+    return 2.0F * units(card_padding) + message_height(message, width - 2.0F * units(card_padding));
 }
 
-// Everything from the size of the surface and of the text. The centre and the plots share what the controls leave; the
-// events get what they need to be read, or more where there is room.
-Parts lay_out(const Session& session, const std::string& message) {
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const float padding = ImGui::GetStyle().WindowPadding.y;
-    const float status = ImGui::GetFrameHeight() + units(8.0F);
-    const bool wide = session.shows_editor();  // a text needs room for its lines
-    const float left = wide ? std::floor(std::min(std::max(0.36F * size.x, units(420.0F)), 0.6F * size.x))
-                            : std::floor(std::clamp(0.2F * size.x, units(288.0F), units(340.0F)));
-    const float events = std::floor(std::max(units(180.0F), 0.27F * size.y));
-    const float width = size.x - left, height = size.y - status - events;
-    const float centre = std::floor(0.46F * width);
-    const float timeline = timeline_height() + 2.0F * padding;
-    Parts parts;
-    // Beside a text the events would be too narrow for what a certificate says: they stand below it.
-    parts.controls = {0.0F, 0.0F, left, wide ? height : size.y - status};
-    const float error = message.empty() ? 0.0F : card_height(message, centre);
-    parts.error = {left, 0.0F, centre, error};
-    parts.mechanism = {left, error, centre, height - timeline - error};
-    parts.timeline = {left, height - timeline, centre, timeline};
-    parts.plots = {left + centre, 0.0F, width - centre, height};
-    parts.events = wide ? Rectangle{0.0F, height, size.x, events} : Rectangle{left, height, width, events};
-    parts.status = {0.0F, size.y - status, size.x, status};
-    return parts;
+Arrangement arrange(const Session& session, const std::string& message) {
+    Measures measures;
+    measures.width = ImGui::GetIO().DisplaySize.x;
+    measures.height = ImGui::GetIO().DisplaySize.y;
+    measures.unit = units(1.0F);
+    measures.bar = ImGui::GetFrameHeight() + units(12.0F);
+    measures.status = ImGui::GetFrameHeight() + units(6.0F);
+    measures.timeline = timeline_height();
+    measures.error = [&](float width) { return card_height(message, width); };
+    return achilles::arrange(session.scene(), measures);
+}
+
+// The gap beside a panel: dragged it resizes the panel, a double click gives it the size that fits.
+void show_splitter(const Arrangement::Splitter& splitter, PanelState& state, Commands& commands) {
+    const ImVec2 size{splitter.area.width, splitter.area.height};
+    ImGui::InvisibleButton("splitter", size);
+    remember(state, "splitter " + splitter.panel);
+    const bool is_held = ImGui::IsItemActive();
+    if (!is_held && !ImGui::IsItemHovered()) return;
+    ImGui::SetMouseCursor(splitter.moves_sideways ? ImGuiMouseCursor_ResizeEW : ImGuiMouseCursor_ResizeNS);
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const float half = units(1.0F);
+    const ImVec2 middle{low.x + 0.5F * size.x, low.y + 0.5F * size.y};
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 color = packed(current_theme().accent, is_held ? 1.0F : 0.6F);
+    if (splitter.moves_sideways)
+        list->AddRectFilled({middle.x - half, low.y}, {middle.x + half, low.y + size.y}, color, half);
+    else
+        list->AddRectFilled({low.x, middle.y - half}, {low.x + size.x, middle.y + half}, color, half);
+    if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+        commands.emplace_back(command::Size{splitter.panel, 0.0});
+        return;
+    }
+    const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
+    if (!is_held || (splitter.moves_sideways ? delta.x : delta.y) == 0.0F) return;
+    const double share = std::clamp(splitter.share_at(mouse.x, mouse.y), 0.01, 0.99);
+    commands.emplace_back(command::Size{splitter.panel, std::round(share * 1e4) / 1e4});
 }
 
 // What the last command was refused for; without the editor also why its text is no system.
@@ -70,8 +86,7 @@ std::string card_text(const Session& session) {
 }
 
 void show_card(const std::string& message) {
-    Rectangle area = remaining();
-    area.height += ImGui::GetStyle().WindowPadding.y;
+    const Rectangle area = remaining();
     paint_error_card(area);
     ImGui::SetCursorScreenPos({area.x + units(card_padding), area.y + units(card_padding)});
     ImGui::BeginGroup();
@@ -92,24 +107,29 @@ void use_keys(const Session& session, Commands& commands) {
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
+    use_theme(session.theme().dark);
     const std::string message = card_text(session);
-    const Parts parts = lay_out(session, message);
+    const Arrangement parts = arrange(session, message);
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
+    part("bar", parts.bar, still_window | ImGuiWindowFlags_MenuBar, [&] { show_bar(session, state, commands); });
+    ImGui::PopStyleVar();
     part("controls", parts.controls, session.shows_editor() ? still_window : fixed_window, [&] {
         show_system(session, state, commands);
         if (session.shows_editor())
             show_editor(session, state, commands);
         else
             show_controls(session, state, commands);
-        show_dialogs(session, state, commands);
     });
-    if (parts.error.height > 0.0F) {
-        part("error", parts.error, still_window, [&] { show_card(message); });
-    }
+    show_dialogs(session, state, commands);
+    part("error", parts.error, still_window, [&] { show_card(message); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
     part("plots", parts.plots, still_window, [&] { show_plots(session, state, commands); });
     part("events", parts.events, still_window, [&] { show_events(session, state, commands); });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
+    for (const Arrangement::Splitter& splitter : parts.splitters)
+        part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
+             [&] { show_splitter(splitter, state, commands); });
     use_keys(session, commands);
     return commands;
 }

@@ -18,7 +18,8 @@ namespace {
 // The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
 // the height it took.
 float show_state(const Session& session, ImVec2 at, float width) {
-    constexpr float first = 130.0F, column = 130.0F;
+    const bool narrow = width < units(390.0F);
+    const float first = narrow ? 104.0F : 130.0F, column = narrow ? 112.0F : 130.0F;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
     const Phase::Kind phase = session.now().phase;
@@ -94,11 +95,8 @@ struct Picture {
 Picture paint_picture(const Session& session, const Rectangle& area) {
     Drawing drawing =
         session.mechanism().draw(session.now().state, session.run().parameters, world(session, area), session.theme());
-    if (session.scene().shows("trail")) {
-        const std::vector<Shape> shapes =
-            trail_until(session.trail(), session.samples(), session.time(), session.theme());
-        drawing.shapes.insert(drawing.shapes.begin(), shapes.begin(), shapes.end());
-    }
+    if (session.scene().shows("trail"))
+        add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
     // Behind everything the pinned run at the same instant.
     if (const auto then = session.pinned_now()) {
         const Drawing ghost =

@@ -105,7 +105,7 @@ void show_message(const std::string& message, float width) {
 void paint_error_card(const Rectangle& area) {
     const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
     ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled(low, high, IM_COL32(253, 236, 234, 255), units(4.0F));
+    list->AddRectFilled(low, high, packed(current_theme().error_card), units(4.0F));
     list->AddRect(low, high, packed(error_color(), 0.35F), units(4.0F));
 }
 

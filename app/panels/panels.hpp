@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "paint/paint.hpp"
@@ -41,6 +42,14 @@ struct PlotMenu {
     std::string x, y;
 };
 
+// A value that is typed in place of its slider.
+struct TypedValue {
+    std::string id;  // of the slider; empty: none
+    std::string text, as_it_was;
+    bool is_new = false;
+    std::pair<std::string, double> before;  // the slider that was pressed last, and its value then
+};
+
 // A box that is being drawn in a plot.
 struct PlotBox {
     int plot = -1;
@@ -53,6 +62,7 @@ struct PanelState {
     bool in_window = false;            // a window may show how long the run took; a picture must not
     bool show_impacts = true;          // in the event list
     EditorState editor;
+    TypedValue typed;
     PlotMenu plot_menu;
     PlotBox box;
     enum class Hand { free, body, arrow, world } hand = Hand::free;  // what it holds in the mechanism
@@ -66,6 +76,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Its parts, each inside a window of its own that the explorer has begun.
 using Commands = std::vector<Command>;
+void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);

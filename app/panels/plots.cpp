@@ -3,6 +3,7 @@
 // a plot over time goes there.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
@@ -241,14 +242,11 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
 // hold both.
 Panel with_pinned(const Session& session, std::size_t plot) {
     Panel panel = session.plots()[plot];
-    if (plot >= session.pinned_plots().size()) return panel;
     const Panel& pinned = session.pinned_plots()[plot];
     std::vector<Curve> behind = pinned.curves;
     for (Curve& curve : behind) {
         curve.label.clear();
-        curve.stroke.color = session.theme().surface;
-        curve.stroke.color.a = 140;
-        curve.stroke.width = 1.2;
+        curve.stroke = pinned_stroke(session.theme(), curve.stroke);
     }
     panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
     const Framing& framing = session.plotted().list()[plot].framing;
@@ -266,7 +264,9 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
     const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
                           cell.y + cell.height - edge - row.y - head};
     if (inner.width < 2.0F || inner.height < 2.0F) return;
-    const Panel panel = with_pinned(session, plot);
+    std::optional<Panel> compared;
+    if (plot < session.pinned_plots().size()) compared = with_pinned(session, plot);
+    const Panel& panel = compared ? *compared : session.plots()[plot];
     const Rectangle area = paint(panel, style_of(session.theme()), list, inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "paint/marker.hpp"
@@ -10,6 +11,8 @@
 namespace achilles {
 
 namespace {
+
+constexpr float edge = 10.0F;  // left and right, as beside the panels
 
 // A coloured sign and what it stands for, on the current line.
 void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
@@ -32,8 +35,8 @@ void show_legend(const Session& session) {
     for (const Event::Kind kind : events)
         width += ImGui::CalcTextSize(event_markers(session.theme(), kind).label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
-    if (ImGui::GetContentRegionAvail().x < width) return ImGui::NewLine();
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - width + gap);
+    if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - units(edge) - width + gap);
     for (const Phase::Kind kind : phases) {
         legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
             list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
@@ -76,7 +79,7 @@ void show_status(const Session& session, const PanelState& state) {
     const ImVec2 corner = ImGui::GetWindowPos();
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
                                         ImGui::GetColorU32(ImGuiCol_Border));
-    ImGui::SetCursorPosY(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()));
+    ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
     if (const Watch* watch = session.under_way()) return show_progress(session.run(), *watch);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =

@@ -6,6 +6,7 @@
 
 #include "figure/ticks.hpp"
 #include "paint/marker.hpp"
+#include "panels/turns.hpp"
 #include "panels/widgets.hpp"
 #include "surface/frame.hpp"
 
@@ -38,18 +39,21 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
     const float top = track.top + units(marks);
     const double scale = units(1.0F);
     const ImU32 ink = packed(phase_color(session.theme(), Phase::Kind::hybrid));
-    float last = -10.0F;
-    for (const Event& event : session.trajectory().events) {
-        // Impacts closer than a pixel are one tick.
-        const float x = std::floor(track.x(event.t)) + 0.5F;
-        if (event.kind != Event::Kind::impact || x == last) continue;
+    // Impacts closer than a pixel are one tick, however many they are: from one pixel on to the next.
+    const auto& events = session.trajectory().events;
+    for (auto event = events.begin(); event != events.end();) {
+        if (event->kind != Event::Kind::impact) {
+            ++event;
+            continue;
+        }
+        const float pixel = std::floor(track.x(event->t)), x = pixel + 0.5F;
         list->AddLine({x, top - units(7.0F)}, {x, top - units(1.0F)}, ink, std::max(1.0F, std::floor(units(1.0F))));
-        last = x;
+        event = std::partition_point(event, events.end(),
+                                     [&](const Event& e) { return std::floor(track.x(e.t)) <= pixel; });
     }
-    for (const Event& event : session.trajectory().events) {
-        if (event.kind == Event::Kind::impact) continue;
-        paint_marker(list, event_markers(session.theme(), event.kind), {track.x(event.t), top - units(8.0F)}, scale);
-    }
+    for (const std::size_t turn : turns(session.trajectory()))
+        paint_marker(list, event_markers(session.theme(), events[turn].kind),
+                     {track.x(events[turn].t), top - units(8.0F)}, scale);
 }
 
 void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
@@ -118,7 +122,10 @@ bool step_button(const char* name, float side, const char* about, PanelState& st
 // How fast time passes: 1/1000 to 10, logarithmic.
 void speed_slider(const Session& session, PanelState& state, Commands& commands) {
     auto speed = static_cast<float>(session.scene().speed());
-    ImGui::SetNextItemWidth(units(84.0F));
+    // The number that follows needs some room, too.
+    const float room = ImGui::GetContentRegionAvail().x - units(56.0F);
+    if (room < units(24.0F)) return ImGui::NewLine();
+    ImGui::SetNextItemWidth(std::min(units(84.0F), room));
     const auto low = static_cast<float>(command::slowest), high = static_cast<float>(command::fastest);
     if (ImGui::SliderFloat("##speed", &speed, low, high, "",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
@@ -137,10 +144,13 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
     ImGui::TextUnformatted(text.c_str());
 }
 
-// At the right end of the line.
+// At the right end of the line, where it has room there.
 void loop_box(const Session& session, PanelState& state, Commands& commands) {
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("loop").x;
-    ImGui::SameLine(std::max(ImGui::GetContentRegionMax().x - width - units(4.0F), units(160.0F)));
+    ImGui::SameLine();
+    const float left = ImGui::GetContentRegionMax().x - width - units(4.0F);
+    if (left < ImGui::GetCursorPosX()) return ImGui::NewLine();
+    ImGui::SetCursorPosX(left);
     bool loops = session.scene().loops();
     if (ImGui::Checkbox("loop", &loops)) commands.emplace_back(command::Loop{loops});
     remember(state, "loop");

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "paint/label.hpp"
+#include "surface/interface.hpp"
 
 namespace achilles {
 
@@ -15,19 +16,9 @@ ImU32 packed(const Color& color, float alpha) {
     return IM_COL32(color.r, color.g, color.b, static_cast<int>(static_cast<float>(color.a) * alpha + 0.5F));
 }
 
-namespace {
-
-Color style_color(int index) {
-    const ImVec4& c = ImGui::GetStyle().Colors[index];
-    const auto byte = [](float x) { return static_cast<std::uint8_t>(x * 255.0F + 0.5F); };
-    return {byte(c.x), byte(c.y), byte(c.z), byte(c.w)};
-}
-
-}  // namespace
-
-Color text_color() { return style_color(ImGuiCol_Text); }
-Color faint_color() { return style_color(ImGuiCol_TextDisabled); }
-Color error_color() { return {178, 34, 34, 255}; }
+Color text_color() { return current_theme().ink; }
+Color faint_color() { return current_theme().faint; }
+Color error_color() { return current_theme().error; }
 
 std::string fitted(const std::string& text, float width) {
     const float size = ImGui::GetFontSize();
@@ -48,14 +39,14 @@ void label(const std::string& text, float width) {
                 fitted(text, width - units(4.0F)), text_color(), ImGui::GetFontSize());
 }
 
-void section(const char* title) {
+void section(const char* title, float free) {
     ImGui::Dummy({0.0F, units(4.0F)});
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(title);
     ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float y = std::floor(0.5F * (low.y + high.y) + units(1.0F));
-    const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x;
+    const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x - free;
     ImGui::GetWindowDrawList()->AddLine({high.x + units(8.0F), y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Border));
 }
 

@@ -22,8 +22,8 @@ Color error_color();
 std::string fitted(const std::string& text, float width);
 // A label with dots over its letters, on the current line, `width` wide however long it is.
 void label(const std::string& text, float width);
-// A quiet heading over a group of widgets.
-void section(const char* title);
+// A quiet heading over a group of widgets; so much at its right end stays free.
+void section(const char* title, float free = 0.0F);
 // A tooltip for the last item, wrapped.
 void tooltip(const std::string& text);
 // What is left to draw on in the current window.

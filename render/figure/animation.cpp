@@ -121,26 +121,6 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     panel.markers.push_back(dot);
 }
 
-// The way in flight is behind the mechanism; that in contact lies on a surface, which must not hide it. The body, if it
-// has a disc, is in front of both.
-void Animation::add_trail(std::vector<Shape>& shapes, const Sample& now) const {
-    const auto body = [&] {
-        auto grip = mechanism_.grip(trajectory_.run.parameters);
-        if (!grip) return shapes.end();
-        const Point at = grip->at(now.state).at;
-        return std::find_if(shapes.begin(), shapes.end(), [&](const Shape& shape) {
-            return shape.kind == Shape::Kind::disc && shape.points[0].x == at.x && shape.points[0].y == at.y;
-        });
-    }();
-    if (body != shapes.end()) std::rotate(body, body + 1, shapes.end());
-    const auto front = shapes.size() - (body != shapes.end() ? 1 : 0);
-    std::vector<Shape> behind, before;
-    for (Shape& shape : trail_until(trail_, samples_, now.t, light_theme()))
-        (shape.stroke.dash.empty() ? before : behind).push_back(std::move(shape));
-    shapes.insert(shapes.begin() + static_cast<std::ptrdiff_t>(front), before.begin(), before.end());
-    shapes.insert(shapes.begin(), behind.begin(), behind.end());
-}
-
 Still Animation::at(double t) {
     const Sample now = sampler_.at(t);
     const Theme theme = light_theme();
@@ -149,7 +129,7 @@ Still Animation::at(double t) {
     still.areas = areas_;
     const double scale = still.scale = still_scale(size_);
     still.world = mechanism_.draw(now.state, trajectory_.run.parameters, limits_, theme);
-    add_trail(still.world.shapes, now);
+    add_trail(still.world.shapes, trail_, samples_, now.t, theme);
     still.plots = figure_;
     for (std::size_t i = 0; i < views_.size(); ++i) add_present(still.plots.panels[i], views_[i], now);
 

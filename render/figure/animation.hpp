@@ -48,7 +48,6 @@ class Animation {
     Still at(double t);
 
  private:
-    void add_trail(std::vector<Shape>& shapes, const Sample& now) const;
     void add_present(Panel& panel, const PreparedView& view, const Sample& now) const;
 
     const Trajectory& trajectory_;

@@ -123,20 +123,23 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
     return trail;
 }
 
-std::vector<Shape> trail_until(const Trail& trail, std::span<const Sample> samples, double t, const Theme& theme) {
-    constexpr std::uint8_t faint = 150;
-    std::vector<Shape> shapes;
+void add_trail(std::vector<Shape>& shapes, const Trail& trail, std::span<const Sample> samples, double t,
+               const Theme& theme) {
+    std::vector<Shape> way;
     for (std::size_t i = 0; i < trail.points.size() && samples[i].t <= t; ++i) {
         const Phase::Kind phase = samples[i].phase;
         if (i == 0 || phase != samples[i - 1].phase) {
-            Shape& shape = shapes.emplace_back();
+            Shape& shape = way.emplace_back();
             shape.stroke = phase_stroke(theme, phase, 0, 1);
-            shape.stroke.color.a = faint;
+            // In contact it lies on the line of the surface, which must not shine through.
+            shape.stroke.color.a = phase == Phase::Kind::constrained ? 255 : 150;
+            if (phase == Phase::Kind::constrained) shape.stroke.width = 3.0;
             if (i > 0) shape.points.push_back(trail.points[i - 1]);
         }
-        shapes.back().points.push_back(trail.points[i]);
+        way.back().points.push_back(trail.points[i]);
     }
-    return shapes;
+    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });
+    shapes.insert(first, way.begin(), way.end());
 }
 
 }  // namespace achilles

@@ -42,8 +42,10 @@ struct Trail {
 };
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
 
-// The way of the body until t, each phase in its colour.
-std::vector<Shape> trail_until(const Trail& trail, std::span<const Sample> samples, double t, const Theme& theme);
+// Puts the way of the body until t among a mechanism's shapes, each phase in its colour: over the world, where a motion
+// in contact would be hidden by the surface, and under what moves.
+void add_trail(std::vector<Shape>& shapes, const Trail& trail, std::span<const Sample> samples, double t,
+               const Theme& theme);
 
 // The contact force lambda g' of a sample, as a generalised force; zero in flight.
 Vector contact_force(const Trajectory& trajectory, const Sample& sample);

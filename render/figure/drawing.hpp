@@ -18,6 +18,7 @@ struct Shape {
     bool fill = false;          // disc, closed polyline
     Color fill_color;
     bool closed = false;  // polyline: the last point is joined to the first
+    bool moves = false;   // with the coordinates; else it is part of the world
 };
 
 struct Drawing {

@@ -15,8 +15,8 @@ using Kind = DrawingDescription::Shape;
 
 constexpr int curve_points = 400;
 
-Color color_of(const std::string& text, const Color& otherwise) {
-    if (text.empty()) return otherwise;
+// "#8f96a0", as the file was read.
+Color color_of(const std::string& text) {
     const auto part = [&](std::size_t at) {
         return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
     };
@@ -215,13 +215,15 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
     };
     for (const Item& item : items_) {
         const DrawingDescription& d = item.description;
-        const Color color = color_of(d.color, item.moves ? theme.body : theme.surface);
+        const Color own = item.moves ? theme.body : theme.surface;
+        const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
         Placed placed = place(item, run, state);
         const Shape::Kind kind = d.shape == Kind::disc   ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
         Shape& shape = add(kind, color, placed.width);
+        shape.moves = item.moves;
         shape.points = std::move(placed.points);
         shape.fill = d.fill;
         shape.closed = d.fill && d.shape == Kind::polyline;
@@ -231,6 +233,7 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
     if (plane_) {
         add(Shape::Kind::polyline, theme.surface, 2.0).points = zero_line(parameters, limits);
         Shape& disc = add(Shape::Kind::disc, theme.body, 0.0);
+        disc.moves = true;
         disc.points = {{state.q[0], state.q[1]}};
         disc.radius = 0.012 * (limits.x_high - limits.x_low + limits.y_high - limits.y_low);
         disc.fill = true;

@@ -1,6 +1,8 @@
 #include "figure/palette.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace achilles {
 
@@ -15,13 +17,76 @@ constexpr Color yellow{235, 235, 120, 255}, silver{170, 180, 180, 255}, coral{25
 }  // namespace
 
 Theme light_theme() {
-    return {
-        false, {255, 255, 255, 255}, {35, 38, 43, 255}, {228, 230, 233, 255}, {120, 126, 134, 255}, {35, 38, 43, 255}};
+    Theme theme;
+    theme.background = {255, 255, 255, 255};
+    theme.ink = theme.body = {35, 38, 43, 255};
+    theme.grid = {228, 230, 233, 255};
+    theme.surface = {120, 126, 134, 255};
+    theme.page = {244, 245, 247, 255};
+    theme.frame = {229, 231, 235, 255};
+    theme.border = {203, 207, 213, 255};
+    theme.faint = {98, 104, 112, 255};
+    theme.accent = {33, 102, 184, 255};
+    theme.selected = {223, 233, 245, 255};
+    theme.error = {178, 34, 34, 255};
+    theme.error_card = {253, 236, 234, 255};
+    return theme;
 }
 
 Theme dark_theme() {
-    return {
-        true, {24, 26, 30, 255}, {222, 225, 230, 255}, {52, 56, 63, 255}, {128, 135, 145, 255}, {222, 225, 230, 255}};
+    Theme theme;
+    theme.dark = true;
+    theme.background = {27, 29, 33, 255};
+    theme.ink = theme.body = {222, 225, 230, 255};
+    theme.grid = {50, 54, 61, 255};
+    theme.surface = {128, 135, 145, 255};
+    theme.page = {18, 19, 22, 255};
+    theme.frame = {44, 47, 54, 255};
+    theme.border = {66, 71, 80, 255};
+    theme.faint = {150, 156, 166, 255};
+    theme.accent = {92, 156, 235, 255};
+    theme.selected = {36, 48, 66, 255};
+    theme.error = {255, 138, 128, 255};
+    theme.error_card = {62, 28, 28, 255};
+    return theme;
+}
+
+namespace {
+
+// The share of light a colour gives back, 0 to 1.
+double luminance(const Color& color) {
+    const auto linear = [](std::uint8_t byte) {
+        const double x = byte / 255.0;
+        return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+    };
+    return 0.2126 * linear(color.r) + 0.7152 * linear(color.g) + 0.0722 * linear(color.b);
+}
+
+}  // namespace
+
+double contrast(const Color& a, const Color& b) {
+    const double x = luminance(a), y = luminance(b);
+    return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
+}
+
+// Towards white or black until the contrast is what it was. Grey stays grey, a hue stays that hue.
+Color on_theme(const Color& color, const Theme& theme) {
+    if (!theme.dark) return color;
+    const double wanted = contrast(color, {255, 255, 255, 255});
+    const auto mixed = [&](double share) {  // -1: black, 0: the colour, 1: white
+        const auto part = [&](std::uint8_t x) {
+            return static_cast<std::uint8_t>(std::lround(share < 0.0 ? x * (1.0 + share) : x + share * (255.0 - x)));
+        };
+        return Color{part(color.r), part(color.g), part(color.b), color.a};
+    };
+    double low = -1.0, high = 1.0;
+    for (int i = 0; i < 12; ++i) {
+        const double middle = 0.5 * (low + high);
+        const Color here = mixed(middle);
+        const bool bright = luminance(here) > luminance(theme.background);
+        (bright && contrast(here, theme.background) > wanted ? high : low) = middle;
+    }
+    return mixed(0.5 * (low + high));
 }
 
 Color phase_color(const Theme& theme, Phase::Kind kind) {
@@ -37,6 +102,10 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
     stroke.width = kind == Phase::Kind::hybrid ? 1.6 : 2.0;
     if (kind == Phase::Kind::hybrid) stroke.dash = {6.0, 3.5};
     return stroke;
+}
+
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke) {
+    return {theme.dark ? Color{112, 118, 128, 255} : Color{140, 146, 154, 255}, 1.2, stroke.dash};
 }
 
 Markers event_markers(const Theme& theme, Event::Kind kind) {

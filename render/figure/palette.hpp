@@ -9,18 +9,33 @@ namespace achilles {
 
 struct Theme {
     bool dark = false;
-    Color background, ink, grid;
-    Color surface;  // what does not move: the contact surface, a pivot
-    Color body;     // what moves
+    Color background, ink, grid;  // of a figure, or of a card in the explorer
+    Color surface;                // what does not move: the contact surface, a pivot
+    Color body;                   // what moves
+    // Of the interface around the figures.
+    Color page;               // behind the cards
+    Color frame;              // of a button or a field that does nothing yet
+    Color border;             // lines between groups, the track of a slider
+    Color faint;              // text that is less important
+    Color accent;             // what the hand can move, and what it changed
+    Color selected;           // behind the chosen line of a list
+    Color error, error_card;  // what is wrong, and behind it
 };
 
 Theme light_theme();
 Theme dark_theme();
 
+// How well one colour is seen on another, 1 to 21 (WCAG 2): text wants 4.5, curves and signs want 3.
+double contrast(const Color& a, const Color& b);
+// A colour that a file chose on white paper, as far from the theme's background as it was from white.
+Color on_theme(const Color& color, const Theme& theme);
+
 // Hybrid phases are dashed, constrained ones solid. One curve in a panel has the phase's colour; the i-th of several
 // has a hue of its own (the ninth has the first's again), and the dash still tells the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
+// Of a run that others are compared with: it stands back.
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
 // What a legend calls them.

@@ -24,41 +24,44 @@ constexpr ImWchar glyphs[] = {0x0020, 0x017F, 0x02D9, 0x02D9, 0x0300, 0x0308, 0x
 constexpr const char* proportional = "DejaVuSans.ttf";
 constexpr const char* monospaced = "DejaVuSansMono.ttf";
 
-ImVec4 gray(float level, float alpha = 1.0F) { return {level, level, level, alpha}; }
+ImVec4 mixed(const Color& color, const Color& with, float share) {
+    const auto part = [share](std::uint8_t a, std::uint8_t b) {
+        return (static_cast<float>(a) + share * (static_cast<float>(b) - static_cast<float>(a))) / 255.0F;
+    };
+    return {part(color.r, with.r), part(color.g, with.g), part(color.b, with.b), 1.0F};
+}
 
-// One accent on greys. `accent` is what the hand can move, `text` what it reads.
-void colors(ImGuiStyle& style, bool dark) {
-    if (dark)
+// One accent on the theme's greys: what the hand touches turns towards it.
+void colors(ImGuiStyle& style, const Theme& theme) {
+    if (theme.dark)
         ImGui::StyleColorsDark(&style);
     else
         ImGui::StyleColorsLight(&style);
-    const auto accent = [dark](float alpha) {
-        return dark ? ImVec4(0.36F, 0.61F, 0.92F, alpha) : ImVec4(0.13F, 0.40F, 0.72F, alpha);
-    };
+    const auto plain = [](const Color& color) { return mixed(color, color, 0.0F); };
+    const auto touched = [&theme](float share) { return mixed(theme.frame, theme.accent, share); };
     ImVec4* c = style.Colors;
-    c[ImGuiCol_Text] = gray(dark ? 0.90F : 0.12F);
-    c[ImGuiCol_TextDisabled] = gray(dark ? 0.58F : 0.45F);
-    c[ImGuiCol_WindowBg] = gray(dark ? 0.11F : 0.965F);
-    c[ImGuiCol_PopupBg] = gray(dark ? 0.14F : 1.0F);
-    c[ImGuiCol_Border] = gray(dark ? 0.27F : 0.80F);
-    c[ImGuiCol_FrameBg] = gray(dark ? 0.18F : 0.895F);
-    c[ImGuiCol_FrameBgHovered] = accent(dark ? 0.30F : 0.16F);
-    c[ImGuiCol_FrameBgActive] = accent(dark ? 0.42F : 0.26F);
-    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = gray(dark ? 0.14F : 0.90F);
-    c[ImGuiCol_TitleBgActive] = gray(dark ? 0.17F : 0.86F);
-    c[ImGuiCol_MenuBarBg] = gray(dark ? 0.14F : 0.92F);
-    c[ImGuiCol_CheckMark] = c[ImGuiCol_SliderGrab] = accent(1.0F);
-    c[ImGuiCol_SliderGrabActive] = accent(0.80F);
-    c[ImGuiCol_Button] = accent(dark ? 0.26F : 0.14F);
-    c[ImGuiCol_ButtonHovered] = accent(dark ? 0.46F : 0.30F);
-    c[ImGuiCol_ButtonActive] = accent(dark ? 0.66F : 0.48F);
-    c[ImGuiCol_Header] = accent(dark ? 0.24F : 0.14F);
-    c[ImGuiCol_HeaderHovered] = accent(dark ? 0.36F : 0.24F);
-    c[ImGuiCol_HeaderActive] = accent(dark ? 0.48F : 0.36F);
-    c[ImGuiCol_Tab] = c[ImGuiCol_TabUnfocused] = gray(dark ? 0.16F : 0.90F);
-    c[ImGuiCol_TabActive] = c[ImGuiCol_TabUnfocusedActive] = accent(dark ? 0.46F : 0.30F);
-    c[ImGuiCol_TabHovered] = accent(dark ? 0.56F : 0.40F);
-    c[ImGuiCol_TextSelectedBg] = accent(0.32F);
+    c[ImGuiCol_Text] = plain(theme.ink);
+    c[ImGuiCol_TextDisabled] = plain(theme.faint);
+    c[ImGuiCol_WindowBg] = c[ImGuiCol_MenuBarBg] = plain(theme.page);
+    c[ImGuiCol_PopupBg] = plain(theme.background);
+    c[ImGuiCol_Border] = c[ImGuiCol_Separator] = plain(theme.border);
+    c[ImGuiCol_FrameBg] = plain(theme.frame);
+    c[ImGuiCol_FrameBgHovered] = touched(0.12F);
+    c[ImGuiCol_FrameBgActive] = touched(0.24F);
+    c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgCollapsed] = c[ImGuiCol_TitleBgActive] = plain(theme.frame);
+    c[ImGuiCol_CheckMark] = c[ImGuiCol_SliderGrab] = plain(theme.accent);
+    c[ImGuiCol_SliderGrabActive] = mixed(theme.accent, theme.ink, 0.3F);
+    c[ImGuiCol_Button] = plain(theme.frame);
+    c[ImGuiCol_ButtonHovered] = touched(0.2F);
+    c[ImGuiCol_ButtonActive] = touched(0.36F);
+    c[ImGuiCol_Header] = plain(theme.selected);
+    c[ImGuiCol_HeaderHovered] = mixed(theme.selected, theme.accent, 0.08F);
+    c[ImGuiCol_HeaderActive] = mixed(theme.selected, theme.accent, 0.16F);
+    c[ImGuiCol_ScrollbarBg] = {0.0F, 0.0F, 0.0F, 0.0F};
+    c[ImGuiCol_ScrollbarGrab] = plain(theme.border);
+    c[ImGuiCol_ScrollbarGrabHovered] = mixed(theme.border, theme.ink, 0.25F);
+    c[ImGuiCol_ScrollbarGrabActive] = mixed(theme.border, theme.ink, 0.4F);
+    c[ImGuiCol_TextSelectedBg] = touched(0.34F);
 }
 
 void shape(ImGuiStyle& style) {
@@ -131,12 +134,10 @@ void Interface::restyle(double scale, bool dark) {
     const Active active(*this);
     build_fonts(scale);
     ImGuiStyle style;  // from the defaults: scaling twice would round twice
-    colors(style, dark);
     shape(style);
     style.ScaleAllSizes(static_cast<float>(scale));
     ImGui::GetStyle() = style;
-    const ImVec4& color = style.Colors[ImGuiCol_WindowBg];
-    std::copy_n(&color.x, 3, background_);
+    use_theme(dark);
 }
 
 void Interface::build_fonts(double scale) {
@@ -168,8 +169,18 @@ const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int hei
     ImGui::NewFrame();
     draw();
     ImGui::Render();
+    const ImVec4& color = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+    std::copy_n(&color.x, 3, background_);
     return *ImGui::GetDrawData();
 }
+
+void use_theme(bool dark) {
+    static Theme themes[] = {light_theme(), dark_theme()};
+    ImGui::GetIO().UserData = &themes[dark ? 1 : 0];
+    colors(ImGui::GetStyle(), themes[dark ? 1 : 0]);
+}
+
+const Theme& current_theme() { return *static_cast<const Theme*>(ImGui::GetIO().UserData); }
 
 void apply(const Input& input) {
     ImGuiIO& io = ImGui::GetIO();

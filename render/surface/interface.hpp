@@ -2,6 +2,7 @@
 // ImGui changed input and fonts; what depends on that is here and in events.cpp.
 #pragma once
 
+#include "figure/palette.hpp"
 #include "surface/frame.hpp"
 
 struct ImDrawData;
@@ -33,7 +34,7 @@ class Interface {
     void restyle(double scale, bool dark);
     // One frame of the draw function, `seconds` after the last. Must be active, like all that follows from it.
     const ImDrawData& frame(const FrameFunction& draw, int width, int height, double seconds);
-    // The colour behind everything.
+    // The colour behind everything in the last frame.
     const float (&background() const)[3] { return background_; }
 
  private:
@@ -46,6 +47,10 @@ class Interface {
 
 // Hands the user's input to ImGui's current context, before a frame.
 void apply(const Input& input);
+
+// From here on everything in the current context has this theme's colours; before a frame's first window.
+void use_theme(bool dark);
+const Theme& current_theme();
 
 // The font of the current context made for a size nearest to the one asked for: text at that size is sharp.
 ImFont* font_for(double pixels);

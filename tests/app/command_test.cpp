@@ -49,6 +49,11 @@ const std::vector<Command> one_of_each{
     command::Pin{true},
     command::Pin{false},
     command::Lens{2.5},
+    command::UseTheme{true},
+    command::UseTheme{false},
+    command::Size{"controls", 0.3},
+    command::Size{"plots", 0.0},
+    command::Reset{},
 };
 
 TEST(Command, reads_back_what_it_writes) {
@@ -62,6 +67,9 @@ TEST(Command, looks_as_the_manual_says) {
     EXPECT_EQ(to_text(command::Seek{3.2}), "seek 3.2");
     EXPECT_EQ(to_text(command::Eps{1e-6, 1e-6, 1e-6}), "eps 1e-06");
     EXPECT_EQ(to_text(command::Text{"a = \"1\"\nb\\"}), "text \"a = \\\"1\\\"\\nb\\\\\"");
+    EXPECT_EQ(to_text(command::UseTheme{true}), "theme dark");
+    EXPECT_EQ(to_text(command::Size{"events", 0.0}), "size events auto");
+    EXPECT_EQ(to_text(command::Size{"events", 0.25}), "size events 0.25");
     EXPECT_EQ(to_text(command::Save{"mine.toml", true}), "save mine.toml overwrite");
     EXPECT_EQ(parse_command("eps 1e-6"), Command(command::Eps{1e-6, 1e-6, 1e-6}));
     EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
@@ -82,6 +90,10 @@ struct Mistake {
 
 TEST(Journal, names_the_place_of_a_mistake) {
     const Mistake mistakes[] = {{"save", 5, "needs more"},
+                                {"theme blue", 7, "there is no theme 'blue'"},
+                                {"size plot 0.3", 6, "did you mean 'plots'"},
+                                {"size plots 1.5", 12, "cannot take 1.5 of the window"},
+                                {"size plots wide", 12, "not a finite number"},
                                 {"save a b", 8, "save FILE overwrite"},
                                 {"show contrls", 6, "did you mean 'controls'"},
                                 {"text a b", 8, "'b' is too much"},

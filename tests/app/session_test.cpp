@@ -2,6 +2,7 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
+#include "panels/turns.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -239,6 +240,21 @@ TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
     session.apply(command::Save{other, true});
     EXPECT_EQ(test::content(other), session.document().text);
     EXPECT_EQ(folder.files().size(), 2U);
+}
+
+TEST(Turns, are_all_events_but_the_impacts) {
+    std::size_t found = 0;
+    for (const char* system : {"ball_on_sine", "double_pendulum", "triple_pendulum", "cart_pendulum",
+                               "ball_on_egg_crate", "impact_oscillator", "falling_rod", "bead_in_ring"}) {
+        const Session session = test::session(system);
+        std::vector<std::size_t> expected;
+        const auto& events = session.trajectory().events;
+        for (std::size_t i = 0; i < events.size(); ++i)
+            if (events[i].kind != Event::Kind::impact) expected.push_back(i);
+        EXPECT_EQ(turns(session.trajectory()), expected) << system;
+        found += expected.size();
+    }
+    EXPECT_GT(found, 20U);
 }
 
 TEST(Session, knows_where_the_present_stands_in_a_plot) {

@@ -2,12 +2,14 @@
 #include "worker.hpp"
 
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 #include <atomic>
 #include <memory>
 #include <stdexcept>
 
 #include "app/open.hpp"
+#include "surface/interface.hpp"
 
 namespace achilles {
 namespace {
@@ -144,6 +146,28 @@ TEST(LiveSession, shows_the_start_of_another_system_until_its_run_is_there) {
         session.update();
     }
     EXPECT_EQ(to_text(session), to_text(test::session("double_pendulum")));
+}
+
+// The window's own loop: frames are built while the run is made, each of them whole, and then the run is there.
+TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
+    Interface interface(test::surface());
+    const Interface::Active active(interface);
+    Session session = test::session("ball_on_floor");
+    session.set_patience(0.0);
+    session.apply(command::Set{"e", 1.0});
+    session.apply(command::End{100000.0});
+    PanelState panels = test::panels();
+    int frames = 0;
+    for (bool is_done = false; !is_done && frames < 20000; ++frames) {
+        is_done = session.under_way() == nullptr;
+        apply(Input{});
+        const ImDrawData& data = interface.frame([&] { explorer(session, panels); }, 1280, 800, 1.0 / 60.0);
+        EXPECT_GT(data.TotalVtxCount, 1000);
+        session.update();
+    }
+    EXPECT_GT(frames, 2) << "the run was waited for";
+    EXPECT_EQ(session.trajectory().outcome.kind, Outcome::Kind::end_time);
+    EXPECT_GE(session.trajectory().statistics.impacts, 100000);
 }
 
 TEST(LiveSession, closes_in_the_middle_of_a_run) {

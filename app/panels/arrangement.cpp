@@ -1,0 +1,87 @@
+#include "panels/arrangement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+// Lengths at scale 1. Below these widths and heights a panel cannot be read.
+constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
+                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F;
+
+// What the user asked for, or what fits; whole pixels, at least `least`, and where there is room for both also at most
+// `most`.
+float size_of(double share, float whole, float fitting, float least, float most) {
+    const float wanted = share > 0.0 ? static_cast<float>(share) * whole : fitting;
+    return std::floor(std::max(0.0F, std::min(std::max(wanted, least), std::max(most, 0.0F))));
+}
+
+}  // namespace
+
+Arrangement arrange(const Scene& scene, const Measures& m) {
+    const float u = m.unit, edge = margin * u, between = gap * u;
+    const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
+    const bool has_plots = scene.shows("plots"), has_events = scene.shows("events");
+    const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
+    Arrangement parts;
+    parts.bar = {0.0F, 0.0F, m.width, m.bar};
+    parts.status = {0.0F, std::max(0.0F, m.height - m.status), m.width, m.status};
+    const float inside = std::max(0.0F, m.width - 2.0F * edge), all = bottom - top;
+
+    const std::string left_panel = editor ? "editor" : "controls";
+    const float least_left = (editor ? least_editor : least_controls) * u;
+    const float others = (least_centre + (has_plots ? least_plots : 0.0F)) * u + 2.0F * between;
+    // A text needs room for its lines.
+    const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
+                                 : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
+    const float left =
+        has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
+    const float low = has_events ? size_of(scene.share("events"), m.height, std::max(180.0F * u, 0.26F * m.height),
+                                           least_events * u, all - least_top * u)
+                                 : 0.0F;
+    const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));
+    const float x = edge + (left > 0.0F ? left + between : 0.0F), width = std::max(0.0F, m.width - edge - x);
+    const float right = has_plots ? size_of(scene.share("plots"), m.width, 0.54F * width, least_plots * u,
+                                            width - between - least_centre * u)
+                                  : 0.0F;
+    const float centre = std::max(0.0F, width - (right > 0.0F ? right + between : 0.0F));
+
+    // Beside a text the events would be too narrow for what a certificate says: they stand below it.
+    const bool events_below = editor && low > 0.0F;
+    parts.controls = {edge, top, left, events_below ? height : all};
+    const float error = std::min(m.error ? m.error(centre) : 0.0F, height);
+    const float timeline = std::min(m.timeline, height);
+    parts.error = {x, top, centre, error};
+    const float picture = top + error + (error > 0.0F ? 0.6F * between : 0.0F);
+    const float picture_height = std::max(0.0F, top + height - timeline - between - picture);
+    parts.mechanism = {x, picture, centre, picture_height};
+    parts.timeline = {x, top + height - timeline, centre, timeline};
+    parts.plots = {x + centre + between, top, right, height};
+    const float events_x = events_below ? edge : x;
+    parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
+
+    const double half = 0.5 * double{between};
+    if (left > 0.0F)
+        parts.splitters.push_back({left_panel,
+                                   {edge + left, top, between, parts.controls.height},
+                                   true,
+                                   double{edge} + half,
+                                   double{m.width}});
+    if (right > 0.0F)
+        parts.splitters.push_back({"plots",
+                                   {x + centre, top, between, height},
+                                   true,
+                                   double{m.width} - double{edge} - half,
+                                   -double{m.width}});
+    if (low > 0.0F)
+        parts.splitters.push_back({"events",
+                                   {events_x, top + height, parts.events.width, between},
+                                   false,
+                                   double{bottom} - half,
+                                   -double{m.height}});
+    return parts;
+}
+
+}  // namespace achilles

@@ -1,0 +1,159 @@
+// The line above everything: menus, and at its right end a switch for every panel and for the theme.
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "panels/widgets.hpp"
+#include "surface/frame.hpp"
+
+namespace achilles {
+
+namespace {
+
+struct Shown {
+    const char *what, *name, *keys;
+    int key;
+};
+constexpr std::array<Shown, 3> panels{
+    {{"controls", "Controls", "Ctrl+1", '1'}, {"plots", "Plots", "Ctrl+2", '2'}, {"events", "Events", "Ctrl+3", '3'}}};
+
+// A line of a menu; true when it is chosen.
+bool item(const char* name, const char* keys, PanelState& state, bool ticked = false, bool enabled = true) {
+    const bool chosen = ImGui::MenuItem(name, keys, ticked, enabled);
+    remember(state, std::string("menu ") + name);
+    return chosen;
+}
+
+template <class Content>
+void menu(const char* name, PanelState& state, const Content& content) {
+    const bool open = ImGui::BeginMenu(name);
+    remember(state, std::string("menu ") + name);
+    if (!open) return;
+    content();
+    ImGui::EndMenu();
+}
+
+void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
+    if (item("New", "Ctrl+N", state)) request(session, state, command::New{}, commands);
+    if (item("Open\u2026", "Ctrl+O", state)) ask_to_open(state);
+    if (item("Save", "Ctrl+S", state)) save_or_ask(session, state, commands);
+    if (item("Save as\u2026", nullptr, state)) ask_to_save(session, state);
+}
+
+void show_edit_menu(const Session& session, PanelState& state, Commands& commands) {
+    if (item("Undo", "Ctrl+Z", state, false, session.can_undo())) commands.emplace_back(command::Undo{});
+    if (item("Redo", "Ctrl+Shift+Z", state, false, session.can_redo())) commands.emplace_back(command::Redo{});
+    ImGui::Separator();
+    if (item("Reset all values", nullptr, state)) commands.emplace_back(command::Reset{});
+    ImGui::Separator();
+    if (item("Text of the system", "Ctrl+E", state, session.shows_editor())) toggle_editor(session, state, commands);
+}
+
+void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
+    const Scene& scene = session.scene();
+    for (const Shown& panel : panels)
+        if (item(panel.name, panel.keys, state, scene.shows(panel.what)))
+            commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
+    if (item("Sizes that fit", nullptr, state))
+        for (const std::string& panel : command::sized_panels)
+            if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
+    ImGui::Separator();
+    for (const auto& [what, name] :
+         {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"}, std::pair{"force", "Contact force"}})
+        if (item(name, nullptr, state, scene.shows(what)))
+            commands.emplace_back(command::Show{what, !scene.shows(what)});
+    if (item("All of the motion", nullptr, state, false, scene.look().has_value()))
+        commands.emplace_back(command::LookAll{});
+    ImGui::Separator();
+    const bool loops = scene.loops();
+    if (item("Play again at the end", nullptr, state, loops)) commands.emplace_back(command::Loop{!loops});
+    if (item("Dark theme", "Ctrl+D", state, session.theme().dark))
+        commands.emplace_back(command::UseTheme{!session.theme().dark});
+}
+
+// A picture to press, as wide as it is high. Returns where to draw it.
+bool switch_button(const std::string& name, const std::string& about, PanelState& state, Rectangle& area) {
+    const float size = ImGui::GetFrameHeight();
+    const bool pressed = ImGui::InvisibleButton(name.c_str(), {size, size});
+    remember(state, name);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (ImGui::IsItemHovered())
+        ImGui::GetWindowDrawList()->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_ButtonHovered), units(3.0F));
+    tooltip(about);
+    area = {std::floor(low.x + 0.5F * size - units(8.0F)), std::floor(low.y + 0.5F * size - units(6.5F)), units(16.0F),
+            units(13.0F)};
+    return pressed;
+}
+
+// A little window whose left, right or lower part is filled where the panel is shown.
+void panel_switch(const Session& session, const Shown& panel, PanelState& state, Commands& commands) {
+    const bool shown = session.scene().shows(panel.what);
+    Rectangle r;
+    if (switch_button(std::string("switch ") + panel.what,
+                      std::string(shown ? "hide the " : "show the ") + panel.what + " (" + panel.keys + ")", state, r))
+        commands.emplace_back(command::Show{panel.what, !shown});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 ink = packed(shown ? text_color() : faint_color());
+    list->AddRect({r.x + 0.5F, r.y + 0.5F}, {r.x + r.width - 0.5F, r.y + r.height - 0.5F}, ink, units(2.0F), 0,
+                  units(1.2F));
+    const float across = 0.38F * r.width, down = 0.4F * r.height, inset = units(2.5F);
+    ImVec2 low{r.x + inset, r.y + inset}, high{r.x + r.width - inset, r.y + r.height - inset};
+    if (panel.key == '1') high.x = r.x + across;
+    if (panel.key == '2') low.x = r.x + r.width - across;
+    if (panel.key == '3') low.y = r.y + r.height - down;
+    list->AddRectFilled(low, high, packed(shown ? text_color() : faint_color(), shown ? 1.0F : 0.35F));
+}
+
+void theme_switch(const Session& session, PanelState& state, Commands& commands) {
+    const bool dark = session.theme().dark;
+    Rectangle r;
+    if (switch_button("switch theme", dark ? "light theme (Ctrl+D)" : "dark theme (Ctrl+D)", state, r))
+        commands.emplace_back(command::UseTheme{!dark});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 c{r.x + 0.5F * r.width, r.y + 0.5F * r.height};
+    const float radius = units(6.5F);
+    const ImU32 ink = packed(text_color());
+    list->AddCircle(c, radius, ink, 32, units(1.2F));
+    list->PathArcTo(c, radius - units(0.5F), -1.5707964F, 1.5707964F, 20);
+    list->PathFillConvex(ink);
+}
+
+void use_keys(const Session& session, PanelState& state, Commands& commands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
+    for (const Shown& panel : panels)
+        if (ImGui::IsKeyPressed(panel.key, false))
+            commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
+    if (ImGui::IsKeyPressed('D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+}
+
+}  // namespace
+
+void show_bar(const Session& session, PanelState& state, Commands& commands) {
+    use_keys(session, state, commands);
+    if (!ImGui::BeginMenuBar()) return;
+    menu("File", state, [&] { show_file_menu(session, state, commands); });
+    menu("Edit", state, [&] { show_edit_menu(session, state, commands); });
+    menu("View", state, [&] { show_view_menu(session, state, commands); });
+    const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
+    const float width = 4.0F * size + 3.0F * space + edge;
+    const float left = ImGui::GetWindowWidth() - width;
+    const float title_at = ImGui::GetCursorPosX() + units(16.0F);
+    // Where no panel tells what runs, this line does.
+    if (!session.scene().shows("controls") && !session.shows_editor() && left - title_at > units(80.0F)) {
+        ImGui::SetCursorPosX(title_at);
+        label(session.description().title, left - title_at);
+        ImGui::SameLine(0.0F, 0.0F);
+    }
+    if (left < title_at) return ImGui::EndMenuBar();
+    ImGui::SetCursorPosX(left);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {space, 0.0F});
+    for (const std::size_t i : {0U, 2U, 1U}) panel_switch(session, panels[i], state, commands);
+    theme_switch(session, state, commands);
+    ImGui::PopStyleVar();
+    ImGui::EndMenuBar();
+}
+
+}  // namespace achilles

@@ -1,0 +1,26 @@
+// One value under the hand: dragged, typed after a double click, put back by a right click.
+#pragma once
+
+#include <string>
+
+#include "panels/panels.hpp"
+
+namespace achilles {
+
+struct Slider {
+    std::string label, id, unit, about;
+    double value = 0.0, low = 0.0, high = 1.0;  // in the file's units
+    double original = 0.0;                      // as the file has it
+    double factor = 1.0;                        // to the unit that is shown: 180/pi for an angle
+    int digits = 4;                             // that a dragged value keeps
+};
+
+// Widths of a row's columns at scale 1: what it is, its value. The slider has the rest.
+constexpr float label_width = 78.0F, value_width = 84.0F;
+
+// The sign beside the name of a row whose value is not the file's.
+void mark_changed();
+// Shows a row; true where the hand has changed the value, which then is in `value`.
+bool moved(Slider& slider, PanelState& state);
+
+}  // namespace achilles

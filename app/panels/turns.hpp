@@ -1,0 +1,29 @@
+// The events of a run that are no impacts. A run may have a hundred thousand impacts, and a frame has no time to look
+// at each: phases begin and end where these events are.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "trajectory.hpp"
+
+namespace achilles {
+
+// The indices of Zeno points and releases, in order.
+inline std::vector<std::size_t> turns(const Trajectory& trajectory) {
+    std::vector<std::size_t> result;
+    const auto& events = trajectory.events;
+    for (const Phase& phase : trajectory.phases) {
+        auto event = std::lower_bound(events.begin(), events.end(), phase.start,
+                                      [](const Event& e, double t) { return e.t < t; });
+        for (; event != events.end() && event->t == phase.start; ++event) {
+            const auto index = static_cast<std::size_t>(event - events.begin());
+            if (event->kind != Event::Kind::impact && (result.empty() || result.back() < index))
+                result.push_back(index);
+        }
+    }
+    return result;
+}
+
+}  // namespace achilles

@@ -1,0 +1,215 @@
+// Where the panels stand: none covers another, none leaves the window, all can be hidden and resized.
+#include "panels/arrangement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/hands.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+Measures measures(float width, float height, float unit = 1.0F, float error = 0.0F) {
+    Measures m;
+    m.width = width;
+    m.height = height;
+    m.unit = unit;
+    m.bar = 32.0F * unit;
+    m.status = 30.0F * unit;
+    m.timeline = 92.0F * unit;
+    m.error = [error](float) { return error; };
+    return m;
+}
+
+std::vector<std::pair<std::string, Rectangle>> all_of(const Arrangement& a) {
+    std::vector<std::pair<std::string, Rectangle>> all{
+        {"bar", a.bar},           {"controls", a.controls}, {"error", a.error},   {"mechanism", a.mechanism},
+        {"timeline", a.timeline}, {"plots", a.plots},       {"events", a.events}, {"status", a.status}};
+    for (const Arrangement::Splitter& splitter : a.splitters) all.emplace_back("splitter", splitter.area);
+    std::erase_if(all, [](const auto& part) { return part.second.width < 1.0F || part.second.height < 1.0F; });
+    return all;
+}
+
+void expect_no_overlap(const Arrangement& arrangement, const Measures& m, const std::string& what) {
+    const auto all = all_of(arrangement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Rectangle& a = all[i].second;
+        EXPECT_GE(a.x, 0.0F) << what << all[i].first;
+        EXPECT_GE(a.y, 0.0F) << what << all[i].first;
+        EXPECT_LE(a.x + a.width, m.width + 0.01F) << what << all[i].first;
+        EXPECT_LE(a.y + a.height, m.height + 0.01F) << what << all[i].first;
+        for (std::size_t j = 0; j < i; ++j) {
+            const Rectangle& b = all[j].second;
+            const bool apart = a.x + a.width <= b.x + 0.01F || b.x + b.width <= a.x + 0.01F ||
+                               a.y + a.height <= b.y + 0.01F || b.y + b.height <= a.y + 0.01F;
+            EXPECT_TRUE(apart) << what << all[i].first << " covers " << all[j].first;
+        }
+    }
+}
+
+TEST(Arrangement, nothing_covers_anything_in_any_state) {
+    for (const auto& [width, height, unit] : {std::tuple{1280.0F, 800.0F, 1.0F},
+                                              {1600.0F, 1000.0F, 1.0F},
+                                              {2560.0F, 1600.0F, 2.0F},
+                                              {900.0F, 600.0F, 1.0F}})
+        for (int hidden = 0; hidden < 16; ++hidden)
+            for (const double share : {0.0, 0.02, 0.5, 0.98})
+                for (const float error : {0.0F, 70.0F}) {
+                    Scene scene;
+                    const char* const panels[] = {"controls", "plots", "events"};
+                    for (int i = 0; i < 3; ++i) scene.perform(command::Show{panels[i], (hidden >> i & 1) == 0});
+                    scene.perform(command::Show{"editor", (hidden >> 3 & 1) != 0});
+                    for (const std::string& panel : command::sized_panels) scene.perform(command::Size{panel, share});
+                    const Measures m = measures(width, height, unit, error);
+                    const Arrangement a = arrange(scene, m);
+                    const std::string what = std::to_string(width) + ", hidden " + std::to_string(hidden) + ", share " +
+                                             std::to_string(share) + ": ";
+                    expect_no_overlap(a, m, what);
+                    EXPECT_EQ(a.plots.width >= 1.0F, scene.shows("plots")) << what;
+                    EXPECT_EQ(a.events.height >= 1.0F, scene.shows("events")) << what;
+                    EXPECT_EQ(a.controls.width >= 1.0F, scene.shows("controls") || scene.shows("editor")) << what;
+                    EXPECT_GE(a.mechanism.width, 200.0F * unit) << what;
+                    EXPECT_GE(a.mechanism.height, 30.0F * unit) << what;
+                }
+}
+
+TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
+    for (const float width : {1.0F, 60.0F, 300.0F})
+        for (const float height : {1.0F, 40.0F, 200.0F}) {
+            const Arrangement a = arrange(Scene(), measures(width, height));
+            for (const Rectangle& r : {a.controls, a.mechanism, a.timeline, a.plots, a.events}) {
+                EXPECT_GE(r.width, 0.0F);
+                EXPECT_GE(r.height, 0.0F);
+            }
+        }
+}
+
+TEST(Arrangement, a_splitter_gives_the_share_that_puts_it_where_the_hand_is) {
+    for (const char* panel : {"controls", "plots", "events"}) {
+        Scene scene;
+        const Measures m = measures(1600, 1000);
+        for (const Arrangement::Splitter& splitter : arrange(scene, m).splitters) {
+            if (splitter.panel != panel) continue;
+            const double x = splitter.area.x + 0.5 * splitter.area.width + 40.0;
+            const double y = splitter.area.y + 0.5 * splitter.area.height - 30.0;
+            scene.perform(command::Size{panel, splitter.share_at(x, y)});
+            for (const Arrangement::Splitter& now : arrange(scene, m).splitters) {
+                if (now.panel != panel) continue;
+                if (now.moves_sideways)
+                    EXPECT_NEAR(now.area.x + 0.5 * now.area.width, x, 1.5) << panel;
+                else
+                    EXPECT_NEAR(now.area.y + 0.5 * now.area.height, y, 1.5) << panel;
+            }
+        }
+    }
+}
+
+TEST(Panels, are_hidden_and_shown_from_the_bar_the_menu_and_the_keyboard) {
+    Hands hands("ball_on_sine");
+    hands.click("switch plots");
+    EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"plots", false})});
+    hands.state.places.clear();
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("plot 1"));
+    EXPECT_TRUE(hands.state.places.contains("set g"));
+    hands.click("menu View");
+    hands.click("menu Controls");
+    hands.state.places.clear();
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("set g"));
+    EXPECT_TRUE(hands.state.places.contains("event 1"));
+    hands.press_with_control('3');
+    hands.state.places.clear();
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("event 1"));
+    EXPECT_TRUE(hands.state.places.contains("mechanism"));
+    const Rectangle alone = hands.state.places.at("mechanism");
+    EXPECT_GT(alone.width, 1200.0F);
+    for (const char* panel : {"controls", "plots", "events"}) hands.click(std::string("switch ") + panel);
+    EXPECT_TRUE(hands.state.places.contains("plot 1"));
+    EXPECT_TRUE(hands.state.places.contains("event 1"));
+    EXPECT_LT(hands.state.places.at("mechanism").width, 0.5F * alone.width);
+    EXPECT_EQ(to_text(hands.session), to_text(test::session("ball_on_sine")));
+}
+
+TEST(Panels, are_resized_by_the_gap_beside_them) {
+    Hands hands("ball_on_sine");
+    for (const auto& [panel, dx, dy] :
+         {std::tuple{"controls", 60.0, 0.0}, std::tuple{"plots", 50.0, 0.0}, std::tuple{"events", 0.0, -70.0}}) {
+        const std::string name = std::string("splitter ") + panel;
+        const Rectangle before = hands.state.places.at(name);
+        hands.all.clear();
+        hands.point(name);
+        hands.hand.left = true;
+        hands.rest(1);
+        for (int i = 0; i < 5; ++i) {
+            hands.hand.mouse_x += dx / 5.0;
+            hands.hand.mouse_y += dy / 5.0;
+            hands.rest(1);
+        }
+        hands.rest(1);
+        hands.hand.left = false;
+        hands.rest(2);
+        ASSERT_GE(hands.all.size(), 3U) << panel;
+        EXPECT_EQ(to_text(hands.all.back()).rfind(std::string("size ") + panel, 0), 0U) << to_text(hands.all.back());
+        const Rectangle after = hands.state.places.at(name);
+        EXPECT_NEAR(after.x - before.x, dx, 2.0) << panel;
+        EXPECT_NEAR(after.y - before.y, dy, 2.0) << panel;
+    }
+    // The journal of it leads to the same sizes; nothing of it is a change to undo.
+    EXPECT_FALSE(hands.session.can_undo());
+    Session replayed = test::session("ball_on_sine");
+    for (const char* panel : {"controls", "plots", "events"})
+        replayed.apply(command::Size{panel, hands.session.scene().share(panel)});
+    EXPECT_EQ(to_text(replayed), to_text(hands.session));
+    // A double click on the gap: as it fits.
+    hands.point("splitter plots");
+    for (int i = 0; i < 2; ++i) {
+        hands.hand.left = true;
+        hands.rest(1);
+        hands.hand.left = false;
+        hands.rest(1);
+    }
+    EXPECT_EQ(hands.session.scene().share("plots"), 0.0);
+}
+
+TEST(Theme, is_chosen_in_the_window_and_changes_plots_and_panels) {
+    Hands hands("ball_on_sine");
+    const Image light = hands.picture();
+    hands.click("switch theme");
+    EXPECT_EQ(hands.all, std::vector<Command>{command::UseTheme{true}});
+    EXPECT_TRUE(hands.session.theme().dark);
+    const Color hybrid = phase_color(dark_theme(), Phase::Kind::hybrid);
+    EXPECT_EQ(hands.session.plots()[0].curves[0].stroke.color, hybrid);
+    hands.hand = {};
+    const Image dark = hands.picture();
+    EXPECT_GT(worst_tile(light, dark), 0.5);
+    // All of it: not one corner of the window keeps the light page.
+    for (const auto& [x, y] :
+         {std::pair{1, 1}, std::pair{1278, 1}, std::pair{1, 798}, std::pair{1278, 798}, std::pair{286, 400}}) {
+        const std::size_t at = 3 * (static_cast<std::size_t>(y) * 1280 + static_cast<std::size_t>(x));
+        EXPECT_LT(int{dark.rgb[at]}, 80) << x << ", " << y;
+    }
+    hands.press_with_control('D');
+    EXPECT_FALSE(hands.session.theme().dark);
+    hands.hand = {};
+    EXPECT_EQ(hands.picture(), light);
+}
+
+TEST(Theme, is_part_of_the_journal_but_no_change_of_the_system) {
+    Session session = test::session("ball_on_sine");
+    session.apply(parse_command("theme dark"));
+    EXPECT_FALSE(session.can_undo());
+    EXPECT_NE(to_text(session).find("theme dark\n"), std::string::npos);
+    // What is made later has it, too.
+    session.apply(parse_command("set g 2"));
+    EXPECT_EQ(session.plots()[0].curves[0].stroke.color, phase_color(dark_theme(), Phase::Kind::hybrid));
+    session.apply(parse_command("open double_pendulum"));
+    EXPECT_EQ(session.plots()[0].curves[0].stroke.color, phase_color(dark_theme(), Phase::Kind::hybrid));
+}
+
+}  // namespace
+}  // namespace achilles

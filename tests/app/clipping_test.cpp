@@ -1,0 +1,184 @@
+// No letter is cut: in the draw data every glyph lies inside its clip rectangle, scrolled text excepted.
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/open.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+namespace {
+
+// Which letters a quad of the atlas can be: by where it is in the texture.
+class Atlas {
+ public:
+    Atlas() {
+        for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
+            for (const ImFontGlyph& glyph : font->Glyphs)
+                if (glyph.Visible != 0) glyphs_.push_back(&glyph);
+        std::sort(glyphs_.begin(), glyphs_.end(), [](auto* a, auto* b) { return a->V0 < b->V0; });
+    }
+    // The glyph that holds this part of the texture; null for a fill or a line.
+    const ImFontGlyph* at(ImVec2 low, ImVec2 high) const {
+        constexpr float slip = 1e-6F;
+        for (const ImFontGlyph* glyph : glyphs_) {
+            if (glyph->V0 > low.y + slip) break;
+            if (low.x >= glyph->U0 - slip && high.x <= glyph->U1 + slip && high.y <= glyph->V1 + slip) return glyph;
+        }
+        return nullptr;
+    }
+
+ private:
+    std::vector<const ImFontGlyph*> glyphs_;
+};
+
+std::string utf8(ImWchar code) {
+    char text[5] = {};
+    ImTextCharToUtf8(text, code);
+    return text;
+}
+
+struct Cut {
+    std::string window, letters;
+};
+
+// A window that can be scrolled shows a part of its text up and down; sideways all the same must be seen, but in the
+// editor, where long lines move with the cursor.
+bool is_editor(const char* name) { return std::string(name).find("##text") != std::string::npos; }
+bool scrolls(const char* name) {
+    const ImGuiWindow* window = ImGui::FindWindowByName(name);
+    return window != nullptr && window->ScrollMax.y > 0.0F && (window->Flags & ImGuiWindowFlags_NoScrollWithMouse) == 0;
+}
+
+std::vector<Cut> cut_letters(const ImDrawData& data) {
+    const Atlas atlas;
+    std::vector<Cut> cuts;
+    for (int n = 0; n < data.CmdListsCount; ++n) {
+        const ImDrawList& list = *data.CmdLists[n];
+        if (list._OwnerName != nullptr && is_editor(list._OwnerName)) continue;
+        const bool scrolled = list._OwnerName != nullptr && scrolls(list._OwnerName);
+        Cut cut{list._OwnerName != nullptr ? list._OwnerName : "", ""};
+        for (const ImDrawCmd& command : list.CmdBuffer) {
+            if (command.UserCallback != nullptr) continue;
+            for (unsigned i = 0; i + 6 <= command.ElemCount;) {
+                const ImDrawIdx* index = &list.IdxBuffer[static_cast<int>(command.IdxOffset + i)];
+                const ImDrawVert* v = &list.VtxBuffer[static_cast<int>(command.VtxOffset)];
+                const bool is_quad = index[1] == index[0] + 1 && index[2] == index[0] + 2 && index[3] == index[0] &&
+                                     index[4] == index[2] && index[5] == index[0] + 3;
+                const ImVec2 low = v[index[0]].uv, high = v[index[2]].uv;
+                const ImFontGlyph* glyph = is_quad && low.x < high.x && low.y < high.y ? atlas.at(low, high) : nullptr;
+                if (glyph == nullptr) {
+                    i += 3;
+                    continue;
+                }
+                ImVec2 from = v[index[0]].pos, to = from;
+                for (int k = 0; k < 4; ++k) {
+                    const ImVec2 p = v[index[0] + k].pos;
+                    from = {std::min(from.x, p.x), std::min(from.y, p.y)};
+                    to = {std::max(to.x, p.x), std::max(to.y, p.y)};
+                }
+                // A glyph's quad may have an empty pixel at its edge.
+                const ImVec4& clip = command.ClipRect;
+                constexpr float slip = 1.01F, cut_uv = 1e-4F;
+                const bool sideways = from.x < clip.x - slip || to.x > clip.z + slip || low.x > glyph->U0 + cut_uv ||
+                                      high.x < glyph->U1 - cut_uv;
+                const bool upright = from.y < clip.y - slip || to.y > clip.w + slip || low.y > glyph->V0 + cut_uv ||
+                                     high.y < glyph->V1 - cut_uv;
+                if (sideways || (upright && !scrolled)) cut.letters += utf8(static_cast<ImWchar>(glyph->Codepoint));
+                i += 6;
+            }
+        }
+        if (!cut.letters.empty()) cuts.push_back(cut);
+    }
+    return cuts;
+}
+
+struct State {
+    const char* name;
+    const char* system;
+    std::vector<const char*> journal;
+};
+
+const State states[] = {
+    {"as it opens", "ball_on_sine", {}},
+    {"a certificate", "ball_on_sine", {"select 12", "set g 2"}},
+    {"an impact", "double_pendulum", {"select 3"}},
+    {"a release", "ball_on_sine", {"select 13"}},
+    {"the lens", "ball_on_sine", {"show lens", "select 12"}},
+    {"many sliders", "triple_pendulum", {"seek 1.5", "set g 3"}},
+    {"the editor", "double_pendulum", {"show editor", "seek 2"}},
+    {"the editor and a certificate", "ball_on_sine", {"show editor", "select 12"}},
+    {"mistakes in the editor", "ball_on_sine", {"show editor", "text \"title = 3\\nx = 4\""}},
+    {"a value refused", "ball_on_sine", {"set y -5", "set e 7"}},
+    {"a run compared", "ball_on_sine", {"pin", "set e 0.4", "seek 5"}},
+    {"six plots", "double_pendulum", {"grid 3 2", "plot 1 t theta1 theta2 gap", "seek 5"}},
+    {"nine plots", "ball_on_sine", {"grid 3 3", "seek 5"}},
+    {"the picture alone", "swinging_leg", {"hide plots", "hide events", "hide controls"}},
+    {"wide controls", "falling_rod", {"size controls 0.6", "seek 1"}},
+    {"narrow panels", "ball_on_table", {"size controls 0.01", "size plots 0.9", "size events 0.01"}},
+    {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},
+};
+
+class Clipping : public testing::TestWithParam<std::tuple<int, int, double>> {};
+
+TEST_P(Clipping, cuts_no_letter) {
+    const auto [width, height, scale] = GetParam();
+    Interface interface(test::surface(width, height, scale));
+    const Interface::Active active(interface);
+    for (const State& state : states) {
+        Session session = test::session(state.system);
+        for (const char* line : state.journal) session.apply(parse_command(line));
+        for (const char* theme : {"theme light", "theme dark"}) {
+            session.apply(parse_command(theme));
+            // What a refused command says goes with the next; here it is to be seen.
+            for (const char* line : state.journal)
+                if (std::string(line).find("set y -5") == 0) session.apply(parse_command(line));
+            PanelState panels = test::panels();
+            const ImDrawData* data = nullptr;
+            for (int i = 0; i < 3; ++i) {
+                apply(Input{});
+                data = &interface.frame([&] { explorer(session, panels); }, width, height, 1.0 / 60.0);
+            }
+            for (const Cut& cut : cut_letters(*data))
+                ADD_FAILURE() << state.name << ", " << theme << ": in '" << cut.window << "' \"" << cut.letters << "\"";
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Clipping,
+                         testing::Values(std::tuple(1280, 800, 1.0), std::tuple(1600, 1000, 1.0),
+                                         std::tuple(2560, 1600, 2.0), std::tuple(1600, 1000, 1.5)));
+
+// The test itself: text too long for its window is found, sideways and downwards, and text that fits is not.
+TEST(Clipping, finds_what_is_cut) {
+    Interface interface(test::surface(400, 300));
+    const Interface::Active active(interface);
+    const auto letters = [&](float width, float height, const char* text) {
+        const ImDrawData* data = nullptr;
+        for (int i = 0; i < 3; ++i) {
+            apply(Input{});
+            data = &interface.frame(
+                [&] {
+                    ImGui::SetNextWindowPos({0.0F, 0.0F});
+                    ImGui::SetNextWindowSize({width, height});
+                    ImGui::Begin("one", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoScrollWithMouse);
+                    ImGui::TextUnformatted(text);
+                    ImGui::End();
+                },
+                400, 300, 1.0 / 60.0);
+        }
+        std::string all;
+        for (const Cut& cut : cut_letters(*data)) all += cut.letters;
+        return all;
+    };
+    EXPECT_EQ(letters(300.0F, 100.0F, "it fits"), "");
+    EXPECT_NE(letters(60.0F, 100.0F, "too wide for it"), "");
+    EXPECT_NE(letters(300.0F, 32.0F, "too low\nfor it"), "");
+}
+
+}  // namespace
+}  // namespace achilles

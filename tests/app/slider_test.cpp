@@ -1,0 +1,161 @@
+// The hand on a value: typed, put back, marked, undone.
+#include <gtest/gtest.h>
+
+#include "app/hands.hpp"
+
+namespace achilles {
+namespace {
+
+struct SliderHand : test::Hands {
+    using Hands::Hands;
+    void double_click(const std::string& place, double share = 0.5) {
+        point(place, share);
+        for (int i = 0; i < 2; ++i) {
+            hand.left = true;
+            rest(1);
+            hand.left = false;
+            rest(1);
+        }
+        rest(2);
+    }
+    void right_click(const std::string& place) {
+        point(place);
+        hand.right = true;
+        rest(2);
+        hand.right = false;
+        rest(2);
+    }
+};
+
+TEST(Slider, a_double_click_types_a_value_and_moves_nothing) {
+    for (const char* place : {"set g", "value of set g"}) {
+        SliderHand hands("ball_on_sine");
+        hands.double_click(place, 0.9);
+        EXPECT_EQ(hands.session.run().parameters[1], 1.0) << "the first click moved it, the second took that back";
+        EXPECT_EQ(hands.state.typed.id, "set g");
+        hands.type("9.806650001");
+        hands.press(key::enter);
+        EXPECT_EQ(hands.session.run().parameters[1], 9.806650001) << place;
+        EXPECT_EQ(hands.state.typed.id, "");
+        hands.press_with_control('Z');
+        EXPECT_EQ(hands.session.run().parameters[1], 1.0) << "one change";
+        EXPECT_FALSE(hands.session.can_undo());
+    }
+}
+
+TEST(Slider, what_is_no_number_or_given_up_changes_nothing) {
+    for (const bool given_up : {false, true}) {
+        SliderHand hands("ball_on_sine");
+        hands.double_click("value of set g");
+        hands.type(given_up ? "5" : "fast");
+        hands.press(given_up ? int{key::escape} : int{key::enter});
+        EXPECT_EQ(hands.session.run().parameters[1], 1.0);
+        EXPECT_EQ(hands.state.typed.id, "");
+        EXPECT_TRUE(hands.all.empty());
+    }
+}
+
+TEST(Slider, an_angle_is_typed_in_degrees) {
+    SliderHand hands("double_pendulum");
+    hands.double_click("value of set theta1");
+    EXPECT_EQ(hands.state.typed.text, "30");
+    hands.type("-45");
+    hands.press(key::enter);
+    EXPECT_NEAR(hands.session.run().q[0], -0.78539816339744831, 1e-15);
+}
+
+TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
+    SliderHand hands("double_pendulum");
+    const auto file = hands.session.model()->default_run();
+    for (const char* line :
+         {"set m1 2.5", "set theta1 0.3", "set theta2' 0.7", "tolerance 1e-7", "end 12", "eps 1e-3 1e-4 1e-5"})
+        hands.session.apply(parse_command(line));
+    ASSERT_EQ(hands.session.error(), "");
+    hands.rest(2);
+    for (const char* place :
+         {"set m1", "value of set theta1", "set theta2'", "tolerance", "end", "eps q", "value of eps v", "eps t"}) {
+        hands.all.clear();
+        hands.right_click(place);
+        EXPECT_EQ(hands.all.size(), 1U) << place;
+    }
+    const auto now = hands.session.run();
+    EXPECT_EQ(now.parameters, file.parameters);
+    EXPECT_EQ(now.q, file.q);
+    EXPECT_EQ(now.v, file.v);
+    EXPECT_EQ(now.options.tolerance, file.options.tolerance);
+    EXPECT_EQ(now.options.end_time, file.options.end_time);
+    EXPECT_EQ(now.options.truncation.eps_q, file.options.truncation.eps_q);
+    EXPECT_EQ(now.options.truncation.eps_v, file.options.truncation.eps_v);
+    EXPECT_EQ(now.options.truncation.eps_t, file.options.truncation.eps_t);
+    hands.all.clear();
+    hands.right_click("set m1");
+    EXPECT_TRUE(hands.all.empty()) << "it is the file's already";
+}
+
+TEST(Slider, all_values_are_reset_at_once_and_that_is_undone_at_once) {
+    SliderHand hands("ball_on_sine");
+    const std::string before = to_text(hands.session.trajectory());
+    EXPECT_FALSE(hands.state.places.contains("reset all"));
+    for (const char* line : {"set g 2", "set x' 1", "conditions paper", "end 12"})
+        hands.session.apply(parse_command(line));
+    const std::string changed = to_text(hands.session.trajectory());
+    hands.rest(2);
+    hands.click("reset all");
+    EXPECT_EQ(hands.all, std::vector<Command>{command::Reset{}});
+    EXPECT_EQ(to_text(hands.session.trajectory()), before);
+    hands.press_with_control('Z');
+    EXPECT_EQ(to_text(hands.session.trajectory()), changed);
+    hands.click("menu Edit");
+    hands.click("menu Reset all values");
+    EXPECT_EQ(to_text(hands.session.trajectory()), before);
+    hands.state.places.clear();
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("reset all")) << "there is nothing to reset";
+}
+
+// Everything the sliders can change.
+std::vector<double> values(const Session& session) {
+    const Options& o = session.run().options;
+    std::vector<double> all{o.tolerance, o.end_time, o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t};
+    all.insert(all.end(), session.run().parameters.begin(), session.run().parameters.end());
+    for (const Vector& part : {session.run().q, session.run().v}) all.insert(all.end(), part.begin(), part.end());
+    return all;
+}
+
+TEST(Slider, every_change_of_the_hand_is_undone) {
+    for (const char* place : {"set e", "set y", "set x'", "tolerance", "end", "eps", "eps v"}) {
+        SliderHand hands("ball_on_sine");
+        const std::vector<double> before = values(hands.session);
+        hands.click(place, 0.3);
+        EXPECT_NE(values(hands.session), before) << place;
+        hands.hand.mouse_y = -1e6;
+        hands.rest(1);
+        hands.press_with_control('Z');
+        EXPECT_EQ(values(hands.session), before) << place;
+    }
+}
+
+TEST(Slider, a_changed_value_is_marked) {
+    SliderHand hands("ball_on_sine");
+    const auto accents = [&] {
+        const Image picture = hands.picture();
+        const Rectangle value = hands.state.places.at("value of set g");
+        const Color accent = light_theme().accent;
+        int count = 0;
+        for (int y = static_cast<int>(value.y); y < static_cast<int>(value.y + value.height); ++y)
+            for (int x = static_cast<int>(value.x); x < static_cast<int>(value.x + value.width); ++x) {
+                const std::size_t at = 3 * static_cast<std::size_t>(y * picture.width + x);
+                count +=
+                    picture.rgb[at] == accent.r && picture.rgb[at + 1] == accent.g && picture.rgb[at + 2] == accent.b;
+            }
+        return count;
+    };
+    EXPECT_EQ(accents(), 0);
+    hands.session.apply(parse_command("set g 2"));
+    EXPECT_GE(accents(), 3);
+    hands.session.apply(parse_command("set g 1"));
+    EXPECT_EQ(accents(), 0);
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,173 @@
+// How long the explorer's hand waits: medians, of the processor's time where one thread works, else by the clock.
+//     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 500 ms
+//     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
+//     of
+//                               100 000 impacts are made one after the other
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "app/open.hpp"
+#include "bench/measure.hpp"
+#include "surface/interface.hpp"
+#include "surface/window.hpp"
+
+namespace achilles {
+namespace {
+
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+template <class Work>
+double median_ms(int times, double (*clock)(), const Work& work) {
+    std::vector<double> all;
+    for (int i = 0; i < times; ++i) {
+        const double begin = clock();
+        work(i);
+        all.push_back(1e3 * (clock() - begin));
+    }
+    return bench::median(all);
+}
+
+void say(const std::string& what, double milliseconds, double bar) {
+    fmt::print("{:<58} {:8.2f} ms   {}\n", what, milliseconds,
+               bar <= 0.0 ? "" : fmt::format("bar {:g} ms: {}", bar, milliseconds <= bar ? "met" : "NOT MET"));
+}
+
+struct Desk {
+    explicit Desk(const std::string& system, std::initializer_list<const char*> journal = {})
+        : session(test::session(system)), interface(test::surface(width, height)) {
+        for (const char* line : journal) session.apply(parse_command(line));
+        const Interface::Active active(interface);
+        for (int i = 0; i < 5; ++i) frame();
+    }
+    void frame() {
+        apply(Input{});
+        interface.frame([&] { explorer(session, panels); }, width, height, 1.0 / 60.0);
+    }
+    static constexpr int width = 1600, height = 1000;
+    Session session;
+    PanelState panels = test::panels();
+    Interface interface;
+};
+
+void frames() {
+    for (const auto& [what, system, change] : {std::tuple{"the paper's ball", "ball_on_sine", "end 20"},
+                                               std::tuple{"the paper's pendulum", "double_pendulum", "end 20"},
+                                               std::tuple{"bouncing for ever", "ball_on_floor", "end 100000"}}) {
+        Desk desk(system, {"grid 3 2", std::string(system) == "ball_on_floor" ? "set e 1" : "pause", change});
+        const Interface::Active active(desk.interface);
+        for (int i = 0; i < 3; ++i) desk.frame();
+        const double still = median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); });
+        say(fmt::format("{} ({} impacts): lists of a frame, 6 plots", what,
+                        desk.session.trajectory().statistics.impacts),
+            still, 5.0);
+        desk.session.apply(parse_command("select 1"));
+        for (int i = 0; i < 3; ++i) desk.frame();
+        say("    the same with an event chosen", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
+    }
+}
+
+void sliders() {
+    for (const char* system : {"ball_on_sine", "double_pendulum", "triple_pendulum"}) {
+        Desk desk(system, {"grid 3 2"});
+        const Interface::Active active(desk.interface);
+        const double all = median_ms(60, wall_seconds, [&](int i) {
+            desk.session.apply(command::Set{"g", 1.0 + 0.01 * i});
+            desk.frame();
+        });
+        say(fmt::format("{}: slider to new picture, 6 plots", system), all, 1e3 / 60.0);
+        const double text = median_ms(30, bench::thread_seconds, [&](int i) {
+            parse_system(desk.session.document().text + std::string(static_cast<std::size_t>(i), '\n'), "text");
+            const Model model(desk.session.description());
+        });
+        say(fmt::format("{}: a typed text read and derived", system), text, 0.0);
+    }
+}
+
+void start() {
+    say("session, fonts and lists of the first frame",
+        median_ms(7, wall_seconds,
+                  [](int) {
+                      PanelState panels = test::panels();
+                      const Session session = test::session("ball_on_sine");
+                      Interface interface(test::surface(Desk::width, Desk::height));
+                      const Interface::Active active(interface);
+                      apply(Input{});
+                      interface.frame([&] { explorer(session, panels); }, Desk::width, Desk::height, 1.0 / 60.0);
+                  }),
+        500.0);
+    say("the same, drawn offscreen and read",
+        median_ms(5, wall_seconds,
+                  [](int) {
+                      PanelState panels = test::panels();
+                      const Session session = test::session("ball_on_sine");
+                      Offscreen surface(test::surface(Desk::width, Desk::height));
+                      surface.frame([&] { explorer(session, panels); }, 1);
+                  }),
+        500.0);
+    Offscreen surface(test::surface(Desk::width, Desk::height));
+    Session session = test::session("ball_on_sine");
+    session.apply(parse_command("grid 3 2"));
+    PanelState panels = test::panels();
+    say("a frame with 6 plots, drawn offscreen and read",
+        median_ms(15, wall_seconds, [&](int) { surface.frame([&] { explorer(session, panels); }, 1); }), 0.0);
+}
+
+// Runs of 100 000 impacts asked for, cancelled, shown and forgotten, as explore.cpp does it.
+void window() {
+    Session session = test::session("ball_on_floor", 1.0 / 40.0);
+    session.apply(parse_command("grid 3 2"));
+    session.apply(parse_command("end 100000"));
+    PanelState panels = test::panels();
+    panels.in_window = true;
+    SurfaceOptions options = test::surface(Desk::width, Desk::height);
+    Window window(options, "Achilles");
+    session.on_ready(Window::wake);
+    std::vector<double> idle, busy, fed;
+    double last = 0.0;
+    int frame = 0, arrived = 0;
+    window.run([&] {
+        const double now = wall_seconds();
+        const bool was_under_way = session.under_way() != nullptr;
+        if (frame > 10) (was_under_way ? busy : idle).push_back(1e3 * (now - last));
+        last = now;
+        session.update();
+        if (was_under_way && session.under_way() == nullptr) {
+            ++arrived;
+            fed.push_back(1e3 * (wall_seconds() - now));
+        }
+        explorer(session, panels);
+        ++frame;
+        // A drag: a new value in some frames, and time to finish between the drags.
+        if (frame > 40 && frame % 60 < 6) session.apply(command::Set{"e", 1.0 - 1e-12 * (frame % 60)});
+        if (frame > 400 || arrived > 12) window.close();
+    });
+    const auto report = [](const char* what, std::vector<double> all) {
+        if (all.empty()) return fmt::print("{}: none\n", what);
+        fmt::print("{:<44} {:5} frames, median {:7.1f} ms, longest {:7.1f} ms\n", what, all.size(), bench::median(all),
+                   *std::max_element(all.begin(), all.end()));
+    };
+    fmt::print("{} impacts in the run that is shown; {} runs arrived\n", session.trajectory().statistics.impacts,
+               arrived);
+    report("frames while nothing runs", idle);
+    report("frames while a run is under way", busy);
+    report("taking a finished run in", fed);
+}
+
+}  // namespace
+}  // namespace achilles
+
+int main(int count, char** words) {
+    if (count > 1 && std::string(words[1]) == "window") {
+        achilles::window();
+        return 0;
+    }
+    achilles::frames();
+    achilles::sliders();
+    achilles::start();
+}
