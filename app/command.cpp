@@ -5,110 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <utility>
 #include <vector>
 
 #include "expression/nearest.hpp"
+#include "words.hpp"
 
 namespace achilles {
 
 namespace {
-
-constexpr std::string_view spaces = " \t\r";
-
-// What would end the line or the word, and how it is written: \n.
-constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
-
-char meant_by(char letter) {
-    for (const auto& [written, meant] : escapes)
-        if (written == letter) return meant;
-    return letter;
-}
-
-struct Word {
-    std::string text;
-    int column = 1;
-};
-
-// The words of one line and where they stand, to complain about.
-class Line {
- public:
-    Line(std::string_view text, const std::string& file, int number) : text_(text), file_(file), number_(number) {
-        for (std::size_t at = skip_space(0); at < text.size() && text[at] != '#'; at = skip_space(at)) {
-            const int column = static_cast<int>(at) + 1;
-            words_.push_back({text[at] == '"' ? quoted(at) : plain(at), column});
-        }
-    }
-
-    InputError error(int column, const std::string& message, const std::string& hint = {}) const {
-        return {file_, {number_, column}, message, hint, std::string(text_)};
-    }
-    const Word& word(std::size_t i) const { return words_[i]; }
-    std::size_t count() const { return words_.size(); }
-    void expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
-        if (count() < least + 1) throw error(end_column(), fmt::format("'{}' needs more", words_[0].text), usage);
-        if (count() > most + 1)
-            throw error(words_[most + 1].column, fmt::format("'{}' is too much", words_[most + 1].text), usage);
-    }
-    double number(std::size_t i) const {
-        const std::string& text = words_[i].text;
-        double value = 0.0;
-        const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (problem != std::errc() || rest != text.data() + text.size() || !std::isfinite(value))
-            throw error(words_[i].column, fmt::format("'{}' is not a finite number", text));
-        return value;
-    }
-    int whole_number(std::size_t i) const {
-        const double value = number(i);
-        if (value != std::floor(value) || std::abs(value) > 1e9)
-            throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
-        return static_cast<int>(value);
-    }
-
- private:
-    std::size_t skip_space(std::size_t at) const { return std::min(text_.find_first_not_of(spaces, at), text_.size()); }
-    int end_column() const { return static_cast<int>(text_.find_last_not_of(spaces)) + 2; }
-    std::string plain(std::size_t& at) const {
-        const std::size_t begin = at;
-        at = std::min(text_.find_first_of(spaces, at), text_.size());
-        return std::string(text_.substr(begin, at - begin));
-    }
-    std::string quoted(std::size_t& at) const {
-        const int column = static_cast<int>(at) + 1;
-        std::string result;
-        for (++at; at < text_.size() && text_[at] != '"'; ++at) {
-            const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
-            if (escaped) ++at;
-            result += escaped ? meant_by(text_[at]) : text_[at];
-        }
-        if (at == text_.size()) throw error(column, "the quotes are not closed");
-        ++at;
-        return result;
-    }
-
-    std::string_view text_;
-    const std::string& file_;
-    int number_;
-    std::vector<Word> words_;
-};
-
-std::string quoted(const std::string& word) {
-    std::string text = "\"";
-    for (const char c : word) {
-        const auto* special =
-            std::find_if(escapes.begin(), escapes.end(), [c](const auto& e) { return e.second == c; });
-        if (special != escapes.end() || c == '"' || c == '\\') text += '\\';
-        text += special != escapes.end() ? special->first : c;
-    }
-    return text + '"';
-}
-
-std::string quoted_where_needed(const std::string& word) {
-    const bool is_plain = !word.empty() && word[0] != '#' && word.find_first_of(" \t\r\n\"\\") == std::string::npos;
-    return is_plain ? word : quoted(word);
-}
 
 Command read_eps(const Line& line) {
     line.expect_arguments(1, 3, "write: eps 1e-6, or: eps POSITION VELOCITY TIME");
@@ -130,6 +34,18 @@ Command read_reinitialization(const Line& line) {
     if (const auto value = reinitialization_from(line.word(1).text)) return command::UseReinitialization{*value};
     throw line.error(line.word(1).column, fmt::format("there is no re-initialization '{}'", line.word(1).text),
                      "write: reinitialization kinetic, or: reinitialization euclidean");
+}
+
+Command read_method(const Line& line) {
+    line.expect_arguments(1, 1, "write: method taylor, or: method dopri5");
+    if (const auto value = method_from(line.word(1).text)) return command::UseMethod{*value};
+    throw line.error(line.word(1).column, fmt::format("there is no method '{}'", line.word(1).text),
+                     "write: method taylor, or: method dopri5");
+}
+
+Command read_max_impacts(const Line& line) {
+    line.expect_arguments(1, 1, "write: max-impacts NUMBER");
+    return command::MaxImpacts{line.whole_number(1)};
 }
 
 Command read_set(const Line& line) {
@@ -170,12 +86,42 @@ Command read_text_of_system(const Line& line) {
     return command::Text{line.word(1).text};
 }
 
-Command read_save(const Line& line) {
-    line.expect_arguments(1, 2, "write: save FILE, or: save FILE overwrite");
+// Save or Export: a file, and perhaps that it may be there already.
+template <class Kind>
+Command read_file_to_write(const Line& line) {
+    const std::string usage = fmt::format("write: {0} FILE, or: {0} FILE overwrite", line.word(0).text);
+    line.expect_arguments(1, 2, usage);
     if (line.count() == 3 && line.word(2).text != "overwrite")
-        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text),
-                         "write: save FILE, or: save FILE overwrite");
-    return command::Save{line.word(1).text, line.count() == 3};
+        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text), usage);
+    return Kind{line.word(1).text, line.count() == 3};
+}
+
+Command read_copy(const Line& line) {
+    const auto& things = command::copied_things;
+    const std::string usage = fmt::format("write: copy {}", fmt::join(things, ", or: copy "));
+    line.expect_arguments(1, 1, usage);
+    const std::string& what = line.word(1).text;
+    if (std::find(things.begin(), things.end(), what) == things.end())
+        throw line.error(line.word(1).column, fmt::format("'{}' has no command{}", what, did_you_mean(what, things)),
+                         usage);
+    return command::Copy{what};
+}
+
+Command read_wait(const Line& line) {
+    line.expect_arguments(1, 1, "write: wait SECONDS");
+    const double seconds = line.number(1);
+    if (seconds < 0.0) throw line.error(line.word(1).column, "nobody can wait for the past", "write: wait SECONDS");
+    return command::Wait{seconds};
+}
+
+Command read_say(const Line& line) {
+    line.expect_arguments(1, 1, "write: say \"a sentence\", or: say \"\"");
+    return command::Say{line.word(1).text};
+}
+
+Command read_replay(const Line& line) {
+    line.expect_arguments(1, 1, "write: replay JOURNAL; a path with spaces stands in double quotes");
+    return command::Replay{line.word(1).text};
 }
 
 template <bool pinned>
@@ -219,20 +165,6 @@ Command read_step(const Line& line) {
     return command::Step{line.whole_number(1)};
 }
 
-// The words from number `first` on.
-std::vector<std::string> words_from(const Line& line, std::size_t first) {
-    std::vector<std::string> result;
-    for (std::size_t i = first; i < line.count(); ++i) result.push_back(line.word(i).text);
-    return result;
-}
-
-bool read_switch(const Line& line, std::size_t i, const std::string& usage) {
-    const std::string& text = line.word(i).text;
-    if (text != "on" && text != "off")
-        throw line.error(line.word(i).column, fmt::format("'{}' is neither on nor off", text), usage);
-    return text == "on";
-}
-
 Command read_grid(const Line& line) {
     line.expect_arguments(2, 2, "write: grid COLUMNS ROWS");
     return command::Grid{line.whole_number(1), line.whole_number(2)};
@@ -240,7 +172,7 @@ Command read_grid(const Line& line) {
 
 Command read_plot(const Line& line) {
     line.expect_arguments(3, 12, "write: plot NUMBER X Y..., expressions with spaces in double quotes");
-    return command::PlotView{line.whole_number(1), line.word(2).text, words_from(line, 3)};
+    return command::PlotView{line.whole_number(1), line.word(2).text, line.words_from(3)};
 }
 
 Command read_zoom(const Line& line) {
@@ -253,28 +185,39 @@ Command read_fit(const Line& line) {
     return command::Fit{line.whole_number(1)};
 }
 
+// Whether the second argument is x, and not y.
+bool read_axis(const Line& line, const std::string& usage) {
+    const std::string& axis = line.word(2).text;
+    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
+    return axis == "x";
+}
+
 Command read_log(const Line& line) {
     const std::string usage = "write: log NUMBER x on, or: log NUMBER y off";
     line.expect_arguments(3, 3, usage);
-    const std::string& axis = line.word(2).text;
-    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
-    return command::AxisScale{line.whole_number(1), axis == "x", read_switch(line, 3, usage)};
+    return command::AxisScale{line.whole_number(1), read_axis(line, usage), line.is_on(3, usage)};
+}
+
+Command read_range(const Line& line) {
+    const std::string usage = "write: range NUMBER x LOW HIGH, or: range NUMBER y LOW HIGH";
+    line.expect_arguments(4, 4, usage);
+    return command::Range{line.whole_number(1), read_axis(line, usage), line.number(3), line.number(4)};
 }
 
 Command read_curve(const Line& line) {
     const std::string usage = "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off";
     line.expect_arguments(3, 3, usage);
-    return command::ShowCurve{line.whole_number(1), line.whole_number(2), read_switch(line, 3, usage)};
+    return command::ShowCurve{line.whole_number(1), line.whole_number(2), line.is_on(3, usage)};
 }
 
 template <class Kind>
 Command read_on_off(const Line& line) {
     const std::string usage = fmt::format("write: {0} on, or: {0} off", line.word(0).text);
     line.expect_arguments(1, 1, usage);
-    return Kind{read_switch(line, 1, usage)};
+    return Kind{line.is_on(1, usage)};
 }
 
-constexpr std::array<Verb, 33> verbs{{{"open", read_open},
+constexpr std::array<Verb, 41> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -287,13 +230,14 @@ constexpr std::array<Verb, 33> verbs{{{"open", read_open},
                                       {"select", read_select},
                                       {"new", read_alone<command::New>},
                                       {"text", read_text_of_system},
-                                      {"save", read_save},
+                                      {"save", read_file_to_write<command::Save>},
                                       {"show", read_show<true>},
                                       {"hide", read_show<false>},
                                       {"grid", read_grid},
                                       {"plot", read_plot},
                                       {"zoom", read_zoom},
                                       {"fit", read_fit},
+                                      {"range", read_range},
                                       {"log", read_log},
                                       {"curve", read_curve},
                                       {"link", read_on_off<command::Link>},
@@ -306,79 +250,16 @@ constexpr std::array<Verb, 33> verbs{{{"open", read_open},
                                       {"redo", read_alone<command::Redo>},
                                       {"pin", read_pin<true>},
                                       {"unpin", read_pin<false>},
-                                      {"lens", read_number<command::Lens>}}};
-
-const char* on_off(bool on) { return on ? "on" : "off"; }
-
-struct Print {
-    std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
-    std::string operator()(const command::Set& c) const {
-        return fmt::format("set {} {}", quoted_where_needed(c.name), c.value);
-    }
-    std::string operator()(const command::End& c) const { return fmt::format("end {}", c.time); }
-    std::string operator()(const command::Tolerance& c) const { return fmt::format("tolerance {}", c.value); }
-    std::string operator()(const command::Eps& c) const {
-        return c.q == c.v && c.v == c.t ? fmt::format("eps {}", c.q) : fmt::format("eps {} {} {}", c.q, c.v, c.t);
-    }
-    std::string operator()(const command::UseConditions& c) const {
-        return fmt::format("conditions {}", to_text(c.conditions));
-    }
-    std::string operator()(const command::UseReinitialization& c) const {
-        return fmt::format("reinitialization {}", to_text(c.reinitialization));
-    }
-    std::string operator()(const command::Seek& c) const { return fmt::format("seek {}", c.time); }
-    std::string operator()(const command::Play&) const { return "play"; }
-    std::string operator()(const command::Pause&) const { return "pause"; }
-    std::string operator()(const command::Select& c) const { return fmt::format("select {}", c.event); }
-    std::string operator()(const command::New&) const { return "new"; }
-    std::string operator()(const command::Text& c) const { return "text " + quoted(c.text); }
-    std::string operator()(const command::Save& c) const {
-        return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
-    }
-    std::string operator()(const command::Show& c) const {
-        return fmt::format("{} {}", c.on ? "show" : "hide", quoted_where_needed(c.what));
-    }
-    std::string operator()(const command::Start& c) const {
-        std::string text = "start";
-        for (const auto& [name, value] : c.values) text += fmt::format(" {} {}", quoted_where_needed(name), value);
-        return text;
-    }
-    std::string operator()(const command::Look& c) const { return fmt::format("look {} {} {}", c.x, c.y, c.width); }
-    std::string operator()(const command::LookAll&) const { return "look all"; }
-    std::string operator()(const command::Speed& c) const { return fmt::format("speed {}", c.value); }
-    std::string operator()(const command::Loop& c) const { return fmt::format("loop {}", on_off(c.on)); }
-    std::string operator()(const command::Step& c) const { return fmt::format("step {}", c.events); }
-    std::string operator()(const command::Undo&) const { return "undo"; }
-    std::string operator()(const command::Redo&) const { return "redo"; }
-    std::string operator()(const command::Pin& c) const { return c.on ? "pin" : "unpin"; }
-    std::string operator()(const command::Lens& c) const { return fmt::format("lens {}", c.from); }
-    std::string operator()(const command::Grid& c) const { return fmt::format("grid {} {}", c.columns, c.rows); }
-    std::string operator()(const command::PlotView& c) const {
-        std::string text = fmt::format("plot {} {}", c.plot, quoted_where_needed(c.x));
-        for (const std::string& y : c.y) text += " " + quoted_where_needed(y);
-        return text;
-    }
-    std::string operator()(const command::Zoom& c) const {
-        return fmt::format("zoom {} {} {} {} {}", c.plot, c.x_low, c.x_high, c.y_low, c.y_high);
-    }
-    std::string operator()(const command::Fit& c) const { return fmt::format("fit {}", c.plot); }
-    std::string operator()(const command::AxisScale& c) const {
-        return fmt::format("log {} {} {}", c.plot, c.is_x ? "x" : "y", on_off(c.logarithmic));
-    }
-    std::string operator()(const command::ShowCurve& c) const {
-        return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
-    }
-    std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
-};
+                                      {"lens", read_number<command::Lens>},
+                                      {"method", read_method},
+                                      {"max-impacts", read_max_impacts},
+                                      {"export", read_file_to_write<command::Export>},
+                                      {"copy", read_copy},
+                                      {"wait", read_wait},
+                                      {"say", read_say},
+                                      {"replay", read_replay}}};
 
 }  // namespace
-
-std::string to_text(const Command& command) { return std::visit(Print{}, command); }
-
-bool is_blank(std::string_view line) {
-    const std::size_t first = line.find_first_not_of(spaces);
-    return first == std::string_view::npos || line[first] == '#';
-}
 
 Command parse_command(std::string_view text, const std::string& file, int line_number) {
     const Line line(text, file, line_number);

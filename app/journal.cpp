@@ -1,5 +1,7 @@
 #include "journal.hpp"
 
+#include "words.hpp"
+
 namespace achilles {
 
 std::vector<Command> parse_journal(std::string_view text, const std::string& name) {
@@ -12,6 +14,13 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
         if (!is_blank(line)) commands.push_back(parse_command(line, name, number));
         text.remove_prefix(std::min(end + 1, text.size()));
     }
+    return commands;
+}
+
+std::vector<Command> parse_steps(const std::vector<std::string>& lines) {
+    std::vector<Command> commands;
+    for (const std::string& line : lines)
+        if (!is_blank(line)) commands.push_back(parse_command(line, "--do", 1));
     return commands;
 }
 

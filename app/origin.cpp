@@ -95,8 +95,14 @@ std::string certificates_text(const Trajectory& trajectory) {
 
 }  // namespace
 
-std::string command_line(const std::vector<std::string>& words) {
+std::string shell_line(const std::vector<std::string>& words) {
     std::string text = "achilles";
+    for (const std::string& word : words) text += " " + quoted(word);
+    return text;
+}
+
+std::string command_line(const std::vector<std::string>& words) {
+    std::vector<std::string> kept;
     bool options_end = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         options_end = options_end || words[i] == "--";
@@ -105,9 +111,9 @@ std::string command_line(const std::vector<std::string>& words) {
             continue;
         }
         if (!options_end && words[i].rfind("--out=", 0) == 0) continue;
-        text += " " + quoted(words[i]);
+        kept.push_back(words[i]);
     }
-    return text;
+    return shell_line(kept);
 }
 
 std::vector<std::string> words_of(std::string_view text) {

@@ -18,6 +18,8 @@ struct Origin {
     std::vector<Source> sources;
 };
 
+// "achilles" and the words, as a shell reads them.
+std::string shell_line(const std::vector<std::string>& words);
 // "achilles" and the words, without --out and what follows it; quoted for a shell where need be.
 std::string command_line(const std::vector<std::string>& words);
 // The words again. Throws std::runtime_error if the text is no such command line.

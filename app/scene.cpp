@@ -46,6 +46,20 @@ void Scene::perform(const command::Loop& command) { loops_ = command.on; }
 
 void Scene::perform(const command::Lens& command) { lens_ = std::clamp(command.from, -100.0, 1e9); }
 
+void Scene::perform(const command::Say& command) { caption_ = command.text; }
+
+std::vector<Command> steps_to(const Scene& scene) {
+    std::vector<Command> steps;
+    if (scene.look()) steps.emplace_back(*scene.look());
+    for (const std::string& thing : command::shown_things)
+        if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
+    if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
+    if (scene.loops()) steps.emplace_back(command::Loop{true});
+    if (scene.lens()) steps.emplace_back(command::Lens{*scene.lens()});
+    if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
+    return steps;
+}
+
 std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
@@ -57,6 +71,7 @@ std::string to_text(const Scene& scene) {
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";
+    if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
     return text;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 
@@ -20,6 +21,7 @@ class Scene {
     bool loops() const { return loops_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
+    const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
 
     // Each throws InputError and changes nothing where it makes no sense.
     void perform(const command::Look& command);
@@ -28,6 +30,7 @@ class Scene {
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
     void perform(const command::Lens& command);
+    void perform(const command::Say& command);
 
     // Another system: another world, but the same taste.
     void forget_place() { look_.reset(), lens_.reset(); }
@@ -38,7 +41,11 @@ class Scene {
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<double> lens_;
+    std::string caption_;
 };
+
+// What leads from a new scene to this one.
+std::vector<Command> steps_to(const Scene& scene);
 
 // What is not as at the beginning, for the session's text.
 std::string to_text(const Scene& scene);

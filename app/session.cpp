@@ -69,13 +69,16 @@ Session::Session(const std::string& name, const SystemDescription& first, Librar
 void Session::apply(const Command& command) {
     if (!patience_) receive(patience_);
     const Moment before = moment();
+    const std::string noticed = std::exchange(notice_, {});
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on must not wipe away what the last change of the run complained about.
         const bool moves_time_only =
             std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
-            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command);
+            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command) ||
+            std::holds_alternative<command::Wait>(command);
         if (!moves_time_only) error_.clear();
+        if (moves_time_only) notice_ = noticed;
         remember(command, before);
     } catch (const InputError& problem) {
         error_ = problem.what();
@@ -94,8 +97,8 @@ bool is_one_of(const Command& command) {
 bool is_change(const Command& command) {
     return is_one_of<command::Open, command::New, command::Text, command::Start, command::Set, command::End,
                      command::Tolerance, command::Eps, command::UseConditions, command::UseReinitialization,
-                     command::Grid, command::PlotView, command::Zoom, command::Fit, command::AxisScale,
-                     command::ShowCurve>(command);
+                     command::UseMethod, command::MaxImpacts, command::Grid, command::PlotView, command::Zoom,
+                     command::Range, command::Fit, command::AxisScale, command::ShowCurve>(command);
 }
 
 bool goes_on(const Command& last, const Command& next) {
@@ -290,6 +293,19 @@ void Session::perform(const command::UseConditions& command) {
 void Session::perform(const command::UseReinitialization& command) {
     Run changed = run();
     changed.options.truncation.reinitialization = command.reinitialization;
+    rerun(changed);
+}
+
+void Session::perform(const command::UseMethod& command) {
+    Run changed = run();
+    changed.options.method = command.method;
+    rerun(changed);
+}
+
+void Session::perform(const command::MaxImpacts& command) {
+    if (command.count < 1) throw refusal("at least one impact must be allowed");
+    Run changed = run();
+    changed.options.max_impacts = command.count;
     rerun(changed);
 }
 

@@ -111,6 +111,31 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
     }
 }
 
+// Three lines: what can be taken away, and the tours.
+void show_menu_button(const Session& session, PanelState& state, Commands& commands) {
+    const float size = ImGui::GetFrameHeight();
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    if (ImGui::Button("##menu", {size, size})) ImGui::OpenPopup("menu");
+    ImGui::PopStyleColor();
+    remember(state, "menu");
+    tooltip("take away a figure, the run, a journal, a command line; tours");
+    const ImVec2 low = ImGui::GetItemRectMin();
+    for (int i = -1; i <= 1; ++i) {
+        const float y = std::floor(low.y + 0.5F * size + units(5.0F) * static_cast<float>(i));
+        ImGui::GetWindowDrawList()->AddRectFilled({low.x + units(7.0F), y},
+                                                  {low.x + size - units(7.0F), y + units(2.0F)}, packed(text_color()));
+    }
+    if (!ImGui::BeginPopup("menu")) return;
+    ImGui::TextDisabled("Take it away");
+    show_take_away_items(session, state, commands);
+    if (!state.tours.empty()) {
+        ImGui::Separator();
+        ImGui::TextDisabled("Tours");
+        show_tour_items(session, state, commands);
+    }
+    ImGui::EndPopup();
+}
+
 void describe_system(const Session& session) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {units(8.0F), units(2.0F)});
     paragraph(session.description().title, text_color());
@@ -225,8 +250,8 @@ void integration(const Session& session, PanelState& state, Commands& commands) 
 }  // namespace
 
 void show_system(const Session& session, PanelState& state, Commands& commands) {
-    const float width = units(56.0F), space = ImGui::GetStyle().ItemInnerSpacing.x;
-    choose_system(session, state, commands, ImGui::GetContentRegionAvail().x - width - space);
+    const float width = units(52.0F), space = ImGui::GetStyle().ItemInnerSpacing.x, menu = ImGui::GetFrameHeight();
+    choose_system(session, state, commands, ImGui::GetContentRegionAvail().x - width - menu - 2.0F * space);
     ImGui::SameLine(0.0F, space);
     const bool shown = session.shows_editor();
     ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(shown ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
@@ -234,6 +259,8 @@ void show_system(const Session& session, PanelState& state, Commands& commands) 
     ImGui::PopStyleColor();
     remember(state, "editor");
     tooltip(shown ? "back to the sliders (Ctrl+E)" : "edit the text of the system (Ctrl+E)");
+    ImGui::SameLine(0.0F, space);
+    show_menu_button(session, state, commands);
 }
 
 void show_controls(const Session& session, PanelState& state, Commands& commands) {

@@ -28,7 +28,7 @@ void part(const char* name, const Rectangle& area, ImGuiWindowFlags flags, const
 }
 
 struct Parts {
-    Rectangle controls, mechanism, timeline, plots, events, status, error;
+    Rectangle controls, caption, mechanism, timeline, plots, events, status, error;
 };
 
 float card_height(const std::string& message, float width) {
@@ -38,7 +38,7 @@ float card_height(const std::string& message, float width) {
 
 // Everything from the size of the surface and of the text. The centre and the plots share what the controls leave; the
 // events get what they need to be read, or more where there is room.
-Parts lay_out(const Session& session, const std::string& message) {
+Parts lay_out(const Session& session, const PanelState& state, const std::string& message) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float padding = ImGui::GetStyle().WindowPadding.y;
     const float status = ImGui::GetFrameHeight() + units(8.0F);
@@ -53,8 +53,11 @@ Parts lay_out(const Session& session, const std::string& message) {
     // Beside a text the events would be too narrow for what a certificate says: they stand below it.
     parts.controls = {0.0F, 0.0F, left, wide ? height : size.y - status};
     const float error = message.empty() ? 0.0F : card_height(message, centre);
+    const float said = caption_height(session, state, centre - 2.0F * padding);
+    const float caption = said > 0.0F ? said + padding : 0.0F;
     parts.error = {left, 0.0F, centre, error};
-    parts.mechanism = {left, error, centre, height - timeline - error};
+    parts.caption = {left, error, centre, caption};
+    parts.mechanism = {left, error + caption, centre, height - timeline - error - caption};
     parts.timeline = {left, height - timeline, centre, timeline};
     parts.plots = {left + centre, 0.0F, width - centre, height};
     parts.events = wide ? Rectangle{0.0F, height, size.x, events} : Rectangle{left, height, width, events};
@@ -65,17 +68,29 @@ Parts lay_out(const Session& session, const std::string& message) {
 // What the last command was refused for; without the editor also why its text is no system.
 std::string card_text(const Session& session) {
     const auto& problems = session.document().problems;
-    if (!session.error().empty() || session.shows_editor() || problems.empty()) return session.error();
+    if (!session.error().empty()) return session.error();
+    if (session.shows_editor() || problems.empty()) return session.notice();
     return problems.front().what();
 }
 
-void show_card(const std::string& message) {
+void paragraph(const std::string& text, float width) {
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
+void show_card(const Session& session, const std::string& message) {
     Rectangle area = remaining();
     area.height += ImGui::GetStyle().WindowPadding.y;
-    paint_error_card(area);
+    const float width = area.width - 2.0F * units(card_padding);
+    const bool is_good = message == session.notice();
+    if (!is_good) paint_error_card(area);
     ImGui::SetCursorScreenPos({area.x + units(card_padding), area.y + units(card_padding)});
     ImGui::BeginGroup();
-    show_message(message, area.width - 2.0F * units(card_padding));
+    if (is_good)
+        paragraph(message, width);
+    else
+        show_message(message, width);
     ImGui::EndGroup();
 }
 
@@ -88,12 +103,19 @@ void use_keys(const Session& session, Commands& commands) {
     if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
 }
 
+// What the last command copied goes to the clipboard, once.
+void copy(const Session& session, PanelState& state) {
+    if (session.copies() == state.copies) return;
+    state.copies = session.copies();
+    ImGui::SetClipboardText(session.copied().c_str());
+}
+
 }  // namespace
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
     const std::string message = card_text(session);
-    const Parts parts = lay_out(session, message);
+    const Parts parts = lay_out(session, state, message);
     part("controls", parts.controls, session.shows_editor() ? still_window : fixed_window, [&] {
         show_system(session, state, commands);
         if (session.shows_editor())
@@ -103,14 +125,22 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         show_dialogs(session, state, commands);
     });
     if (parts.error.height > 0.0F) {
-        part("error", parts.error, still_window, [&] { show_card(message); });
+        part("error", parts.error, still_window, [&] { show_card(session, message); });
     }
+    if (parts.caption.height > 0.0F)
+        part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
-    part("plots", parts.plots, still_window, [&] { show_plots(session, state, commands); });
+    part("plots", parts.plots, still_window, [&] {
+        if (lens_is_open(session))
+            show_lens(session, state, commands);
+        else
+            show_plots(session, state, commands);
+    });
     part("events", parts.events, still_window, [&] { show_events(session, state, commands); });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
     use_keys(session, commands);
+    copy(session, state);
     return commands;
 }
 

@@ -237,24 +237,10 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     show_plot_menu(session, plot, state, commands);
 }
 
-// The plot with the pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits
-// hold both.
 Panel with_pinned(const Session& session, std::size_t plot) {
-    Panel panel = session.plots()[plot];
+    const Panel& panel = session.plots()[plot];
     if (plot >= session.pinned_plots().size()) return panel;
-    const Panel& pinned = session.pinned_plots()[plot];
-    std::vector<Curve> behind = pinned.curves;
-    for (Curve& curve : behind) {
-        curve.label.clear();
-        curve.stroke.color = session.theme().surface;
-        curve.stroke.color.a = 140;
-        curve.stroke.width = 1.2;
-    }
-    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
-    const Framing& framing = session.plotted().list()[plot].framing;
-    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
-    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
-    return panel;
+    return with_pinned(panel, session.pinned_plots()[plot], session.plotted().list()[plot].framing, session.theme());
 }
 
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {

@@ -72,8 +72,13 @@ void share_axes(Figure& figure) {
 
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
                    const PublicationStyle& style) {
+    return publication(trajectory, compose(trajectory, views, light_theme(), 1).panels, style);
+}
+
+Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style) {
     const Theme theme = light_theme();
-    Figure figure = compose(trajectory, views, theme, 1);
+    Figure figure = compose(trajectory, std::span<const ViewDescription>(), theme, 1);  // its colours
+    figure.panels = std::move(panels);
     if (style.transparent) figure.background.a = 0;
     figure.grid.a = 0;
     figure.keys = keys_of(trajectory, figure.panels, theme);

@@ -14,6 +14,9 @@ struct PublicationStyle {
 // Throws InputError for a view that cannot be evaluated.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
 
+// The same of panels that are composed already, for a white page.
+Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);
+
 // Takes the labels off the x axes of every row whose panels all stand on others with the same axes.
 void share_axes(Figure& figure);
 
