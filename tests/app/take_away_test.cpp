@@ -95,7 +95,8 @@ TEST(CopyCommand, makes_the_same_run_and_figure) {
             ASSERT_EQ(answer.status, 0) << session.copied() << "\n" << answer.err;
             const std::string there = test::content(folder.path() / ("ball_on_sine." + ending));
             EXPECT_EQ(timeless(there), timeless(test::content(here))) << session.copied();
-            if (ending == "svg") EXPECT_EQ(folder.run("reproduce here.svg").status, 0) << session.copied();
+            const int again = ending == "svg" ? folder.run("reproduce here.svg").status : 0;
+            EXPECT_EQ(again, 0) << session.copied();
         }
     }
 }
