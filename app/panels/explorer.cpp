@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <string>
 
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -73,12 +74,6 @@ std::string card_text(const Session& session) {
     return problems.front().what();
 }
 
-void paragraph(const std::string& text, float width) {
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-}
-
 void show_card(const Session& session, const std::string& message) {
     Rectangle area = remaining();
     area.height += ImGui::GetStyle().WindowPadding.y;
@@ -88,7 +83,7 @@ void show_card(const Session& session, const std::string& message) {
     ImGui::SetCursorScreenPos({area.x + units(card_padding), area.y + units(card_padding)});
     ImGui::BeginGroup();
     if (is_good)
-        paragraph(message, width);
+        paragraph(message, width, text_color());
     else
         show_message(message, width);
     ImGui::EndGroup();

@@ -9,6 +9,7 @@
 
 #include "output/output.hpp"
 #include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -16,23 +17,6 @@ namespace achilles {
 namespace {
 
 constexpr float margin = 12.0F;
-
-Figure style_of(const Theme& theme) {
-    Figure style;
-    style.background = theme.background;
-    style.ink = theme.ink;
-    style.grid = theme.grid;
-    style.text_size = 13.0;
-    return style;
-}
-
-void paragraph(const std::string& text, float width, const Color& color) {
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(color));
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + width);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
-}
 
 std::string explanation(const Lens& lens) {
     return fmt::format(
@@ -75,7 +59,7 @@ void show_row(const Session& session, const Lens& lens, float height, PanelState
     Rectangle area = remaining();
     area.height = height;
     area.width -= units(margin);
-    const Rectangle inside = paint(panel, style_of(session.theme()), ImGui::GetWindowDrawList(), area, units(1.0F));
+    const Rectangle inside = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), area, units(1.0F));
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::InvisibleButton("lens", {std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
     remember(state, "lens");

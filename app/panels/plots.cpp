@@ -8,6 +8,7 @@
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -16,15 +17,6 @@ namespace {
 
 constexpr float inset = 8.0F;
 constexpr double click = 4.0;  // pixels that a hand may slip and still click
-
-Figure style_of(const Theme& theme) {
-    Figure style;
-    style.background = theme.background;
-    style.ink = theme.ink;
-    style.grid = theme.grid;
-    style.text_size = 13.0;
-    return style;
-}
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
     const std::vector<Curve>& curves = session.plots()[plot].curves;
@@ -253,7 +245,7 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
                           cell.y + cell.height - edge - row.y - head};
     if (inner.width < 2.0F || inner.height < 2.0F) return;
     const Panel panel = with_pinned(session, plot);
-    const Rectangle area = paint(panel, style_of(session.theme()), list, inner, units(1.0F));
+    const Rectangle area = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
     const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};

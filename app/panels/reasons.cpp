@@ -8,6 +8,7 @@
 #include "figure/ticks.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "simulate/explain.hpp"
 
@@ -62,18 +63,12 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) 
                        number(inequality->left / inequality->right, "{:.3g}"));
 }
 
-void wrapped(const std::string& text) {
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-}
-
 // Lambda during the contact, down to zero, and dotted how it would go on.
-void show_force(const Session& session, const Event& event, const ReleaseReason& reason, const Rectangle& area) {
-    const Theme& theme = session.theme();
+Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& reason) {
+    const std::string time = "t (s)", lambda_name = "\u03bb";
     Panel panel;
-    panel.x.label = "t (s)";
-    panel.y.label = "\u03bb";
+    panel.x.label = time;
+    panel.y.label = lambda_name;
     const Stroke contact = phase_stroke(theme, Phase::Kind::constrained, 0, 1);
     Curve force{"", contact, {}}, pull{"", contact, {}};
     double most = 0.0;
@@ -90,12 +85,7 @@ void show_force(const Session& session, const Event& event, const ReleaseReason&
     set_ticks(panel.y, std::min(pull.points.back().y, 0.0), most, 0.08, 3);
     panel.curves = {force, pull};
     panel.markers = {release};
-    Figure style;
-    style.background = theme.background;
-    style.ink = theme.ink;
-    style.grid = theme.grid;
-    style.text_size = 13.0;
-    paint(panel, style, ImGui::GetWindowDrawList(), area, units(1.0F));
+    return panel;
 }
 
 }  // namespace
@@ -107,9 +97,9 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
     row("impact speed", number(event.impact_speed, "{:.9g}"));
-    const double lost = reason.energy_before - reason.energy_after;
-    row("energy lost", number(lost, "{:.6g}"), "of " + number(reason.energy_before));
-    wrapped(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr));
+    row("energy", number(reason.energy_before), number(reason.energy_after));
+    row("energy lost", number(reason.energy_before - reason.energy_after));
+    paragraph(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr), remaining().width, text_color());
 }
 
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
@@ -120,16 +110,16 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     const Rectangle room = remaining();
     const float words = std::max(units(second_at), 0.45F * room.width);
     if (room.width - words > units(160.0F) && !reason.force.empty())
-        show_force(session, event, reason, {room.x + words, room.y, room.width - words, room.height});
+        paint(force_panel(session.theme(), event, reason), screen_style(session.theme()), ImGui::GetWindowDrawList(),
+              {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
     row("\u03bb", number(reason.lambda, "{:.2g}"));
     row("\u03bb\u0307", number(reason.lambda_rate));
     row("h\u2034", number(reason.jerk));
-    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + words - units(16.0F));
-    ImGui::TextUnformatted(
+    paragraph(
         "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
         "first "
-        "two rates vanish, the third, h\u2034, is positive: the body leaves it.");
-    ImGui::PopTextWrapPos();
+        "two rates vanish, the third, h\u2034, is positive: the body leaves it.",
+        words - units(16.0F), text_color());
 }
 
 }  // namespace achilles

@@ -87,10 +87,10 @@ explorer=$!
 await xdotool search --onlyvisible --class achilles || fail "no window appears for a tour"
 window=$(xdotool search --onlyvisible --class achilles | head -1)
 xdotool windowfocus --sync "$window" || true
-await grep -q '^say First' "$folder/journal" || fail "the tour does not begin"
+await grep -q '^say "First' "$folder/journal" || fail "the tour does not begin"
 grep -q 'Second' "$folder/journal" && fail "the tour does not wait"
 xdotool sleep 0.5 key Return
-await grep -q '^say Second' "$folder/journal" || fail "Enter does not lead the tour on"
+await grep -q '^say "Second' "$folder/journal" || fail "Enter does not lead the tour on"
 grep -q '^wait [1-9]' "$folder/journal" || fail "the record does not tell how long the tour waited"
 xdotool sleep 0.3 key Escape
 await grep -q '^say ""' "$folder/journal" || fail "Escape does not end the tour"
@@ -105,13 +105,13 @@ grep -q '^step 1' "$folder/journal" || fail "the right arrow does not step"
 # Files dropped on the window: a system is opened, a journal is replayed.
 cp "$folder/mine.toml" "$folder/dropped.toml"
 printf 'grid 3 2\n' > "$folder/dropped.journal"
-timeout 30 "$build/tests/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
 await grep -q "^open $folder/dropped.toml" "$folder/journal" || fail "a system that is dropped is not opened"
-timeout 30 "$build/tests/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
 await grep -q '^grid 3 2' "$folder/journal" || fail "a journal that is dropped is not replayed"
 "$build/achilles" screenshot --journal "$folder/journal" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
-"$build/tests/x11_hand" close "$window"
+"$build/x11_hand" close "$window"
 status=0
 wait "$explorer" || status=$?
 explorer=
