@@ -107,7 +107,9 @@ TEST(ZenoLens, ShowsTheIntervalAsABandWithoutEnd) {
         const Panel panel = lens->panel(part.low, part.high, light_theme());
         ASSERT_EQ(panel.bands.size(), 1u);
         EXPECT_EQ(panel.bands[0].low, *lens->interval());
-        EXPECT_NE(to_text(Figure{1, {panel}}).find("band \"certified\""), std::string::npos);
+        Figure figure;
+        figure.panels = {panel};
+        EXPECT_NE(to_text(figure).find("band \"certified\""), std::string::npos);
         for (const double x : {lens->first(), 20.0, 1e6}) {
             const Panel there = lens->panel(x, x + 4.0, light_theme());
             EXPECT_EQ(there.y.low, panel.y.low);
