@@ -29,14 +29,37 @@ fs::path assets() {
                      "set ACHILLES_ASSETS to the folder that holds systems/ and fonts/");
 }
 
-std::vector<fs::path> system_files() {
+namespace {
+
+std::vector<fs::path> files_in(const char* folder, const char* extension) {
     std::vector<fs::path> files;
     std::error_code problem;
-    for (const fs::directory_entry& entry : fs::directory_iterator(assets() / "systems", problem))
-        if (entry.path().extension() == ".toml" && entry.is_regular_file(problem)) files.push_back(entry.path());
+    for (const fs::directory_entry& entry : fs::directory_iterator(assets() / folder, problem))
+        if (entry.path().extension() == extension && entry.is_regular_file(problem)) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
 }
+
+// A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
+// to tell.
+fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const char* kind, const char* extension) {
+    std::error_code problem;
+    const fs::path path{std::string(wanted)};
+    if (path.has_parent_path() || path.extension() == extension || fs::is_regular_file(path, problem)) return path;
+    std::vector<std::string> names;
+    for (const fs::path& file : files) {
+        if (file.stem() == path) return file;
+        names.push_back(file.stem().string());
+    }
+    throw InputError({}, {}, fmt::format("there is no {} '{}'{}", kind, wanted, did_you_mean(wanted, names)),
+                     fmt::format("a {} is a path to a {} file or one of: {}", kind, extension, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::vector<fs::path> system_files() { return files_in("systems", ".toml"); }
+
+std::vector<fs::path> journal_files() { return files_in("journals", ".journal"); }
 
 std::vector<std::string> system_names() {
     std::vector<std::string> names;
@@ -44,16 +67,8 @@ std::vector<std::string> system_names() {
     return names;
 }
 
-fs::path find_system(std::string_view system) {
-    // What looks like a path is one, there or not: its absence is read_system's to tell.
-    std::error_code problem;
-    const fs::path path{std::string(system)};
-    if (path.has_parent_path() || path.extension() == ".toml" || fs::is_regular_file(path, problem)) return path;
-    for (const fs::path& file : system_files())
-        if (file.stem() == path) return file;
-    const std::vector<std::string> names = system_names();
-    throw InputError({}, {}, fmt::format("there is no system '{}'{}", system, did_you_mean(system, names)),
-                     fmt::format("a system is a path to a .toml file or one of: {}", fmt::join(names, ", ")));
-}
+fs::path find_system(std::string_view system) { return find(system, system_files(), "system", ".toml"); }
+
+fs::path find_journal(std::string_view journal) { return find(journal, journal_files(), "journal", ".journal"); }
 
 }  // namespace achilles

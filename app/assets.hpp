@@ -18,6 +18,10 @@ std::vector<std::filesystem::path> system_files();
 // The same as names: what SYSTEM may be besides a path.
 std::vector<std::string> system_names();
 
+// The same of journals: a file in assets/journals is a tour.
+std::vector<std::filesystem::path> journal_files();
+std::filesystem::path find_journal(std::string_view journal);
+
 // The file of SYSTEM, a path or a name. Throws InputError with the nearest name and the list of names.
 std::filesystem::path find_system(std::string_view system);
 

@@ -37,6 +37,18 @@ Command read_reinitialization(const Line& line) {
                      "write: reinitialization kinetic, or: reinitialization euclidean");
 }
 
+Command read_method(const Line& line) {
+    line.expect_arguments(1, 1, "write: method taylor, or: method dopri5");
+    if (const auto value = method_from(line.word(1).text)) return command::UseMethod{*value};
+    throw line.error(line.word(1).column, fmt::format("there is no method '{}'", line.word(1).text),
+                     "write: method taylor, or: method dopri5");
+}
+
+Command read_max_impacts(const Line& line) {
+    line.expect_arguments(1, 1, "write: max-impacts NUMBER");
+    return command::MaxImpacts{line.whole_number(1)};
+}
+
 Command read_set(const Line& line) {
     line.expect_arguments(2, 2, "write: set NAME VALUE");
     return command::Set{line.word(1).text, line.number(2)};
@@ -75,12 +87,42 @@ Command read_text_of_system(const Line& line) {
     return command::Text{line.word(1).text};
 }
 
-Command read_save(const Line& line) {
-    line.expect_arguments(1, 2, "write: save FILE, or: save FILE overwrite");
+// Save or Export: a file, and perhaps that it may be there already.
+template <class Kind>
+Command read_file_to_write(const Line& line) {
+    const std::string usage = fmt::format("write: {0} FILE, or: {0} FILE overwrite", line.word(0).text);
+    line.expect_arguments(1, 2, usage);
     if (line.count() == 3 && line.word(2).text != "overwrite")
-        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text),
-                         "write: save FILE, or: save FILE overwrite");
-    return command::Save{line.word(1).text, line.count() == 3};
+        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text), usage);
+    return Kind{line.word(1).text, line.count() == 3};
+}
+
+Command read_copy(const Line& line) {
+    const auto& things = command::copied_things;
+    const std::string usage = fmt::format("write: copy {}", fmt::join(things, ", or: copy "));
+    line.expect_arguments(1, 1, usage);
+    const std::string& what = line.word(1).text;
+    if (std::find(things.begin(), things.end(), what) == things.end())
+        throw line.error(line.word(1).column, fmt::format("'{}' has no command{}", what, did_you_mean(what, things)),
+                         usage);
+    return command::Copy{what};
+}
+
+Command read_wait(const Line& line) {
+    line.expect_arguments(1, 1, "write: wait SECONDS");
+    const double seconds = line.number(1);
+    if (seconds < 0.0) throw line.error(line.word(1).column, "nobody can wait for the past", "write: wait SECONDS");
+    return command::Wait{seconds};
+}
+
+Command read_say(const Line& line) {
+    line.expect_arguments(1, 1, "write: say \"a sentence\", or: say \"\"");
+    return command::Say{line.word(1).text};
+}
+
+Command read_replay(const Line& line) {
+    line.expect_arguments(1, 1, "write: replay JOURNAL; a path with spaces stands in double quotes");
+    return command::Replay{line.word(1).text};
 }
 
 template <bool pinned>
@@ -144,12 +186,23 @@ Command read_fit(const Line& line) {
     return command::Fit{line.whole_number(1)};
 }
 
+// Whether the second argument is x, and not y.
+bool read_axis(const Line& line, const std::string& usage) {
+    const std::string& axis = line.word(2).text;
+    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
+    return axis == "x";
+}
+
 Command read_log(const Line& line) {
     const std::string usage = "write: log NUMBER x on, or: log NUMBER y off";
     line.expect_arguments(3, 3, usage);
-    const std::string& axis = line.word(2).text;
-    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
-    return command::AxisScale{line.whole_number(1), axis == "x", line.is_on(3, usage)};
+    return command::AxisScale{line.whole_number(1), read_axis(line, usage), line.is_on(3, usage)};
+}
+
+Command read_range(const Line& line) {
+    const std::string usage = "write: range NUMBER x LOW HIGH, or: range NUMBER y LOW HIGH";
+    line.expect_arguments(4, 4, usage);
+    return command::Range{line.whole_number(1), read_axis(line, usage), line.number(3), line.number(4)};
 }
 
 Command read_curve(const Line& line) {
@@ -189,7 +242,7 @@ Command read_size(const Line& line) {
     return command::Size{panel, share};
 }
 
-constexpr std::array<Verb, 36> verbs{{{"open", read_open},
+constexpr std::array<Verb, 44> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -202,13 +255,14 @@ constexpr std::array<Verb, 36> verbs{{{"open", read_open},
                                       {"select", read_select},
                                       {"new", read_alone<command::New>},
                                       {"text", read_text_of_system},
-                                      {"save", read_save},
+                                      {"save", read_file_to_write<command::Save>},
                                       {"show", read_show<true>},
                                       {"hide", read_show<false>},
                                       {"grid", read_grid},
                                       {"plot", read_plot},
                                       {"zoom", read_zoom},
                                       {"fit", read_fit},
+                                      {"range", read_range},
                                       {"log", read_log},
                                       {"curve", read_curve},
                                       {"link", read_on_off<command::Link>},
@@ -224,79 +278,16 @@ constexpr std::array<Verb, 36> verbs{{{"open", read_open},
                                       {"lens", read_number<command::Lens>},
                                       {"theme", read_theme},
                                       {"size", read_size},
-                                      {"reset", read_alone<command::Reset>}}};
-
-const char* on_off(bool on) { return on ? "on" : "off"; }
-
-struct Print {
-    std::string operator()(const command::Open& c) const { return "open " + quoted_where_needed(c.system); }
-    std::string operator()(const command::Set& c) const {
-        return fmt::format("set {} {}", quoted_where_needed(c.name), c.value);
-    }
-    std::string operator()(const command::End& c) const { return fmt::format("end {}", c.time); }
-    std::string operator()(const command::Tolerance& c) const { return fmt::format("tolerance {}", c.value); }
-    std::string operator()(const command::Eps& c) const {
-        return c.q == c.v && c.v == c.t ? fmt::format("eps {}", c.q) : fmt::format("eps {} {} {}", c.q, c.v, c.t);
-    }
-    std::string operator()(const command::UseConditions& c) const {
-        return fmt::format("conditions {}", to_text(c.conditions));
-    }
-    std::string operator()(const command::UseReinitialization& c) const {
-        return fmt::format("reinitialization {}", to_text(c.reinitialization));
-    }
-    std::string operator()(const command::Seek& c) const { return fmt::format("seek {}", c.time); }
-    std::string operator()(const command::Play&) const { return "play"; }
-    std::string operator()(const command::Pause&) const { return "pause"; }
-    std::string operator()(const command::Select& c) const { return fmt::format("select {}", c.event); }
-    std::string operator()(const command::New&) const { return "new"; }
-    std::string operator()(const command::Text& c) const { return "text " + quoted(c.text); }
-    std::string operator()(const command::Save& c) const {
-        return fmt::format("save {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
-    }
-    std::string operator()(const command::Show& c) const {
-        return fmt::format("{} {}", c.on ? "show" : "hide", quoted_where_needed(c.what));
-    }
-    std::string operator()(const command::Start& c) const {
-        std::string text = "start";
-        for (const auto& [name, value] : c.values) text += fmt::format(" {} {}", quoted_where_needed(name), value);
-        return text;
-    }
-    std::string operator()(const command::Look& c) const { return fmt::format("look {} {} {}", c.x, c.y, c.width); }
-    std::string operator()(const command::LookAll&) const { return "look all"; }
-    std::string operator()(const command::Speed& c) const { return fmt::format("speed {}", c.value); }
-    std::string operator()(const command::Loop& c) const { return fmt::format("loop {}", on_off(c.on)); }
-    std::string operator()(const command::Step& c) const { return fmt::format("step {}", c.events); }
-    std::string operator()(const command::Undo&) const { return "undo"; }
-    std::string operator()(const command::Redo&) const { return "redo"; }
-    std::string operator()(const command::Pin& c) const { return c.on ? "pin" : "unpin"; }
-    std::string operator()(const command::Lens& c) const { return fmt::format("lens {}", c.from); }
-    std::string operator()(const command::Grid& c) const { return fmt::format("grid {} {}", c.columns, c.rows); }
-    std::string operator()(const command::PlotView& c) const {
-        std::string text = fmt::format("plot {} {}", c.plot, quoted_where_needed(c.x));
-        for (const std::string& y : c.y) text += " " + quoted_where_needed(y);
-        return text;
-    }
-    std::string operator()(const command::Zoom& c) const {
-        return fmt::format("zoom {} {} {} {} {}", c.plot, c.x_low, c.x_high, c.y_low, c.y_high);
-    }
-    std::string operator()(const command::Fit& c) const { return fmt::format("fit {}", c.plot); }
-    std::string operator()(const command::AxisScale& c) const {
-        return fmt::format("log {} {} {}", c.plot, c.is_x ? "x" : "y", on_off(c.logarithmic));
-    }
-    std::string operator()(const command::ShowCurve& c) const {
-        return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
-    }
-    std::string operator()(const command::UseTheme& c) const { return c.dark ? "theme dark" : "theme light"; }
-    std::string operator()(const command::Size& c) const {
-        return c.share > 0.0 ? fmt::format("size {} {}", c.panel, c.share) : fmt::format("size {} auto", c.panel);
-    }
-    std::string operator()(const command::Reset&) const { return "reset"; }
-    std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
-};
+                                      {"reset", read_alone<command::Reset>},
+                                      {"method", read_method},
+                                      {"max-impacts", read_max_impacts},
+                                      {"export", read_file_to_write<command::Export>},
+                                      {"copy", read_copy},
+                                      {"wait", read_wait},
+                                      {"say", read_say},
+                                      {"replay", read_replay}}};
 
 }  // namespace
-
-std::string to_text(const Command& command) { return std::visit(Print{}, command); }
 
 Command parse_command(std::string_view text, const std::string& file, int line_number) {
     const Line line(text, file, line_number);

@@ -9,12 +9,15 @@
 //     grid 3 2 (columns, rows) plot 1 t y gap     plot 2 x "x'^2 + y'^2"      link off
 //     start x 0.3 x' 1.5       look 2 0.5 8 (middle, width)   look all    speed 0.1    loop on     step -1
 //     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
-//     zoom 1 0 5 -1 2.5        fit 1              log 1 y on         curve 1 2 off
+//     zoom 1 0 5 -1 2.5        fit 1     range 1 x 0 5     log 1 y on    curve 1 2 off
+//     method dopri5            max-impacts 1000
+//     export ball.svg          export run.json overwrite (.svg and .png the plots, .json and .csv the run, .journal
+//     all) copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
+//     say "Look at the ball."  wait 2.5 (s; passes at once without a window)         replay the_ball
 //     theme dark               hide plots         size controls 0.3 (a share of the window)   size events auto
 //     reset (every value and option as the file has it)
 //
-// Values are in the file's units, angles in radians. A word that holds spaces, # or quotes stands in "double quotes",
-// where \n is a new line, \t a tab, \r a carriage return and \ before anything else that itself.
+// Values are in the file's units, angles in radians; words.hpp tells how words with spaces are written.
 #pragma once
 
 #include <string>
@@ -148,6 +151,12 @@ struct Zoom {
     double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;  // in the units that are shown
     friend bool operator==(const Zoom&, const Zoom&) = default;
 };
+struct Range {  // of one axis; the other stays as it is
+    int plot = 1;
+    bool is_x = true;
+    double low = 0.0, high = 1.0;
+    friend bool operator==(const Range&, const Range&) = default;
+};
 struct Fit {
     int plot = 1;
     friend bool operator==(const Fit&, const Fit&) = default;
@@ -181,6 +190,39 @@ struct Lens {
     double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens
     friend bool operator==(const Lens&, const Lens&) = default;
 };
+struct UseMethod {
+    Method method = Method::taylor;
+    friend bool operator==(const UseMethod&, const UseMethod&) = default;
+};
+struct MaxImpacts {
+    int count = 1;  // after so many the run stops
+    friend bool operator==(const MaxImpacts&, const MaxImpacts&) = default;
+};
+
+struct Export {
+    std::string file;        // what goes there, its ending tells
+    bool overwrite = false;  // whatever file may be there
+    friend bool operator==(const Export&, const Export&) = default;
+};
+inline const std::vector<std::string> copied_things{"explorer", "figure", "run"};
+struct Copy {
+    std::string what;  // one of copied_things: the command line that makes it goes to the clipboard
+    friend bool operator==(const Copy&, const Copy&) = default;
+};
+
+// What makes a journal a tour.
+struct Say {
+    std::string text;  // stands above the mechanism until something else does; empty: nothing
+    friend bool operator==(const Say&, const Say&) = default;
+};
+struct Wait {
+    double seconds = 0.0;  // for somebody to look; a run that plays goes on meanwhile
+    friend bool operator==(const Wait&, const Wait&) = default;
+};
+struct Replay {
+    std::string journal;  // a path, or the name of one of the assets
+    friend bool operator==(const Replay&, const Replay&) = default;
+};
 
 }  // namespace command
 
@@ -190,7 +232,9 @@ using Command =
                  command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
                  command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link, command::Start,
                  command::Look, command::LookAll, command::Speed, command::Loop, command::Step, command::Undo,
-                 command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset>;
+                 command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset,
+                 command::UseMethod, command::MaxImpacts, command::Export, command::Copy, command::Range, command::Say,
+                 command::Wait, command::Replay>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

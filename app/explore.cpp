@@ -4,14 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "assets.hpp"
 #include "commands/commands.hpp"
 #include "image/png_notes.hpp"
 #include "journal.hpp"
+#include "open_session.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
+#include "tour.hpp"
 
 namespace achilles {
 
@@ -31,40 +34,9 @@ std::vector<SystemEntry> known_systems() {
     return entries;
 }
 
-// Where none is asked for: the paper's first example, or whatever there is.
-std::string first_system() {
-    const std::vector<std::string> names = system_names();
-    if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
-    const std::string usual = "ball_on_sine";
-    return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
-}
-
 // What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
 // hand; the others are shown when they are there.
 constexpr double frame_patience = 1.0 / 40.0;
-
-// The session that the command line asks for, with systems from where the library finds them.
-Session open_session(const std::string& name, SystemDescription first, const ExploreOptions& options, Library library,
-                     Patience patience) {
-    library.finish = [overrides = options.overrides](SystemDescription& description) {
-        apply(overrides, description.options);
-    };
-    return {name, adjusted(std::move(first), options.settings, options.overrides), std::move(library), patience};
-}
-
-// A picture's systems. What its journal saves is written only when it is made for the first time.
-Library library_of(Studio& studio) {
-    Library library;
-    library.open = [&studio](const std::string& name) {
-        const std::filesystem::path path(name);
-        const bool is_path = path.has_parent_path() || path.extension() == ".toml";
-        const std::string text = studio.inputs().text(name);
-        return Document{name, is_path ? name : "", name, text, text, {}};
-    };
-    if (studio.reproduces())
-        library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
-    return library;
-}
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
 // line.
@@ -73,6 +45,8 @@ std::vector<Command> opening(const Session& session, const ExploreOptions& optio
     const Options& run = session.run().options;
     const OptionOverrides& given = options.overrides;
     if (given.end_time) commands.emplace_back(command::End{run.end_time});
+    if (given.method) commands.emplace_back(command::UseMethod{run.method});
+    if (given.max_impacts) commands.emplace_back(command::MaxImpacts{run.max_impacts});
     if (given.tolerance) commands.emplace_back(command::Tolerance{run.tolerance});
     if (given.eps || given.eps_q || given.eps_v || given.eps_t)
         commands.emplace_back(command::Eps{run.truncation.eps_q, run.truncation.eps_v, run.truncation.eps_t});
@@ -96,28 +70,37 @@ SurfaceOptions surface_options(const ExploreOptions& options) {
     return surface;
 }
 
+// "The paper's ball" for a journal that begins with the comment "# The paper's ball".
+std::vector<SystemEntry> known_tours() {
+    std::vector<SystemEntry> entries;
+    for (const std::filesystem::path& file : journal_files()) {
+        const std::string name = file.stem().string();
+        try {
+            const std::string text = journal_file(file);
+            const std::string line = text.substr(0, text.find('\n'));
+            entries.push_back({name, line.rfind("# ", 0) == 0 ? line.substr(2) : name});
+        } catch (const InputError&) {
+            entries.push_back({name, name});  // choosing it tells what is wrong with it
+        }
+    }
+    return entries;
+}
+
 PanelState panel_state(bool in_window) {
     PanelState state;
     state.systems = known_systems();
+    state.tours = known_tours();
     state.in_window = in_window;
     return state;
 }
 
-// What the files dropped on the window ask for: a journal is replayed; a system is opened, once changes of the text are
+// What the files dropped on the window ask for: to replay a journal, or to open a system, once changes of the text are
 // saved or given up.
 std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
     std::vector<Command> commands;
     for (const std::string& file : window.dropped()) {
-        try {
-            if (std::filesystem::path(file).extension() == ".journal") {
-                const std::vector<Command> journal = read_journal(file);
-                commands.insert(commands.end(), journal.begin(), journal.end());
-            } else {
-                request(session, state, command::Open{file}, commands);
-            }
-        } catch (const InputError& problem) {
-            session.refuse(problem);
-        }
+        const bool is_journal = std::filesystem::path(file).extension() == ".journal";
+        request(session, state, is_journal ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
     }
     return commands;
 }
@@ -137,47 +120,122 @@ class Clock {
     std::optional<std::chrono::steady_clock::time_point> last_;
 };
 
+// One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
+class Explorer {
+ public:
+    Explorer(Session& session, Window& window, const ExploreOptions& options)
+        : session_(session), window_(window), state_(panel_state(true)) {
+        if (!options.record.empty()) record_.emplace(options.record);
+        for (const Command& command : opening(session, options)) keep(command);
+    }
+
+    void begin(const std::vector<Command>& journal) {
+        tour_.begin(journal);
+        session_.set_patience({});  // a journal tells what was done after each run: every run is waited for
+    }
+
+    bool may_close() { return request_close(session_, state_); }
+
+    void frame() {
+        session_.update();
+        state_.on_tour = tour_.runs();
+        pass_time();
+        std::vector<Command> commands = explorer(session_, state_);
+        for (Command& command : dropped(window_, session_, state_)) commands.push_back(std::move(command));
+        if (!commands.empty()) lead_on(PanelState::OnTour::stop);  // the hand takes over
+        for (const Command& command : commands) take(command);
+        lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
+        if (state_.editor.may_close) window_.close();
+        window_.keep_drawing(session_.playing() || tour_.runs() || is_typing(state_));
+    }
+
+    // Tells the record what is not told yet.
+    void finish() { keep_wait(); }
+
+ private:
+    void pass_time() {
+        if (!session_.playing() && !tour_.runs()) return clock_.stop();
+        const double seconds = clock_.elapsed();
+        // Playing is seeking, by the clock; nothing a journal would keep.
+        if (!tour_.runs()) return play_on(session_, seconds);
+        for (const Command& command : tour_.advance(seconds)) take(command);
+        if (!tour_.runs()) stop_tour();
+    }
+
+    void take(const Command& command) {
+        const auto* replay = std::get_if<command::Replay>(&command);
+        if (replay == nullptr) {
+            keep(command);
+            session_.apply(command);
+            return;
+        }
+        try {
+            begin(read_journal(find_journal(replay->journal)));
+        } catch (const InputError& problem) {
+            stop_tour();
+            session_.refuse(problem);
+        }
+    }
+
+    void lead_on(PanelState::OnTour wanted) {
+        if (wanted == PanelState::OnTour::next)
+            for (const Command& command : tour_.next()) take(command);
+        if (wanted == PanelState::OnTour::stop && tour_.runs()) {
+            stop_tour();
+            take(command::Say{""});
+        }
+    }
+
+    void stop_tour() {
+        tour_.stop();
+        session_.set_patience(frame_patience);
+    }
+
+    // The pieces of a wait are one wait to the record.
+    void keep(const Command& command) {
+        if (const auto* wait = std::get_if<command::Wait>(&command)) {
+            waited_ += wait->seconds;
+            return;
+        }
+        keep_wait();
+        if (record_) record_->append(command);
+    }
+    void keep_wait() {
+        if (record_ && waited_ > 0.0) record_->append(command::Wait{waited_});
+        waited_ = 0.0;
+    }
+
+    Session& session_;
+    Window& window_;
+    PanelState state_;
+    std::optional<JournalFile> record_;
+    Tour tour_;
+    Clock clock_;
+    double waited_ = 0.0;
+};
+
 }  // namespace
 
 int explore(const ExploreOptions& options) {
     std::vector<Command> journal;
-    if (!options.journal.empty()) journal = read_journal(options.journal);
+    if (!options.journal.empty()) journal = read_journal(find_journal(options.journal));
+    const std::vector<Command> more = parse_steps(options.steps);
+    journal.insert(journal.end(), more.begin(), more.end());
     const std::string name = options.system ? *options.system : first_system();
     Library library;
     library.find = find_system;
-    // A journal tells what was done after each run: then every run is waited for.
-    Session session = open_session(name, read_system(find_system(name)), options, std::move(library),
-                                   journal.empty() ? Patience(frame_patience) : Patience());
-    PanelState state = panel_state(true);
+    library.journal = [](const std::string& wanted) { return journal_file(find_journal(wanted)); };
+    Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
+                                   std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
-    std::optional<JournalFile> record;
-    if (!options.record.empty()) record.emplace(options.record);
-    const auto keep = [&](const Command& command) {
-        if (record) record->append(command);
-    };
-    const auto apply = [&](const Command& command) {
-        keep(command);
-        session.apply(command);
-    };
-    for (const Command& command : opening(session, options)) keep(command);
-    for (const Command& command : journal) apply(command);
+    Explorer explorer(session, window, options);
     session.set_patience(frame_patience);
+    if (!journal.empty()) explorer.begin(journal);
     session.on_ready(Window::wake);
-    window.on_close([&] { return request_close(session, state); });
-    Clock clock;
-    window.run([&] {
-        session.update();
-        // Playing is seeking, by the clock; nothing a journal would keep.
-        if (session.playing())
-            play_on(session, clock.elapsed());
-        else
-            clock.stop();
-        for (const Command& command : explorer(session, state)) apply(command);
-        for (const Command& command : dropped(window, session, state)) apply(command);
-        if (state.editor.may_close) window.close();
-        window.keep_drawing(session.playing() || is_typing(state));
-    });
+    window.on_close([&] { return explorer.may_close(); });
+    window.run([&] { explorer.frame(); });
+    explorer.finish();
     return reached_end;
 }
 
@@ -189,8 +247,10 @@ int screenshot(const ScreenshotOptions& options, Studio& studio) {
     const std::string name = options.system        ? *options.system
                              : studio.reproduces() ? inputs.first_system()
                                                    : first_system();
-    Session session = open_session(name, inputs.system(name), options, library_of(studio), {});
+    Session session =
+        open_session(name, inputs.system(name), options.settings, options.overrides, library_of(studio), {});
     for (const Command& command : journal) session.apply(command);
+    for (const Command& command : parse_steps(options.steps)) session.apply(command);
     PanelState state = panel_state(false);
     studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
         Offscreen surface(surface_options(options));

@@ -14,7 +14,8 @@ struct ExploreOptions {
     std::optional<std::string> system;  // a path or a name, as typed; absent: the first of the list
     std::vector<std::string> settings;  // --set NAME=VALUE, in the order given
     OptionOverrides overrides;          // --end and its kin; they hold for every system that is opened
-    std::string journal;                // replayed at the start; empty: none
+    std::string journal;                // replayed at the start, a path or a name; empty: none
+    std::vector<std::string> steps;     // --do COMMAND, after the journal
     std::string record;                 // where the session is written as a journal; empty: nowhere
     int width = 1600, height = 1000;    // pixels
     double scale = 1.0;                 // of text and strokes

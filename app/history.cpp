@@ -14,8 +14,9 @@ bool is_one_of(const Command& command) {
 bool is_change(const Command& command) {
     return is_one_of<command::Open, command::New, command::Text, command::Start, command::Set, command::Reset,
                      command::End, command::Tolerance, command::Eps, command::UseConditions,
-                     command::UseReinitialization, command::Grid, command::PlotView, command::Zoom, command::Fit,
-                     command::AxisScale, command::ShowCurve>(command);
+                     command::UseReinitialization, command::UseMethod, command::MaxImpacts, command::Grid,
+                     command::PlotView, command::Zoom, command::Range, command::Fit, command::AxisScale,
+                     command::ShowCurve>(command);
 }
 
 bool goes_on(const Command& last, const Command& next) {

@@ -48,7 +48,7 @@ SystemDescription Inputs::system(const std::string& name) { return parse_system(
 
 std::string Inputs::journal(const std::string& path) {
     if (from_picture_) return next(path, true).text;
-    kept_.push_back({Source::Kind::journal, path, journal_file(path)});
+    kept_.push_back({Source::Kind::journal, path, journal_file(find_journal(path))});
     return kept_.back().text;
 }
 

@@ -17,6 +17,13 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
+std::vector<Command> parse_steps(const std::vector<std::string>& lines) {
+    std::vector<Command> commands;
+    for (const std::string& line : lines)
+        if (!is_blank(line)) commands.push_back(parse_command(line, "--do", 1));
+    return commands;
+}
+
 std::string journal_file(const std::filesystem::path& file) {
     std::string text = read_text(file);
     if (text.size() > largest_file) throw InputError(file.string(), {}, "this is too large for a journal");

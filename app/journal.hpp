@@ -16,6 +16,9 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
 std::string journal_file(const std::filesystem::path& file);  // its text
 std::vector<Command> read_journal(const std::filesystem::path& file);
 
+// Of a command line: --do "seek 3.2". Each is a line of its own; blank ones do nothing.
+std::vector<Command> parse_steps(const std::vector<std::string>& lines);
+
 std::string journal_text(const std::vector<Command>& commands);
 
 // A journal that grows while things happen; every line is on disk before the next command runs, so that a journal tells

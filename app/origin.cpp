@@ -101,18 +101,25 @@ bool is_where(const std::string& option) { return option == "--out" || option ==
 
 }  // namespace
 
-std::string command_line(const std::vector<std::string>& words) {
+std::string shell_line(const std::vector<std::string>& words) {
     std::string text = "achilles";
+    for (const std::string& word : words) text += " " + shell_word(word);
+    return text;
+}
+
+std::string command_line(const std::vector<std::string>& words) {
+    std::vector<std::string> kept;
     bool options_end = false;
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string name = words[i].substr(0, words[i].find('='));
         options_end = options_end || words[i] == "--";
-        if (options_end || !is_where(name))
-            text += " " + shell_word(words[i]);
-        else if (name == words[i] && name != "--overwrite")
-            ++i;  // its value is the next word
+        if (!options_end && is_where(name)) {
+            if (name == words[i] && name != "--overwrite") ++i;  // its value is the next word
+            continue;
+        }
+        kept.push_back(words[i]);
     }
-    return text;
+    return shell_line(kept);
 }
 
 std::vector<std::string> words_of(std::string_view text) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figure/ticks.hpp"
+
 namespace achilles {
 
 namespace {
@@ -109,13 +111,22 @@ void Plots::perform(const command::PlotView& command) {
 }
 
 void Plots::perform(const command::Zoom& command) {
+    const Framing before = at(command.plot).framing;
+    perform(command::Range{command.plot, false, command.y_low, command.y_high});
+    try {
+        perform(command::Range{command.plot, true, command.x_low, command.x_high});
+    } catch (const InputError&) {
+        at(command.plot).framing = before;
+        throw;
+    }
+}
+
+void Plots::perform(const command::Range& command) {
     Plot& plot = at(command.plot);
-    for (const auto& [low, high] : {std::pair{command.x_low, command.x_high}, {command.y_low, command.y_high}})
-        if (!(low < high) || !std::isfinite(high - low))
-            throw refusal(fmt::format("an axis cannot go from {} to {}", low, high));
-    plot.framing.y = {command.y_low, command.y_high};
-    plot.framing.x = {command.x_low, command.x_high};
-    if (linked_ && plot.over_time())
+    if (!(command.low < command.high) || !std::isfinite(command.high - command.low))
+        throw refusal(fmt::format("an axis cannot go from {} to {}", command.low, command.high));
+    (command.is_x ? plot.framing.x : plot.framing.y) = {command.low, command.high};
+    if (command.is_x && linked_ && plot.over_time())
         for (Plot& other : list_)
             if (other.over_time()) other.framing.x = plot.framing.x;
     ++revision_;
@@ -155,15 +166,15 @@ void Plots::perform(const command::Link& command) {
     ++revision_;
 }
 
-std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples,
-                                  const Theme& theme) const {
+std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
+                                  Medium medium) const {
     std::vector<Panel> panels;
     // Plots over the same part of time share their samples.
     Framing::Limits part;
     std::vector<Sample> close;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
-        framing.legend = false;  // the explorer's can be clicked
+        framing.legend = medium == Medium::print;
         std::span<const Sample> own = samples;
         if (plot.over_time() && framing.x) {
             if (part != framing.x) {
@@ -174,10 +185,76 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
             own = close;
         }
         panels.push_back(achilles::compose(trajectory, own, *plot.prepared, theme, framing));
-        panels.back().title.clear();  // the explorer's can be clicked
+        if (medium == Medium::screen) panels.back().title.clear();
     }
     return panels;
 }
+
+Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme) {
+    std::vector<Curve> behind = pinned.curves;
+    for (Curve& curve : behind) {
+        curve.label.clear();
+        curve.stroke = pinned_stroke(theme, curve.stroke);
+    }
+    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
+    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
+    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
+    return panel;
+}
+
+namespace {
+
+// Does the steps as it notes them, so that it knows what is still missing.
+struct Steps {
+    explicit Steps(const Plots& plots) : now(plots.model()) {}
+    template <class Kind>
+    void take(const Kind& step) {
+        now.perform(step);
+        all.emplace_back(step);
+    }
+    Plots now;
+    std::vector<Command> all;
+};
+
+void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
+    const int number = static_cast<int>(at) + 1;
+    const auto framing = [&]() -> const Framing& { return steps.now.list()[at].framing; };
+    const Framing& goal = wanted.framing;
+    if (framing().log_x != goal.log_x) steps.take(command::AxisScale{number, true, goal.log_x});
+    if (framing().log_y != goal.log_y) steps.take(command::AxisScale{number, false, goal.log_y});
+    const bool x = goal.x && goal.x != framing().x, y = goal.y && goal.y != framing().y;
+    if (x && y)
+        steps.take(command::Zoom{number, (*goal.x)[0], (*goal.x)[1], (*goal.y)[0], (*goal.y)[1]});
+    else if (x || y)
+        steps.take(command::Range{number, x, (*(x ? goal.x : goal.y))[0], (*(x ? goal.x : goal.y))[1]});
+    for (const std::size_t curve : goal.hidden)
+        if (!framing().hidden.contains(curve))
+            steps.take(command::ShowCurve{number, static_cast<int>(curve) + 1, false});
+}
+
+std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_one) {
+    Steps steps(plots);
+    if (always_grid || steps.now.columns() != plots.columns() || steps.now.rows() != plots.rows())
+        steps.take(command::Grid{plots.columns(), plots.rows()});
+    for (std::size_t i = 0; i < plots.list().size(); ++i) {
+        const ViewDescription& view = plots.list()[i].view;
+        if (same_expressions(view, steps.now.list()[i].view)) continue;
+        command::PlotView step{static_cast<int>(i) + 1, view.x.text, {}};
+        for (const Text& y : view.y) step.y.push_back(y.text);
+        steps.take(step);
+    }
+    if (one_by_one || !plots.linked()) steps.take(command::Link{false});
+    for (std::size_t i = 0; i < plots.list().size(); ++i) frame_as(plots.list()[i], i, steps);
+    if (steps.now.linked() != plots.linked()) steps.take(command::Link{plots.linked()});
+    const bool done = std::equal(plots.list().begin(), plots.list().end(), steps.now.list().begin(),
+                                 [](const Plot& a, const Plot& b) { return a.framing == b.framing; });
+    // Where time was not always shared, axis by axis.
+    return done || one_by_one ? steps.all : steps_to(plots, always_grid, true);
+}
+
+}  // namespace
+
+std::vector<Command> steps_to(const Plots& plots, bool always_grid) { return steps_to(plots, always_grid, false); }
 
 std::string to_text(const Plots& plots) {
     std::string text =

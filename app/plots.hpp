@@ -35,14 +35,19 @@ class Plots {
     void perform(const command::Grid& command);
     void perform(const command::PlotView& command);
     void perform(const command::Zoom& command);
+    void perform(const command::Range& command);
     void perform(const command::Fit& command);
     void perform(const command::AxisScale& command);
     void perform(const command::ShowCurve& command);
     void perform(const command::Link& command);
 
-    // Of one run; `samples` are plot_samples() of the whole.
-    std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme) const;
+    // Of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
+    // panels; for print they are in them.
+    enum class Medium { screen, print };
+    std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
+                               Medium medium = Medium::screen) const;
     int revision() const { return revision_; }
+    const std::shared_ptr<const Model>& model() const { return model_; }
 
  private:
     Plot& at(int number);
@@ -55,6 +60,13 @@ class Plots {
     int columns_ = 1, rows_ = 1, revision_ = 0;
     bool linked_ = true;
 };
+
+// A plot with a pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits hold
+// both.
+Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme);
+
+// What leads to these plots from those that their model begins with; `grid` always, or only where it is another.
+std::vector<Command> steps_to(const Plots& plots, bool always_grid = false);
 
 // The plots as text, for the session's.
 std::string to_text(const Plots& plots);

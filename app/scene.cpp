@@ -57,6 +57,22 @@ void Scene::perform(const command::Size& command) {
     shares_[command.panel] = command.share;
 }
 
+void Scene::perform(const command::Say& command) { caption_ = command.text; }
+
+std::vector<Command> steps_to(const Scene& scene) {
+    std::vector<Command> steps;
+    if (scene.look()) steps.emplace_back(*scene.look());
+    for (const std::string& thing : command::shown_things)
+        if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
+    if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
+    if (scene.loops()) steps.emplace_back(command::Loop{true});
+    if (scene.lens()) steps.emplace_back(command::Lens{*scene.lens()});
+    for (const std::string& panel : command::sized_panels)
+        if (scene.share(panel) > 0.0) steps.emplace_back(command::Size{panel, scene.share(panel)});
+    if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
+    return steps;
+}
+
 std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
@@ -70,6 +86,7 @@ std::string to_text(const Scene& scene) {
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";
+    if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
     return text;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 
@@ -21,6 +22,7 @@ class Scene {
     bool loops() const { return loops_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
+    const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
 
     // The share of the window that the user gave a panel; 0: as it fits.
     double share(const std::string& panel) const;
@@ -33,6 +35,7 @@ class Scene {
     void perform(const command::Loop& command);
     void perform(const command::Lens& command);
     void perform(const command::Size& command);
+    void perform(const command::Say& command);
 
     // Another system: another world, but the same taste.
     void forget_place() { look_.reset(), lens_.reset(); }
@@ -44,7 +47,11 @@ class Scene {
     bool loops_ = false;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
+    std::string caption_;
 };
+
+// What leads from a new scene to this one.
+std::vector<Command> steps_to(const Scene& scene);
 
 // What is not as at the beginning, for the session's text.
 std::string to_text(const Scene& scene);

@@ -70,13 +70,16 @@ Session::Session(const std::string& name, const SystemDescription& first, Librar
 void Session::apply(const Command& command) {
     if (!patience_) receive(patience_);
     const Moment before = moment();
+    const std::string noticed = std::exchange(notice_, {});
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on must not wipe away what the last change of the run complained about.
         const bool moves_time_only =
             std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
-            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command);
+            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command) ||
+            std::holds_alternative<command::Wait>(command);
         if (!moves_time_only) error_.clear();
+        if (moves_time_only) notice_ = noticed;
         history_.remember(command, before);
     } catch (const InputError& problem) {
         error_ = problem.what();
@@ -259,6 +262,19 @@ void Session::perform(const command::UseConditions& command) {
 void Session::perform(const command::UseReinitialization& command) {
     Run changed = run();
     changed.options.truncation.reinitialization = command.reinitialization;
+    rerun(changed);
+}
+
+void Session::perform(const command::UseMethod& command) {
+    Run changed = run();
+    changed.options.method = command.method;
+    rerun(changed);
+}
+
+void Session::perform(const command::MaxImpacts& command) {
+    if (command.count < 1) throw refusal("at least one impact must be allowed");
+    Run changed = run();
+    changed.options.max_impacts = command.count;
     rerun(changed);
 }
 

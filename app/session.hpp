@@ -27,6 +27,8 @@ struct Library {
     std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
     std::function<Document(const std::string& system)> open{};                                // empty: from its file
     std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
+    std::function<std::string(const std::string& journal)> journal{};  // the text of one; empty: there are none
+    bool exports = true;                                               // false: `export` writes nothing
 };
 
 // Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
@@ -70,6 +72,8 @@ class Session {
     // where it is of another system.
     const Trajectory* pinned() const { return pinned_ ? &pinned_->trajectory : nullptr; }
     const std::vector<Panel>& pinned_plots() const { return pinned_plots_; }
+    // As opened; only where there is one.
+    const std::string& pinned_system() const { return pinned_->system->name; }
     // The pinned mechanism at the present time, of the same system; nothing otherwise.
     std::optional<Sample> pinned_now() const;
     bool can_undo() const { return history_.can_undo(); }
@@ -94,6 +98,11 @@ class Session {
     int selected() const { return selected_; }           // an event's number, from 1; 0: none
     const std::string& error() const { return error_; }  // why the last command was refused; empty: it was not
     const Theme& theme() const { return theme_; }
+    // What the last command did that cannot be seen otherwise: a file written, a line copied. Empty: nothing.
+    const std::string& notice() const { return notice_; }
+    // What is to be on the clipboard, and how often something was put there.
+    const std::string& copied() const { return copied_; }
+    int copies() const { return copies_; }
 
  private:
     // A system derived and compiled: nothing here depends on a parameter's value.
@@ -139,6 +148,12 @@ class Session {
     void perform(const command::Step& command);
     void perform(const command::Reset& command);
     void perform(const command::UseTheme& command);
+    void perform(const command::UseMethod& command);
+    void perform(const command::MaxImpacts& command);
+    void perform(const command::Export& command);
+    void perform(const command::Copy& command);
+    void perform(const command::Wait& command);
+    void perform(const command::Replay& command);
     // Everything else is about how the run is looked at.
     template <class Other>
     void perform(const Other& command);
@@ -176,7 +191,9 @@ class Session {
     double time_ = 0.0;
     bool playing_ = false;
     int selected_ = 0;
-    std::string error_;
+    std::string error_, notice_;
+    std::string copied_;
+    int copies_ = 0, replaying_ = 0;
     History<Moment> history_;
     std::shared_ptr<Motion> pinned_;
     std::vector<Panel> pinned_plots_;

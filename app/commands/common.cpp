@@ -123,6 +123,13 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     add_number(command, "--eps-t", overrides.eps_t, "time, s");
 }
 
+void add_step_option(CLI::App& command, std::vector<std::string>& steps) {
+    command.add_option("--do", steps, "a command as in a journal, --do \"seek 3.2\"; may be given again")
+        ->type_name("COMMAND")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 void add_scale_option(CLI::App& command, double& scale, const std::string& about) {
     const auto take_scale = [&scale](const std::string& text) {
         scale = number_from("--scale", text);

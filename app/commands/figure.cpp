@@ -6,9 +6,12 @@
 #include "commands/commands.hpp"
 #include "commands/common.hpp"
 #include "figure/publication.hpp"
+#include "journal.hpp"
 #include "model/model.hpp"
+#include "open_session.hpp"
 #include "simulate/simulate.hpp"
 #include "studio.hpp"
+#include "take_away.hpp"
 
 namespace achilles {
 
@@ -16,7 +19,8 @@ namespace {
 
 struct Arguments {
     std::string system, out, format;
-    std::vector<std::string> views, settings;
+    std::vector<std::string> views, settings, steps;
+    std::string journal;
     OptionOverrides overrides;
     PublicationStyle style;
     PictureSize size;
@@ -32,17 +36,8 @@ bool wants_svg(const Arguments& arguments) {
                      "end it in .png or .svg, or add --format png or --format svg");
 }
 
-int draw(const Arguments& arguments, Studio& studio) {
-    const bool as_svg = wants_svg(arguments);
-    const auto model = std::make_shared<const Model>(
-        adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
-    const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
-    const Run run = model->default_run();
-    model->check(run);
-    studio.add(arguments.out);
-
-    const Trajectory trajectory = simulate(model, run);
-    const Figure figure = publication(trajectory, views, arguments.style);
+// Puts a figure of a finished run where it belongs.
+int put(const Arguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg, Studio& studio) {
     PictureSize size = arguments.size;
     size.scale *= publication_scale;
     studio.put(arguments.out, "", {{arguments.system, &trajectory}},
@@ -51,6 +46,43 @@ int draw(const Arguments& arguments, Studio& studio) {
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
+}
+
+// The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
+int draw_session(const Arguments& arguments, bool as_svg, Studio& studio) {
+    if (!arguments.views.empty())
+        throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
+                         "leave --view out, or --journal and --do");
+    std::vector<Command> steps;
+    if (!arguments.journal.empty())
+        steps = parse_journal(studio.inputs().journal(arguments.journal), arguments.journal);
+    const std::vector<Command> more = parse_steps(arguments.steps);
+    steps.insert(steps.end(), more.begin(), more.end());
+    Session session = open_session(arguments.system, studio.inputs().system(arguments.system), arguments.settings,
+                                   arguments.overrides, library_of(studio), {});
+    studio.add(arguments.out);
+    for (const Command& step : steps) {
+        session.apply(step);
+        if (!session.error().empty()) throw InputError(to_text(step), {}, session.error());
+        if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
+    }
+    PublicationStyle style = arguments.style;
+    if (style.columns == 0) style.columns = session.plotted().columns();
+    return put(arguments, session.trajectory(), figure_of(session, style), as_svg, studio);
+}
+
+int draw(const Arguments& arguments, Studio& studio) {
+    const bool as_svg = wants_svg(arguments);
+    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, studio);
+    const auto model = std::make_shared<const Model>(
+        adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
+    const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
+    const Run run = model->default_run();
+    model->check(run);
+    studio.add(arguments.out);
+
+    const Trajectory trajectory = simulate(model, run);
+    return put(arguments, trajectory, publication(trajectory, views, arguments.style), as_svg, studio);
 }
 
 void take_columns(const std::string& text, int& columns) {
@@ -70,6 +102,11 @@ void add_figure(CLI::App& program, int& status, Studio& studio) {
         ->required()
         ->type_name("F.png|F.svg");
     add_view_option(*command, arguments->views, "a view of the system; may be given again (default: all)");
+    command
+        ->add_option("--journal", arguments->journal,
+                     "a journal to replay in the explorer first: then its plots are drawn")
+        ->type_name("F");
+    add_step_option(*command, arguments->steps);
     add_format_option(*command, arguments->format, "where the name of --out does not tell");
     command
         ->add_option_function<std::string>(

@@ -54,7 +54,10 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float error = std::min(m.error ? m.error(centre) : 0.0F, height);
     const float timeline = std::min(m.timeline, height);
     parts.error = {x, top, centre, error};
-    const float picture = top + error + (error > 0.0F ? 0.6F * between : 0.0F);
+    const float said_at = top + error + (error > 0.0F ? 0.6F * between : 0.0F);
+    const float said = std::min(m.caption ? m.caption(centre) : 0.0F, top + height - said_at);
+    parts.caption = {x, said_at, centre, said};
+    const float picture = said_at + said + (said > 0.0F ? 0.6F * between : 0.0F);
     const float picture_height = std::max(0.0F, top + height - timeline - between - picture);
     parts.mechanism = {x, picture, centre, picture_height};
     parts.timeline = {x, top + height - timeline, centre, timeline};

@@ -35,7 +35,10 @@ void show_inequality(const Inequality& inequality, bool decisive) {
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Color color = decisive ? text_color() : faint_color();
-    list->AddText(at, packed(color), inequality.name.c_str());
+    std::string name = inequality.name;
+    if (const std::size_t at_power = name.find("^2"); at_power != std::string::npos)
+        name.replace(at_power, 2, "\u00b2");
+    list->AddText(at, packed(color), name.c_str());
     const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
     list->AddText({std::floor(at.x + units(138.0F)), at.y}, packed(color), sides.c_str());
     const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
@@ -54,12 +57,12 @@ void show_inequality(const Inequality& inequality, bool decisive) {
 
 }  // namespace
 
-bool show_card_title(const std::string& title, const std::string& more, PanelState& state) {
+bool show_card_title(const std::string& title, const std::string& more, PanelState& state, float margin) {
     ImGui::TextUnformatted(title.c_str());
     ImGui::SameLine();
     quiet(more);
     const float width = ImGui::GetTextLineHeight();
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - width - margin);
     const bool close =
         ImGui::InvisibleButton("close", {width, width}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
     remember(state, "close card");
@@ -90,6 +93,24 @@ std::vector<std::string> certificate_lines(const Event& event) {
     return lines;
 }
 
+namespace {
+
+// A word that opens the lens in place of the plots, and closes it.
+void lens_button(const Session& session, PanelState& state, Commands& commands) {
+    const bool open = session.scene().shows("lens");
+    const char* const name = open ? "close the Zeno lens" : "look through the Zeno lens";
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(name);
+    if (ImGui::InvisibleButton("lens", size)) commands.emplace_back(command::Show{"lens", !open});
+    remember(state, "open lens");
+    const ImU32 color = ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_SliderGrab);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddText(at, color, name);
+    list->AddLine({at.x, at.y + size.y}, {at.x + size.x, at.y + size.y}, color, units(1.0F));
+    tooltip("the bouncing before this Zeno point in logarithmic time, where the plots are");
+}
+
+}  // namespace
+
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
@@ -99,29 +120,8 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                     to_text(certificate.reinitialization)),
         state);
     if (close) commands.emplace_back(command::Select{0});
-    const bool lens = session.scene().shows("lens");
-    const float height = ImGui::GetTextLineHeight() + units(4.0F);
-    for (const bool is_lens : {false, true}) {
-        const char* name = is_lens ? "Zeno lens" : "certificate";
-        if (is_lens) ImGui::SameLine(0.0F, units(12.0F));
-        const ImVec2 size{ImGui::CalcTextSize(name).x, height};
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        ImGui::PushID(name);
-        if (ImGui::InvisibleButton("tab", size)) commands.emplace_back(command::Show{"lens", is_lens});
-        ImGui::PopID();
-        remember(state, std::string("tab ") + name);
-        const bool lit = lens == is_lens;
-        ImGui::GetWindowDrawList()->AddText(at, packed(lit || ImGui::IsItemHovered() ? text_color() : faint_color()),
-                                            name);
-        if (lit)
-            ImGui::GetWindowDrawList()->AddLine({at.x, at.y + height - units(2.0F)},
-                                                {at.x + size.x, at.y + height - units(2.0F)}, packed(text_color()),
-                                                units(1.5F));
-    }
-    if (lens)
-        show_lens(session, index, state, commands);
-    else
-        show_certificate(event);
+    lens_button(session, state, commands);
+    show_certificate(event);
 }
 
 void show_certificate(const Event& event) {

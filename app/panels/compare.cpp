@@ -13,10 +13,11 @@ namespace achilles {
 
 namespace {
 
-std::vector<double> zeno_times(const Trajectory& trajectory) {
+// When events of this kind happen.
+std::vector<double> times_of(const Trajectory& trajectory, Event::Kind kind) {
     std::vector<double> times;
     for (const Event& event : trajectory.events)
-        if (event.kind == Event::Kind::zeno) times.push_back(event.t);
+        if (event.kind == kind) times.push_back(event.t);
     return times;
 }
 
@@ -42,6 +43,22 @@ void row(const std::string& name, double pinned, double present) {
     row(name, number(pinned, "{:.10g}"), number(present, "{:.10g}"), number(present - pinned, "{:.3g}"));
 }
 
+// The i-th Zeno points of both runs, or releases, as far as there are so many.
+void row_of_times(const std::string& name, const std::vector<double>& pinned, const std::vector<double>& present,
+                  std::size_t i) {
+    if (i < pinned.size() && i < present.size()) return row(name, pinned[i], present[i]);
+    const auto text = [i](const std::vector<double>& times) {
+        return i < times.size() ? number(times[i], "{:.10g}") : std::string("\u2013");
+    };
+    if (i < pinned.size() || i < present.size()) row(name, text(pinned), text(present), "");
+}
+
+std::string eps_of(const Trajectory& trajectory) {
+    const Truncation& t = trajectory.run.options.truncation;
+    if (t.eps_q == t.eps_v && t.eps_v == t.eps_t) return number(t.eps_q, "{:.3g}");
+    return fmt::format("{}, {}, {}", number(t.eps_q, "{:.3g}"), number(t.eps_v, "{:.3g}"), number(t.eps_t, "{:.3g}"));
+}
+
 std::string kind_of(const Trajectory& trajectory) {
     const Truncation& truncation = trajectory.run.options.truncation;
     return fmt::format("{}, {}", to_text(truncation.conditions), to_text(truncation.reinitialization));
@@ -56,14 +73,14 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
         commands.emplace_back(command::Pin{false});
     row("", "pinned", "present", "change", true);
     row("conditions", kind_of(pinned), kind_of(present), "");
-    const std::vector<double> before = zeno_times(pinned), after = zeno_times(present);
-    for (std::size_t i = 0; i < std::max(before.size(), after.size()); ++i) {
-        const std::string name = fmt::format("Zeno {}", i + 1);
-        if (i < before.size() && i < after.size())
-            row(name, before[i], after[i]);
-        else
-            row(name, i < before.size() ? number(before[i], "{:.10g}") : "\u2013",
-                i < after.size() ? number(after[i], "{:.10g}") : "\u2013", "");
+    row("\u03b5", eps_of(pinned), eps_of(present), "");
+    const auto zeno_before = times_of(pinned, Event::Kind::zeno), zeno_after = times_of(present, Event::Kind::zeno);
+    const auto left_before = times_of(pinned, Event::Kind::release),
+               left_after = times_of(present, Event::Kind::release);
+    const std::size_t most = std::max({zeno_before.size(), zeno_after.size(), left_before.size(), left_after.size()});
+    for (std::size_t i = 0; i < most; ++i) {
+        row_of_times(fmt::format("Zeno point {}", i + 1), zeno_before, zeno_after, i);
+        row_of_times(fmt::format("release {}", i + 1), left_before, left_after, i);
     }
     row("impacts", std::to_string(pinned.statistics.impacts), std::to_string(present.statistics.impacts),
         number(static_cast<double>(present.statistics.impacts - pinned.statistics.impacts)));

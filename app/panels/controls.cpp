@@ -207,7 +207,7 @@ void integration(const Session& session, const Run& file, PanelState& state, Com
 }  // namespace
 
 void show_system(const Session& session, PanelState& state, Commands& commands) {
-    const float width = units(56.0F), space = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float width = units(52.0F), space = ImGui::GetStyle().ItemInnerSpacing.x;
     choose_system(session, state, commands, ImGui::GetContentRegionAvail().x - width - space);
     ImGui::SameLine(0.0F, space);
     const bool shown = session.shows_editor();

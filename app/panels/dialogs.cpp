@@ -49,6 +49,14 @@ Verdict to_save(const Document& document, const std::string& path) {
     return {"There is a file of this name. Overwrite it?", true, true};
 }
 
+Verdict to_take_away(const std::string& path) {
+    const std::string ending = fs::path(path).extension().string();
+    if (!path.empty() && ending != ".svg" && ending != ".png" && ending != ".json" && ending != ".csv" &&
+        ending != ".journal")
+        return {"end it in .svg, .png, .json, .csv or .journal", false, false};
+    return to_save(Document(), path);
+}
+
 // A window in the middle, which keeps everything else from the hand.
 template <class Content>
 void dialog(const char* title, Content content) {
@@ -123,6 +131,18 @@ void save_dialog(PanelState& state, const Session& session, Commands& commands) 
     editor.has_saved = editor.waiting.has_value() || editor.is_closing;
 }
 
+void take_away_dialog(PanelState& state, const Session& session, Commands& commands) {
+    if (session.under_way() != nullptr) {
+        ImGui::TextDisabled("the run is still under way");
+        if (button("Cancel", state) || is_escape()) give_up(state.editor);
+        return;
+    }
+    if (!path_chosen("Export", state, to_take_away)) return;
+    const std::string file = expanded(state.editor.path);
+    close(state.editor);
+    commands.emplace_back(command::Export{file, to_take_away(file).asks});
+}
+
 // Nothing keeps what waited any longer.
 void go_on(EditorState& editor, Commands& commands) {
     editor.may_close = std::exchange(editor.is_closing, false);
@@ -183,6 +203,11 @@ void ask_to_save(const Session& session, PanelState& state) {
     state.editor.asking = EditorState::Asking::save;
 }
 
+void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending) {
+    state.editor.path = fs::path(session.system()).stem().string() + ending;
+    state.editor.asking = EditorState::Asking::take_away;
+}
+
 void save_or_ask(const Session& session, PanelState& state, Commands& commands) {
     if (session.document().file.empty()) return ask_to_save(session, state);
     hand_over_text(state.editor, commands);
@@ -211,11 +236,13 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     using Asking = EditorState::Asking;
     constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
                                                          {Asking::save, "Save the system"},
-                                                         {Asking::unsaved, "Changes that are not saved"}};
+                                                         {Asking::unsaved, "Changes that are not saved"},
+                                                         {Asking::take_away, "Take it away"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
+    dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });
     dialog(titles[2].second, [&] { unsaved_dialog(state, session, commands); });
 }
 

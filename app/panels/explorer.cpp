@@ -4,6 +4,7 @@
 #include <string>
 
 #include "panels/arrangement.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "surface/interface.hpp"
 
@@ -39,7 +40,7 @@ float card_height(const std::string& message, float width) {
     return 2.0F * units(card_padding) + message_height(message, width - 2.0F * units(card_padding));
 }
 
-Arrangement arrange(const Session& session, const std::string& message) {
+Arrangement arrange(const Session& session, const PanelState& state, const std::string& message) {
     Measures measures;
     measures.width = ImGui::GetIO().DisplaySize.x;
     measures.height = ImGui::GetIO().DisplaySize.y;
@@ -48,6 +49,7 @@ Arrangement arrange(const Session& session, const std::string& message) {
     measures.status = ImGui::GetFrameHeight() + units(6.0F);
     measures.timeline = timeline_height();
     measures.error = [&](float width) { return card_height(message, width); };
+    measures.caption = [&](float width) { return caption_height(session, state, width); };
     return achilles::arrange(session.scene(), measures);
 }
 
@@ -81,16 +83,22 @@ void show_splitter(const Arrangement::Splitter& splitter, PanelState& state, Com
 // What the last command was refused for; without the editor also why its text is no system.
 std::string card_text(const Session& session) {
     const auto& problems = session.document().problems;
-    if (!session.error().empty() || session.shows_editor() || problems.empty()) return session.error();
+    if (!session.error().empty()) return session.error();
+    if (session.shows_editor() || problems.empty()) return session.notice();
     return problems.front().what();
 }
 
-void show_card(const std::string& message) {
+void show_card(const Session& session, const std::string& message) {
     const Rectangle area = remaining();
-    paint_error_card(area);
+    const float width = area.width - 2.0F * units(card_padding);
+    const bool is_good = message == session.notice();
+    if (!is_good) paint_error_card(area);
     ImGui::SetCursorScreenPos({area.x + units(card_padding), area.y + units(card_padding)});
     ImGui::BeginGroup();
-    show_message(message, area.width - 2.0F * units(card_padding));
+    if (is_good)
+        paragraph(message, width, text_color());
+    else
+        show_message(message, width);
     ImGui::EndGroup();
 }
 
@@ -103,13 +111,20 @@ void use_keys(const Session& session, Commands& commands) {
     if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
 }
 
+// What the last command copied goes to the clipboard, once.
+void copy(const Session& session, PanelState& state) {
+    if (session.copies() == state.copies) return;
+    state.copies = session.copies();
+    ImGui::SetClipboardText(session.copied().c_str());
+}
+
 }  // namespace
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
     use_theme(session.theme().dark);
     const std::string message = card_text(session);
-    const Arrangement parts = arrange(session, message);
+    const Arrangement parts = arrange(session, state, message);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
     part("bar", parts.bar, still_window | ImGuiWindowFlags_MenuBar, [&] { show_bar(session, state, commands); });
     ImGui::PopStyleVar();
@@ -121,16 +136,23 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
             show_controls(session, state, commands);
     });
     show_dialogs(session, state, commands);
-    part("error", parts.error, still_window, [&] { show_card(message); });
+    part("error", parts.error, still_window, [&] { show_card(session, message); });
+    part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
-    part("plots", parts.plots, still_window, [&] { show_plots(session, state, commands); });
+    part("plots", parts.plots, still_window, [&] {
+        if (lens_is_open(session))
+            show_lens(session, state, commands);
+        else
+            show_plots(session, state, commands);
+    });
     part("events", parts.events, still_window, [&] { show_events(session, state, commands); });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
     for (const Arrangement::Splitter& splitter : parts.splitters)
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
     use_keys(session, commands);
+    copy(session, state);
     return commands;
 }
 

@@ -1,55 +1,119 @@
-// The Zeno lens in place of a certificate: the bouncing in logarithmic time, to be scrolled for ever.
+// The Zeno lens in place of the plots: the bouncing before the chosen Zeno point in logarithmic time, to be scrolled
+// for ever.
 #include "figure/lens.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "figure/axes.hpp"
+#include "output/output.hpp"
+#include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
 
 namespace {
 
-constexpr double decades = 4.0;  // seen at once
+constexpr float margin = 12.0F;
 
-}  // namespace
+std::string explanation(const Lens& lens) {
+    return fmt::format(
+        "Every flight is e = {} times as long as the one before and e\u00b2 times as high; with time as "
+        "\u2212log(\u03c4\u221e \u2212 t) and the gap over the impact speed squared, infinitely many bounces become an "
+        "even "
+        "row of equal arcs that never ends.",
+        number(lens.restitution(), "{:.4g}"));
+}
 
-void show_lens(const Session& session, std::size_t event, PanelState& state, Commands& commands) {
-    const auto lens = Lens::at(session.trajectory(), event);
-    if (!lens) {
-        ImGui::TextUnformatted("One impact and no bouncing: there is no row to look at.");
-        return;
+// Where to go in the row: its beginning, the cut, the interval.
+void show_places(const Lens& lens, double width, PanelState& state, Commands& commands) {
+    const auto place = [&](const char* name, double x, const char* about) {
+        if (ImGui::Button(name)) commands.emplace_back(command::Lens{x});
+        remember(state, std::string("lens ") + name);
+        tooltip(about);
+    };
+    place("first impact", lens.first() - 0.05 * width, "where the row begins");
+    ImGui::SameLine();
+    place("cut", lens.cut() - 0.3 * width, "where the run was cut short and the contact began");
+    if (lens.interval()) {
+        ImGui::SameLine();
+        place("certified interval", *lens.interval() - 0.5 * width, "what is proved of the Zeno time");
     }
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::TextUnformatted(
-        fitted("Each flight is e times as long as the last: in logarithmic time, scaled by its speed "
-               "squared, the bouncing is an even row without end.",
-               ImGui::GetContentRegionAvail().x)
-            .c_str());
-    ImGui::PopStyleColor();
-    const double low = session.scene().lens().value_or(lens->first() - 0.1);
-    const double width = decades * std::max(1.0, lens->spacing());
-    const Panel panel = lens->panel(low, low + width, session.theme());
-    const Rectangle area = remaining();
-    if (area.height < units(40.0F)) return;
-    Figure style;
-    style.background = session.theme().background;
-    style.ink = session.theme().ink;
-    style.grid = session.theme().grid;
-    style.text_size = 13.0;
-    const Rectangle inside = paint(panel, style, ImGui::GetWindowDrawList(), area, units(1.0F));
-    ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::InvisibleButton("lens", {area.width, area.height});
-    remember(state, "lens");
+}
+
+// The row moves with the hand, and a quarter of a decade a notch of the wheel.
+void use_mouse(const Lens& lens, double low, double width, const Rectangle& inside, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     double moved = 0.0;
     if (ImGui::IsItemHovered()) moved -= 0.25 * double{io.MouseWheel};
     if (ImGui::IsItemActive() && inside.width > 1.0F) moved -= width * double{io.MouseDelta.x} / double{inside.width};
-    if (moved != 0.0) commands.emplace_back(command::Lens{std::max(low + moved, lens->first() - 1.0)});
-    tooltip(
-        "drag or use the wheel: the row never ends. Bars: where the run was cut, and where the certified interval of "
-        "the Zeno time begins");
+    if (moved != 0.0) commands.emplace_back(command::Lens{std::max(low + moved, lens.first() - 0.5 * width)});
+}
+
+void show_row(const Session& session, const Lens& lens, float height, PanelState& state, Commands& commands) {
+    const Lens::Part overview = lens.overview();
+    const double width = overview.high - overview.low, low = session.scene().lens().value_or(overview.low);
+    const Panel panel = lens.panel(low, low + width, session.theme());
+    Rectangle area = remaining();
+    area.height = height;
+    area.width -= units(margin);
+    const Rectangle inside = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), area, units(1.0F));
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::InvisibleButton("lens", {std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
+    remember(state, "lens");
+    use_mouse(lens, low, width, inside, commands);
+    tooltip("drag, or use the wheel: the row never ends");
+    ImGui::SetCursorScreenPos({area.x, area.y + area.height + units(6.0F)});
+    show_places(lens, width, state, commands);
+}
+
+// What is proved, in words.
+void show_interval(const Session& session, const Event& zeno, float width) {
+    if (zeno.truncation)
+        paragraph(fmt::format("Cut {:.3g} s before \u03c4\u221e, after {} impacts.", zeno.t - zeno.truncation->t,
+                              zeno.impacts),
+                  width, text_color());
+    if (!zeno.certificate || !zeno.certificate->certified) return;
+    const Certificate& c = *zeno.certificate;
+    paragraph(fmt::format("Proved: \u03c4\u221e lies in {}, {:.2g} s wide.", interval_text(c.zeno_low, c.zeno_high),
+                          c.zeno_high - c.zeno_low),
+              width, event_markers(session.theme(), Event::Kind::zeno).fill);
+}
+
+}  // namespace
+
+bool lens_is_open(const Session& session) {
+    if (!session.scene().shows("lens") || session.selected() == 0) return false;
+    return session.trajectory().events[static_cast<std::size_t>(session.selected() - 1)].kind == Event::Kind::zeno;
+}
+
+void show_lens(const Session& session, PanelState& state, Commands& commands) {
+    const auto index = static_cast<std::size_t>(session.selected() - 1);
+    const Event& zeno = session.trajectory().events[index];
+    const Rectangle card = remaining();
+    ImGui::GetWindowDrawList()->AddRectFilled({card.x, card.y}, {card.x + card.width, card.y + card.height},
+                                              packed(session.theme().background), units(4.0F));
+    const float edge = units(margin), width = card.width - 2.0F * edge;
+    if (width < units(80.0F) || card.height < units(120.0F)) return;
+    ImGui::SetCursorScreenPos({card.x + edge, card.y + edge});
+    ImGui::BeginGroup();
+    if (show_card_title("Zeno lens", fmt::format("event {}, \u03c4\u221e = {} s", index + 1, number(zeno.t, "{:.10g}")),
+                        state, 2.0F * edge))
+        commands.emplace_back(command::Show{"lens", false});
+    const auto lens = Lens::at(session.trajectory(), index);
+    if (!lens) {
+        paragraph("One impact and no bouncing: there is no row to look at.", width, faint_color());
+    } else {
+        paragraph(explanation(*lens), width, faint_color());
+        ImGui::Dummy({0.0F, units(2.0F)});
+        const float below = ImGui::GetFrameHeight() + 3.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * edge;
+        const float height = card.y + card.height - ImGui::GetCursorScreenPos().y - below;
+        show_row(session, *lens, std::clamp(height, units(60.0F), 0.75F * width), state, commands);
+        show_interval(session, zeno, width);
+    }
+    ImGui::EndGroup();
 }
 
 }  // namespace achilles

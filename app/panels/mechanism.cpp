@@ -176,6 +176,10 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     ImGui::SetCursorScreenPos({a.x, a.y});
     ImGui::InvisibleButton("mechanism", {a.width, a.height});
     remember(state, "mechanism");
+    const auto mark = [&](const char* name, const Point& at) {
+        state.places[name] = {static_cast<float>(at.x), static_cast<float>(at.y), 0.0F, 0.0F};
+    };
+    if (picture.body) mark("body", picture.center), mark("velocity", picture.tip);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const double reach = units(9.0F);
     const double body_reach = picture.body ? std::max(reach, picture.body->radius() * picture.placement.unit) : 0.0;

@@ -26,7 +26,7 @@ struct EditorState {
     float height = 0.0F;      // of the text on the screen, pixels
     bool is_active = false;   // letters go here
 
-    enum class Asking { nothing, open, save, unsaved };
+    enum class Asking { nothing, open, save, unsaved, take_away };
     Asking asking = Asking::nothing;
     std::string path;                // typed in a dialog
     bool keeps_path = false;         // what was entered was wrong: more letters go there
@@ -59,8 +59,12 @@ struct PlotBox {
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
     std::vector<SystemEntry> systems;  // to choose from
-    bool in_window = false;            // a window may show how long the run took; a picture must not
-    bool show_impacts = true;          // in the event list
+    std::vector<SystemEntry> tours;    // journals to replay
+    bool on_tour = false;              // one is under way: its caption has buttons
+    enum class OnTour { nothing, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
+    int copies = 0;                                                          // the session's, that the clipboard has
+    bool in_window = false;    // a window may show how long the run took; a picture must not
+    bool show_impacts = true;  // in the event list
     EditorState editor;
     TypedValue typed;
     PlotMenu plot_menu;
@@ -80,6 +84,12 @@ void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);
+// What can be taken away, and the tours: lines of a menu.
+void show_take_away_items(const Session& session, PanelState& state, Commands& commands);
+void show_tour_items(const Session& session, PanelState& state, Commands& commands);
+// Above the mechanism: what a tour says.
+float caption_height(const Session& session, const PanelState& state, float width);
+void show_caption(const Session& session, PanelState& state, Commands& commands);
 void show_dialogs(const Session& session, PanelState& state, Commands& commands);
 void show_mechanism(const Session& session, PanelState& state, Commands& commands);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
@@ -97,9 +107,11 @@ void show_certificate(const Event& event);
 // The cards beside the list, each about the event with this index: its certificate or the Zeno lens; what an impact
 // cost and why the bouncing was not cut there; why the contact ended. And how the pinned run and the present one
 // differ. The first line of a card; true if the user closes it.
-bool show_card_title(const std::string& title, const std::string& more, PanelState& state);
+bool show_card_title(const std::string& title, const std::string& more, PanelState& state, float margin = 0.0F);
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands);
-void show_lens(const Session& session, std::size_t event, PanelState& state, Commands& commands);
+// The Zeno lens takes the place of the plots while a Zeno point is chosen.
+bool lens_is_open(const Session& session);
+void show_lens(const Session& session, PanelState& state, Commands& commands);
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_comparison(const Session& session, PanelState& state, Commands& commands);
@@ -118,6 +130,7 @@ bool request_close(const Session& session, PanelState& state);
 // Begin to ask for a path. Saving asks where the text has no file yet.
 void ask_to_open(PanelState& state);
 void ask_to_save(const Session& session, PanelState& state);
+void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending);
 void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 
 }  // namespace achilles

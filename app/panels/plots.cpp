@@ -9,6 +9,7 @@
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -17,15 +18,6 @@ namespace {
 
 constexpr float inset = 8.0F;
 constexpr double click = 4.0;  // pixels that a hand may slip and still click
-
-Figure style_of(const Theme& theme) {
-    Figure style;
-    style.background = theme.background;
-    style.ink = theme.ink;
-    style.grid = theme.grid;
-    style.text_size = 13.0;
-    return style;
-}
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
     const std::vector<Curve>& curves = session.plots()[plot].curves;
@@ -238,21 +230,10 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     show_plot_menu(session, plot, state, commands);
 }
 
-// The plot with the pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits
-// hold both.
 Panel with_pinned(const Session& session, std::size_t plot) {
-    Panel panel = session.plots()[plot];
-    const Panel& pinned = session.pinned_plots()[plot];
-    std::vector<Curve> behind = pinned.curves;
-    for (Curve& curve : behind) {
-        curve.label.clear();
-        curve.stroke = pinned_stroke(session.theme(), curve.stroke);
-    }
-    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
-    const Framing& framing = session.plotted().list()[plot].framing;
-    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
-    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
-    return panel;
+    const Panel& panel = session.plots()[plot];
+    if (plot >= session.pinned_plots().size()) return panel;
+    return with_pinned(panel, session.pinned_plots()[plot], session.plotted().list()[plot].framing, session.theme());
 }
 
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {
@@ -264,10 +245,8 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
     const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
                           cell.y + cell.height - edge - row.y - head};
     if (inner.width < 2.0F || inner.height < 2.0F) return;
-    std::optional<Panel> compared;
-    if (plot < session.pinned_plots().size()) compared = with_pinned(session, plot);
-    const Panel& panel = compared ? *compared : session.plots()[plot];
-    const Rectangle area = paint(panel, style_of(session.theme()), list, inner, units(1.0F));
+    const Panel panel = with_pinned(session, plot);
+    const Rectangle area = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
     const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};

@@ -1,11 +1,14 @@
 // Why an event is what it is: the cards of impacts and releases beside the list.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "figure/ticks.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "simulate/explain.hpp"
 
@@ -48,8 +51,10 @@ const Inequality* failed(const Certificate& certificate) {
 
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) {
     if (!(reason.normal_acceleration < 0.0))
-        return fmt::format("Not cut: the surface falls away here, h\u0308 = {}.", number(reason.normal_acceleration));
-    if (attempt == nullptr) return "Not cut: nothing can be proved yet, h\u0308 may change its sign on the way.";
+        return fmt::format("Not cut: the surface falls away here, the gap would accelerate by {}.",
+                           number(reason.normal_acceleration));
+    if (attempt == nullptr)
+        return "Not cut: nothing can be proved yet, the gap's acceleration may change its sign on the way.";
     const Inequality* inequality = failed(*attempt);
     if (inequality == nullptr) return "Not cut: an impact before the conditions were asked.";
     if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} is not proved.", inequality->name);
@@ -58,10 +63,29 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) 
                        number(inequality->left / inequality->right, "{:.3g}"));
 }
 
-void wrapped(const std::string& text) {
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
+// Lambda during the contact, down to zero, and dotted how it would go on.
+Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& reason) {
+    const std::string time = "t (s)", lambda_name = "\u03bb";
+    Panel panel;
+    panel.x.label = time;
+    panel.y.label = lambda_name;
+    const Stroke contact = phase_stroke(theme, Phase::Kind::constrained, 0, 1);
+    Curve force{"", contact, {}}, pull{"", contact, {}};
+    double most = 0.0;
+    for (const auto& [t, lambda] : reason.force) {
+        force.points.push_back({t, lambda});
+        most = std::max(most, lambda);
+    }
+    const double start = reason.force.front().first, beyond = 0.15 * (event.t - start);
+    pull.stroke.dash = {2.0, 2.5};
+    pull.points = {{event.t, reason.lambda}, {event.t + beyond, reason.lambda + beyond * reason.lambda_rate}};
+    Markers release = event_markers(theme, Event::Kind::release);
+    release.points = {{event.t, reason.lambda}};
+    set_ticks(panel.x, start, event.t + beyond, 0.0, 4);
+    set_ticks(panel.y, std::min(pull.points.back().y, 0.0), most, 0.08, 3);
+    panel.curves = {force, pull};
+    panel.markers = {release};
+    return panel;
 }
 
 }  // namespace
@@ -73,9 +97,9 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
     row("impact speed", number(event.impact_speed, "{:.9g}"));
-    const double lost = reason.energy_before - reason.energy_after;
-    row("energy lost", number(lost, "{:.6g}"), "of " + number(reason.energy_before));
-    wrapped(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr));
+    row("energy", number(reason.energy_before), number(reason.energy_after));
+    row("energy lost", number(reason.energy_before - reason.energy_after));
+    paragraph(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr), remaining().width, text_color());
 }
 
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
@@ -83,12 +107,19 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     if (show_card_title(fmt::format("Release, event {}", index + 1), fmt::format("t = {:.10g} s", event.t), state))
         commands.emplace_back(command::Select{0});
     const ReleaseReason reason = explain_release(session.trajectory(), index);
+    const Rectangle room = remaining();
+    const float words = std::max(units(second_at), 0.45F * room.width);
+    if (room.width - words > units(160.0F) && !reason.force.empty())
+        paint(force_panel(session.theme(), event, reason), screen_style(session.theme()), ImGui::GetWindowDrawList(),
+              {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
     row("\u03bb", number(reason.lambda, "{:.2g}"));
     row("\u03bb\u0307", number(reason.lambda_rate));
     row("h\u2034", number(reason.jerk));
-    wrapped(
-        "The contact force crosses zero; h, h\u0307 and h\u0308 vanish and the third rate of the gap is positive: the "
-        "body leaves the surface.");
+    paragraph(
+        "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
+        "first "
+        "two rates vanish, the third, h\u2034, is positive: the body leaves it.",
+        words - units(16.0F), text_color());
 }
 
 }  // namespace achilles

@@ -43,6 +43,20 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     reason.jerk = surface.jerk(state);
     // hddot vanishes here, so the change of W does not matter.
     reason.lambda_rate = -reason.jerk / W;
+
+    constexpr int instants = 60;
+    double start = 0.0;
+    for (const Phase& phase : trajectory.phases)
+        if (phase.kind == Phase::Kind::constrained && phase.end <= release.t) start = phase.start;
+    auto force = model.evaluator(model.force(), trajectory.run.parameters);
+    Sampler sampler(trajectory);
+    for (int i = 0; i < instants; ++i) {  // the release itself belongs to the flight
+        const double t = start + (release.t - start) * i / instants;
+        put(force, sampler.at(t).state);
+        force.run();
+        reason.force.emplace_back(t, force.output(0));
+    }
+    reason.force.emplace_back(release.t, reason.lambda);
     return reason;
 }
 

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "trajectory.hpp"
 
@@ -21,6 +23,8 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event);
 struct ReleaseReason {
     double lambda = 0.0, lambda_rate = 0.0;  // the rate is -h'''/W
     double jerk = 0.0;                       // h''', positive: the surface falls away
+    // Lambda over the last part of the contact: (t, lambda), to the release.
+    std::vector<std::pair<double, double>> force;
 };
 ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event);
 

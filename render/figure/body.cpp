@@ -1,6 +1,7 @@
 #include "figure/body.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -41,6 +41,13 @@ struct Markers {
     std::vector<Point> points;
 };
 
+// A stretch of the x axis, over the whole height and behind everything; it may go on beyond the limits.
+struct Band {
+    std::string label;
+    Color color;
+    double low = 0.0, high = 0.0;
+};
+
 struct Tick {
     double value = 0.0;
     std::string label;  // "" : minor
@@ -58,6 +65,7 @@ struct Panel {
     std::string title;  // "(a)", or a view's name
     Axis x, y;
     bool equal_axes = false;  // one unit is the same length on both axes
+    std::vector<Band> bands;
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     bool legend = false;

@@ -61,6 +61,9 @@ std::string to_text(const Figure& figure) {
                             : panel.legend_above ? " legend above"
                                                  : " legend");
         text += axis_text("x", panel.x) + axis_text("y", panel.y);
+        for (const Band& band : panel.bands)
+            text += fmt::format("  band \"{}\" {} {:.9g} to {:.9g}\n", band.label, color_text(band.color), band.low,
+                                band.high);
         for (const Curve& curve : panel.curves)
             text +=
                 fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label,

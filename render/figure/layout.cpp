@@ -24,6 +24,16 @@ Rectangle with_equal_units(const Panel& panel, Rectangle plot) {
     return on_pixels({plot.x + (plot.width - width) / 2.0F, plot.y + (plot.height - height) / 2.0F, width, height});
 }
 
+void lay_bands(const Panel& panel, Sheet& sheet, Rectangle plot) {
+    const PanelMap map(panel, plot);
+    const double left = plot.x, right = plot.x + plot.width;
+    for (const Band& band : panel.bands) {
+        const auto from = static_cast<float>(std::round(std::clamp(map.x(band.low), left, right)));
+        const auto to = static_cast<float>(std::round(std::clamp(map.x(band.high), left, right)));
+        if (to > from) sheet.push_back(Fill{{from, plot.y, to - from, plot.height}, band.color});
+    }
+}
+
 void lay_bars(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
     for (const Point& point : markers.points) {
         const double x = map.x(point.x);
@@ -203,6 +213,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
                  const Metrics& m) {
     const Rectangle inner = with_equal_units(panel, plot);
     if (style.background.a > 0) sheet.push_back(Fill{inner, style.background});
+    lay_bands(panel, sheet, inner);
     lay_grid(panel, style, sheet, inner, m);
     lay_data(panel, sheet, inner, m);
     float lift = 0.0F;

@@ -81,26 +81,31 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     return lens;
 }
 
+Lens::Part Lens::overview() const {
+    constexpr double least = 4.0, most = 12.0, before = 0.3, between = 0.45;  // decades; shares of the width
+    const double far = interval_ ? (*interval_ - cut_) / between : 0.0;
+    const double width = std::clamp(far, least * std::max(1.0, spacing_), most * std::max(1.0, spacing_));
+    const double low = std::max(first() - 0.05 * width, cut_ - before * width);
+    return {low, low + width};
+}
+
 Panel Lens::panel(double low, double high, const Theme& theme) const {
     Panel panel;
-    panel.x.label = "time left, τ∞ − t [s]";
+    panel.x.label = "time left, τ_{∞} − t (s)";
     panel.y.label = "h / w²";
+    panel.legend = panel.legend_above = true;
     panel.curves.resize(2);
     Curve &run = panel.curves[0], &limit = panel.curves[1];
-    run.label = "run";
-    limit.label = "limit";
+    run.label = "the run";
+    limit.label = "what it tends to";
     run.stroke = limit.stroke = phase_stroke(theme, Phase::Kind::hybrid, 0, 1);
     run.stroke.dash.clear();
     limit.stroke.dash = {2.0, 2.5};
     Markers& impacts = panel.markers.emplace_back(event_markers(theme, Event::Kind::impact));
-    double top = height_;
     for (const Flight& flight : flights_) {
         if (flight.points.back().x < low || flight.x > high) continue;
         impacts.points.push_back({flight.x, 0.0});
-        for (const Point& point : flight.points) {
-            run.points.push_back(point);
-            top = std::max(top, point.y);
-        }
+        run.points.insert(run.points.end(), flight.points.begin(), flight.points.end());
     }
     // Flight number k of the limit takes e^k of the time left at the cut; only what is seen is drawn.
     const double begin = std::max(0.0, std::floor((low - cut_) / spacing_));
@@ -120,10 +125,18 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
         markers.size = 1.5;
         if (x >= low && x <= high) markers.points.push_back({x, 0.0});
     };
-    bar(cut_, "cut", theme.surface);
-    if (interval_) bar(*interval_, "certified", event_markers(theme, Event::Kind::zeno).fill);
+    bar(cut_, "cut here", theme.surface);
+    if (interval_) {
+        Color color = event_markers(theme, Event::Kind::zeno).fill;
+        bar(*interval_, "τ_{∞} is proved to lie to the right", color);
+        color.a = 36;
+        panel.bands.push_back({"certified", color, *interval_, std::numeric_limits<double>::max()});
+    }
     set_time_left(panel.x, low, high);
-    set_ticks(panel.y, 0.0, top, 0.08, 4);
+    // By the limit, not by what is seen: nothing jumps while the row is scrolled. An early flight over ground that is
+    // not yet flat may leave the picture.
+    set_ticks(panel.y, 0.0, 1.5 * height_, 0.0, 4);
+    panel.y.low = -0.08 * height_;
     return panel;
 }
 

@@ -20,14 +20,22 @@ class Lens {
 
     // x = -log10(tau_inf - t), t in seconds. The first impact; where the run was cut (tau_k); where the certified
     // interval of tau_inf begins; and the distance between neighbours in the row, -log10(e).
+    double restitution() const { return e_; }
     double first() const { return flights_.front().x; }
     double cut() const { return cut_; }
     std::optional<double> interval() const { return interval_; }
     double spacing() const { return spacing_; }
 
-    // The row from x = low to high. Up to the cut it is the run's own: gap over the square of the impact speed. From
-    // there on it is drawn as the limit it approaches, arcs of height e^2/(2 a), a = -hddot at the Zeno point, for as
-    // long as anyone scrolls.
+    // As much of the row as shows the cut and where the interval begins.
+    struct Part {
+        double low, high;
+    };
+    Part overview() const;
+
+    // The row from x = low to high, and as a band the certified interval of tau_inf: it begins at zeno_low, and as
+    // tau_inf is infinitely far to the right, it has no end. Up to the cut it is the run's own: gap over the square of
+    // the impact speed. From there on it is drawn as the limit it approaches, arcs of height e^2/(2 a), a = -hddot at
+    // the Zeno point, for as long as anyone scrolls.
     Panel panel(double low, double high, const Theme& theme) const;
 
  private:

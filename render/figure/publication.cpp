@@ -93,16 +93,23 @@ void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
                    const PublicationStyle& style) {
     const Theme theme = light_theme();
-    Figure figure;
-    figure.background = theme.background;
-    figure.ink = theme.ink;
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
     framing.legend = false;  // in a corner, for which it would make room
+    std::vector<Panel> panels;
     for (const ViewDescription& view : views) {
-        figure.panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme, framing));
-        figure.panels.back().legend = view.y.size() > 1;
+        panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme, framing));
+        panels.back().legend = view.y.size() > 1;
     }
+    return publication(trajectory, std::move(panels), style);
+}
+
+Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style) {
+    const Theme theme = light_theme();
+    Figure figure;
+    figure.background = theme.background;
+    figure.ink = theme.ink;
+    figure.panels = std::move(panels);
     if (style.transparent) figure.background.a = 0;
     const Trajectory* const run = &trajectory;
     dress_for_print(figure, {&run, 1});

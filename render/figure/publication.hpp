@@ -14,6 +14,8 @@ struct PublicationStyle {
 // Throws InputError for a view that cannot be evaluated.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
 
+// The same of panels that are composed already, for a white page.
+Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);
 // What a composed figure looks like in print: no grid, smaller markers, and one legend above all panels that tells what
 // occurs in the runs they show.
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs);

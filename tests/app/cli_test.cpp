@@ -80,7 +80,7 @@ const Refusal refusals[] = {
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},
     {"no_system", "simulate", "achilles: SYSTEM is required" + more},
-    {"missing_journal", "screenshot --out a.png --journal none", "none: there is no such file\n"},
+    {"missing_journal", "screenshot --out a.png --journal none.journal", "none.journal: there is no such file\n"},
     {"screenshot_without_a_place", "screenshot ball_on_sine",
      "achilles: --out is required\n'achilles screenshot --help' tells more\n"},
     {"bad_size", "screenshot --out a.png --size 1600",

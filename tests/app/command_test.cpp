@@ -54,6 +54,17 @@ const std::vector<Command> one_of_each{
     command::Size{"controls", 0.3},
     command::Size{"plots", 0.0},
     command::Reset{},
+    command::UseMethod{Method::dopri5},
+    command::MaxImpacts{1000},
+    command::Range{2, true, -1.0, 0.1 + 0.2},
+    command::Range{1, false, 0.0, 1e-7},
+    command::Export{"a folder/run.json", false},
+    command::Export{"ball.svg", true},
+    command::Copy{"figure"},
+    command::Say{"A ball, \"bouncing\" # and more"},
+    command::Say{""},
+    command::Wait{2.5},
+    command::Replay{"the_ball"},
 };
 
 TEST(Command, reads_back_what_it_writes) {

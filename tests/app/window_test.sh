@@ -1,7 +1,7 @@
 #!/bin/bash
 # A real window on a display of its own: what it draws is what the offscreen picture draws, a slider dragged by the mouse
-# changes the run, a text typed into the editor takes effect and is saved, Ctrl+Q closes the window with status 0, also in
-# the middle of a run that takes minutes.
+# changes the run, a text typed into the editor takes effect and is saved, a tour is led on and ended, files are opened and
+# dropped; the window closes with status 0 by Ctrl+Q and by a window manager, also in the middle of a run of minutes.
 #     window_test.sh BUILD_FOLDER
 set -euo pipefail
 
@@ -78,6 +78,44 @@ close_window() {
     [ "$status" -eq 0 ] || fail "the explorer ends with status $status"
 }
 close_window
+
+# A file is opened by its path, the window changes its size, a tour is taken and left, a file is exported; then whoever
+# manages windows asks it to close.
+printf 'unpin\nopen double_pendulum\nsay "First."\nwait 600\nsay "Second."\nwait 600\n' > "$folder/tour.journal"
+"$build/achilles" explore ball_on_sine --size 1280x800 --journal "$folder/tour.journal" --record "$folder/journal" &
+explorer=$!
+await xdotool search --onlyvisible --class achilles || fail "no window appears for a tour"
+window=$(xdotool search --onlyvisible --class achilles | head -1)
+xdotool windowfocus --sync "$window" || true
+await grep -q '^say "First' "$folder/journal" || fail "the tour does not begin"
+grep -q 'Second' "$folder/journal" && fail "the tour does not wait"
+xdotool sleep 0.5 key Return
+await grep -q '^say "Second' "$folder/journal" || fail "Enter does not lead the tour on"
+grep -q '^wait [1-9]' "$folder/journal" || fail "the record does not tell how long the tour waited"
+xdotool sleep 0.3 key Escape
+await grep -q '^say ""' "$folder/journal" || fail "Escape does not end the tour"
+xdotool windowsize --sync "$window" 1000 700 sleep 0.5
+xdotool key ctrl+o sleep 0.5
+xdotool type --delay 40 "$folder/mine.toml"
+xdotool sleep 0.3 key Return
+await grep -q "^open $folder/mine.toml" "$folder/journal" || fail "Ctrl+O does not open a file"
+xdotool sleep 0.5 key Right sleep 0.3 key End sleep 0.3 key ctrl+z
+await grep -q '^undo' "$folder/journal" || fail "Ctrl+Z does not undo"
+grep -q '^step 1' "$folder/journal" || fail "the right arrow does not step"
+# Files dropped on the window: a system is opened, a journal is replayed.
+cp "$folder/mine.toml" "$folder/dropped.toml"
+printf 'grid 3 2\n' > "$folder/dropped.journal"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
+await grep -q "^open $folder/dropped.toml" "$folder/journal" || fail "a system that is dropped is not opened"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
+await grep -q '^grid 3 2' "$folder/journal" || fail "a journal that is dropped is not replayed"
+"$build/achilles" screenshot --journal "$folder/journal" --size 1000x700 --out "$folder/replayed.png" ||
+    fail "the record cannot be replayed"
+"$build/x11_hand" close "$window"
+status=0
+wait "$explorer" || status=$?
+explorer=
+[ "$status" -eq 0 ] || fail "closed from outside the explorer ends with status $status"
 
 # Impacts without end: the window is there at once, and closes at once.
 "$build/achilles" explore ball_on_sine --size 1280x800 --set e=1 --end 1e9 --max-impacts 1000000000 &

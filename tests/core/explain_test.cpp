@@ -58,6 +58,12 @@ TEST(Reasons, AReleaseIsWhereTheForceVanishesUpwards) {
             EXPECT_NEAR(reason.lambda, 0.0, 1e-9);
             EXPECT_GT(reason.jerk, 0.0);
             EXPECT_LT(reason.lambda_rate, 0.0);
+            // During the contact the surface pushes, and at the end less and less.
+            ASSERT_GT(reason.force.size(), 10U);
+            for (std::size_t k = 0; k + 1 < reason.force.size(); ++k) EXPECT_GT(reason.force[k].second, 0.0);
+            const auto& [t, lambda] = reason.force[reason.force.size() - 2];
+            EXPECT_NEAR(lambda, reason.lambda_rate * (t - trajectory.events[i].t), 0.1 * lambda);
+            EXPECT_EQ(reason.force.back().first, trajectory.events[i].t);
             ++releases;
         }
         EXPECT_GT(releases, 0);

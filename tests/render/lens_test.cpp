@@ -94,5 +94,32 @@ TEST(ZenoLens, MarksTheCutAndTheCertifiedInterval) {
     EXPECT_GT(*lens->interval(), lens->cut());
 }
 
+// What is shown at first holds the cut and the beginning of the interval, which goes on for ever; and the arcs are as
+// high wherever one looks.
+TEST(ZenoLens, ShowsTheIntervalAsABandWithoutEnd) {
+    for (const std::string system : {"ball_on_sine", "double_pendulum"}) {
+        const Trajectory trajectory = run_of(system, 1e-6);
+        const auto lens = Lens::at(trajectory, first_zeno(trajectory));
+        ASSERT_TRUE(lens && lens->interval());
+        const Lens::Part part = lens->overview();
+        EXPECT_LT(part.low, lens->cut());
+        EXPECT_LT(*lens->interval(), part.high);
+        const Panel panel = lens->panel(part.low, part.high, light_theme());
+        ASSERT_EQ(panel.bands.size(), 1u);
+        EXPECT_EQ(panel.bands[0].low, *lens->interval());
+        Figure figure;
+        figure.panels = {panel};
+        EXPECT_NE(to_text(figure).find("band \"certified\""), std::string::npos);
+        for (const double x : {lens->first(), 20.0, 1e6}) {
+            const Panel there = lens->panel(x, x + 4.0, light_theme());
+            EXPECT_EQ(there.y.low, panel.y.low);
+            EXPECT_EQ(there.y.high, panel.y.high);
+            double top = 0.0;
+            for (const Point& point : there.curves[1].points) top = std::max(top, point.y);
+            EXPECT_LT(top, there.y.high);
+        }
+    }
+}
+
 }  // namespace
 }  // namespace achilles

@@ -1,0 +1,105 @@
+// Menus: what can be taken away from a session, and the tours that can be taken; and what a tour says on the way.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "panels/widgets.hpp"
+#include "surface/frame.hpp"
+
+namespace achilles {
+
+namespace {
+
+bool item(const char* name, const char* about, PanelState& state, bool enabled = true) {
+    const bool chosen = ImGui::MenuItem(name, nullptr, false, enabled);
+    remember(state, std::string("menu ") + name);
+    tooltip(about);
+    return chosen;
+}
+
+constexpr float padding = 12.0F, accent_width = 4.0F, buttons_width = 76.0F, close_width = 26.0F;
+
+// The caption's text in its width, a little larger than the interface's.
+float text_width(const PanelState& state, float width) {
+    return width - 2.0F * units(padding) - units(accent_width) - units(state.on_tour ? buttons_width : close_width);
+}
+
+// A word to press in the caption's corner.
+bool word_button(const char* word, const char* about, PanelState& state) {
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(word);
+    const bool pressed = ImGui::InvisibleButton(word, size);
+    remember(state, std::string("tour ") + word);
+    const bool lit = ImGui::IsItemHovered();
+    ImGui::GetWindowDrawList()->AddText(at, packed(lit ? text_color() : faint_color()), word);
+    tooltip(about);
+    return pressed;
+}
+
+}  // namespace
+
+void show_take_away_items(const Session& session, PanelState& state, Commands& commands) {
+    struct Kind {
+        const char *name, *ending, *about;
+    };
+    constexpr Kind kinds[] = {
+        {"Figure as SVG\u2026", ".svg", "the plots for print, with their origin: achilles reproduce makes them again"},
+        {"Figure as PNG\u2026", ".png", "the same in pixels"},
+        {"Run as JSON\u2026", ".json", "phases, events and certificates"},
+        {"Run as CSV\u2026", ".csv", "a row an instant"},
+        {"Session as journal\u2026", ".journal", "the commands that lead here, to be replayed anywhere"}};
+    const bool is_there = session.under_way() == nullptr;
+    for (const Kind& kind : kinds)
+        if (item(kind.name, kind.about, state, is_there)) ask_to_take_away(session, state, kind.ending);
+    ImGui::Separator();
+    constexpr std::pair<const char*, const char*> lines[] = {{"Copy command of the explorer", "explorer"},
+                                                             {"Copy command of the figure", "figure"},
+                                                             {"Copy command of the run", "run"}};
+    for (const auto& [name, what] : lines)
+        if (item(name, "the line for a shell that makes the same", state)) commands.emplace_back(command::Copy{what});
+}
+
+void show_tour_items(const Session& session, PanelState& state, Commands& commands) {
+    for (const SystemEntry& tour : state.tours) {
+        if (ImGui::MenuItem((tour.title + "##" + tour.name).c_str()))
+            request(session, state, command::Replay{tour.name}, commands);
+        remember(state, "tour " + tour.name);
+    }
+}
+
+float caption_height(const Session& session, const PanelState& state, float width) {
+    const std::string& caption = session.scene().caption();
+    if (caption.empty()) return 0.0F;
+    const float room = text_width(state, width);
+    const float text = ImGui::CalcTextSize(caption.c_str(), nullptr, false, room).y;
+    // Room for four lines: from caption to caption nothing jumps.
+    return std::max(text, 4.0F * ImGui::GetTextLineHeight()) + 2.0F * units(padding) - units(4.0F);
+}
+
+void show_caption(const Session& session, PanelState& state, Commands& commands) {
+    const Rectangle area = remaining();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 low{area.x, area.y}, high{area.x + area.width, area.y + area.height};
+    list->AddRectFilled(low, high, packed(session.theme().background), units(4.0F));
+    list->AddRectFilled(low, {low.x + units(accent_width), high.y}, ImGui::GetColorU32(ImGuiCol_SliderGrab),
+                        units(2.0F));
+    const float left = area.x + units(accent_width + padding), top = area.y + units(padding - 2.0F);
+    ImGui::SetCursorScreenPos({left, top});
+    ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + text_width(state, area.width));
+    ImGui::TextUnformatted(session.scene().caption().c_str());
+    ImGui::PopTextWrapPos();
+    if (!state.on_tour) {
+        ImGui::SetCursorScreenPos({high.x - units(close_width), top});
+        if (word_button("\u00d7", "close", state)) commands.emplace_back(command::Say{""});
+        return;
+    }
+    ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
+    const bool keys = !ImGui::GetIO().WantTextInput;
+    if (word_button("next", "go on at once (Enter)", state) || (keys && ImGui::IsKeyPressed(key::enter, false)))
+        state.tour_wants = PanelState::OnTour::next;
+    ImGui::SameLine(0.0F, units(10.0F));
+    if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||
+        (keys && ImGui::IsKeyPressed(key::escape, false)))
+        state.tour_wants = PanelState::OnTour::stop;
+}
+
+}  // namespace achilles

@@ -1,0 +1,53 @@
+// What a session gives away, and the journals that it replays.
+#include <fmt/format.h>
+
+#include "journal.hpp"
+#include "session.hpp"
+#include "take_away.hpp"
+
+namespace achilles {
+
+namespace {
+
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+constexpr int deepest = 8;  // journals in journals: one that names itself comes to an end
+
+}  // namespace
+
+void Session::perform(const command::Export& command) {
+    // Until then the result on the screen is of another run than the sliders say, or of none.
+    if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
+        throw refusal("the run is still under way", "export again when it is there");
+    if (library_.exports) take_away(*this, command.file, command.overwrite);
+    notice_ = fmt::format("{} is written", command.file);
+}
+
+void Session::perform(const command::Copy& command) {
+    // The line names a file: it must hold what runs here.
+    const Document kept = library_.open ? library_.open(system()) : open_document(system(), library_.find(system()));
+    if (kept.text != description().source_text || !document_.problems.empty())
+        throw refusal("the text has changes that no file holds, and a command line can only name a file",
+                      "save it first, then copy");
+    copied_ = command_for(*this, command.what);
+    ++copies_;
+    notice_ = "copied: " + copied_;
+}
+
+void Session::perform(const command::Wait& command) { play_on(*this, command.seconds); }
+
+void Session::perform(const command::Replay& command) {
+    if (!library_.journal) throw refusal("there are no journals here");
+    if (replaying_ >= deepest) throw refusal("journals that replay journals that replay journals: this has no end");
+    const std::vector<Command> journal = parse_journal(library_.journal(command.journal), command.journal);
+    ++replaying_;
+    std::string first_error;
+    for (const Command& step : journal) {
+        apply(step);
+        if (first_error.empty()) first_error = error_;
+    }
+    --replaying_;
+    if (!first_error.empty()) throw refusal(first_error);
+}
+
+}  // namespace achilles

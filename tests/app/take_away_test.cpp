@@ -1,0 +1,210 @@
+// What a session gives away leads back to it: figures, data, journals, command lines.
+#include "take_away.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "app/open.hpp"
+#include "app/program.hpp"
+#include "journal.hpp"
+#include "origin.hpp"
+#include "recipe.hpp"
+#include "worker.hpp"
+
+namespace achilles {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The same but for the run time.
+std::string timeless(const std::string& json) {
+    return std::regex_replace(json, std::regex("\"[a-z_]*seconds\": *[-+.e0-9]+"), "\"seconds\": 0");
+}
+
+void apply(Session& session, const std::string& journal) {
+    for (const Command& command : parse_journal(journal)) {
+        session.apply(command);
+        EXPECT_EQ(session.error(), "") << to_text(command);
+    }
+}
+
+// Sessions that differ from their file in every way there is.
+const std::string changes[] = {
+    "",
+    "set e 0.3\nset x' 0.7333333333333333\nend 17\n",
+    "start x 0.1 y 2.5 g 1.5 m 3\ntolerance 1e-9\nmethod dopri5\nmax-impacts 5000\n",
+    "eps 1e-5\nconditions paper\nreinitialization euclidean\n",
+    "eps 1e-5 1e-4 1e-3\n",
+    "grid 3 1\nplot 2 x \"x'^2 + y'^2\" \"y - sin(x)\"\nzoom 1 0.5 4 -2 3\nlog 2 y on\ncurve 2 1 off\n",
+    "grid 1 2\nlink off\nzoom 1 0 5 -1 2\nzoom 2 1 3 -1 2\nrange 1 y -4 4\n",
+    "zoom 1 0 5 -1 2\nlink off\nzoom 2 1 3 -1 2\nfit 1\nlink on\n",
+    "zoom 1 0 5 -1 2\nplot 1 t y\nplot 2 t gap\n",
+    "set e 0.7\npin\nset e 0.2\nconditions paper\nselect 3\nseek 1\n",
+    "look 1 2 3\nhide trail\nshow lens\nhide force\nspeed 0.1\nloop on\nlens 2.5\nselect 11\nsay \"a # \\\"b\\\"\"\n",
+    "text \"title = \\\"no system\\\"\"\nset g 2\n",
+};
+
+TEST(Recipe, leads_to_the_same_session) {
+    for (const std::string& journal : changes) {
+        Session session = test::session("ball_on_sine"), again = test::session("double_pendulum");
+        apply(session, journal);
+        const std::vector<Command> steps = recipe(session);
+        for (const Command& step : steps) again.apply(step);
+        EXPECT_EQ(to_text(again), to_text(session)) << journal << "\nby\n" << journal_text(steps);
+        EXPECT_EQ(again.pinned() == nullptr, session.pinned() == nullptr) << journal;
+        EXPECT_EQ(parse_journal(journal_text(steps)), steps);
+    }
+}
+
+TEST(Recipe, of_an_untouched_session_is_one_line) {
+    EXPECT_EQ(journal_text(recipe(test::session("ball_on_sine"))), "open ball_on_sine\n");
+}
+
+TEST(Recipe, keeps_a_pinned_run_of_another_system_and_an_edited_text) {
+    Session session = test::session("double_pendulum"), again = test::session("ball_on_sine");
+    apply(session, "end 5\npin\nnew\n");
+    std::string text = session.document().text;
+    text.replace(text.find("9.81"), 4, "1.62");
+    session.apply(command::Text{text});
+    ASSERT_TRUE(session.document().problems.empty());
+    for (const Command& step : recipe(session)) again.apply(step);
+    EXPECT_EQ(to_text(again), to_text(session));
+    ASSERT_NE(again.pinned(), nullptr);
+    EXPECT_EQ(to_text(*again.pinned()), to_text(*session.pinned()));
+    EXPECT_EQ(again.value("g"), 1.62);
+}
+
+// The line that was copied makes, in the program, the bytes that are exported here.
+TEST(CopyCommand, makes_the_same_run_and_figure) {
+    for (const std::string& journal : changes) {
+        if (journal.find("text") != std::string::npos) continue;
+        const test::Folder folder;
+        Session session = test::session("ball_on_sine");
+        apply(session, journal);
+        for (const std::string ending : {"json", "svg"}) {
+            const std::string here = (folder.path() / ("here." + ending)).string();
+            session.apply(command::Export{here, false});
+            ASSERT_EQ(session.error(), "");
+            session.apply(command::Copy{ending == "json" ? "run" : "figure"});
+            ASSERT_EQ(session.error(), "");
+            ASSERT_EQ(session.copied().rfind("achilles ", 0), 0U);
+            const test::Answer answer = folder.run(session.copied().substr(9));
+            ASSERT_EQ(answer.status, 0) << session.copied() << "\n" << answer.err;
+            const std::string there = test::content(folder.path() / ("ball_on_sine." + ending));
+            EXPECT_EQ(timeless(there), timeless(test::content(here))) << session.copied();
+            const int again = ending == "svg" ? folder.run("reproduce here.svg").status : 0;
+            EXPECT_EQ(again, 0) << session.copied();
+        }
+    }
+}
+
+// What the explorer's line opens is seen through a screenshot that is told the same.
+TEST(CopyCommand, opens_the_same_explorer) {
+    for (const std::string& journal : {changes[1], changes[9], changes[10]}) {
+        const test::Folder folder;
+        Session session = test::session("ball_on_sine");
+        apply(session, journal);
+        session.apply(command::Copy{"explorer"});
+        const std::string line = session.copied();
+        ASSERT_EQ(line.rfind("achilles explore ball_on_sine", 0), 0U) << line;
+        const std::string size = " --size 700x500 --out ";
+        EXPECT_EQ(folder.run("screenshot" + line.substr(16) + size + "line.png").status, 0);
+        folder.put("j.journal", journal_text(recipe(session)));
+        EXPECT_EQ(folder.run("screenshot --journal j.journal" + size + "journal.png").status, 0);
+        const auto pixels = [&](const char* name) {
+            const std::string bytes = test::content(folder.path() / name);
+            return bytes.substr(bytes.find("IDAT"));
+        };
+        EXPECT_TRUE(pixels("line.png") == pixels("journal.png")) << line;
+    }
+}
+
+TEST(CopyCommand, quotes_for_a_shell_and_names_files_anywhere) {
+    const test::Folder folder;
+    folder.put("it's mine.toml", test::content(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_floor.toml"));
+    const std::string path = (folder.path() / "it's mine.toml").string();
+    Library library = test::library();
+    library.find = [](const std::string& name) { return name; };
+    Session session(path, read_system(path), library);
+    session.apply(command::Copy{"run"});
+    const test::Folder elsewhere;
+    EXPECT_EQ(elsewhere.run(session.copied().substr(9)).status, 0) << session.copied();
+    EXPECT_TRUE(fs::exists(elsewhere.path() / "it's mine.json"));
+    session.apply(command::Text{session.document().text + "# more"});
+    const int copies = session.copies();
+    session.apply(command::Copy{"run"});
+    EXPECT_NE(session.error().find("save it first"), std::string::npos) << session.error();
+    EXPECT_EQ(session.copies(), copies);
+}
+
+TEST(Export, writes_whole_files_or_says_why_not) {
+    const test::Folder folder;
+    Session session = test::session("ball_on_sine");
+    const auto in_folder = [&](const char* name) { return (folder.path() / name).string(); };
+    for (const char* name : {"a.svg", "a.png", "a.json", "a.csv", "a.journal"}) {
+        session.apply(command::Export{in_folder(name), false});
+        EXPECT_EQ(session.error(), "");
+        EXPECT_EQ(session.notice(), in_folder(name) + " is written");
+        session.apply(command::Export{in_folder(name), false});
+        EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+        session.apply(command::Export{in_folder(name), true});
+        EXPECT_EQ(session.error(), "");
+    }
+    EXPECT_TRUE(is_png(test::content(in_folder("a.png"))));
+    EXPECT_EQ(nlohmann::json::parse(test::content(in_folder("a.json")))["outcome"]["kind"], "end time");
+    EXPECT_EQ(test::content(in_folder("a.csv")).rfind("t,phase,", 0), 0U);
+    EXPECT_EQ(test::content(in_folder("a.journal")), "open ball_on_sine\n");
+    for (const auto& [name, says] : {std::pair{"a.pdf", "does not say what to export"},
+                                     {"no/folder/a.svg", "cannot be written"},
+                                     {"", "missing"},
+                                     {"-", "missing"}}) {
+        session.apply(command::Export{*name == '\0' || *name == '-' ? name : in_folder(name), false});
+        EXPECT_NE(session.error().find(says), std::string::npos) << session.error();
+    }
+    EXPECT_EQ(folder.files().size(), 5U);
+}
+
+// A run that is cancelled, or not there yet, is nobody's result.
+TEST(Export, waits_for_a_run_that_is_under_way) {
+    const test::Folder folder;
+    Session session = test::session("ball_on_sine", 0.0);
+    session.apply(command::Start{{{"e", 1.0}}});
+    session.apply(command::MaxImpacts{1000000000});
+    session.apply(command::End{1e9});
+    ASSERT_NE(session.under_way(), nullptr);
+    for (const char* name : {"a.svg", "a.json", "a.csv", "a.journal"}) {
+        session.apply(command::Export{(folder.path() / name).string(), false});
+        EXPECT_NE(session.error().find("under way"), std::string::npos) << session.error();
+    }
+    session.apply(command::Open{"double_pendulum"});
+    session.apply(command::Export{(folder.path() / "a.json").string(), false});
+    EXPECT_TRUE(folder.files().empty() || session.error().empty());
+    for (const std::string& name : folder.files())
+        EXPECT_EQ(test::content(folder.path() / name).find("cancelled"), std::string::npos) << name;
+}
+
+// A picture may come from anybody: what its commands export is not written again.
+TEST(Export, is_not_done_by_a_picture_that_is_reproduced) {
+    const test::Folder folder;
+    ASSERT_EQ(folder.run("figure ball_on_sine --do 'export run.json' --do 'grid 1 1' --out f.svg").status, 0);
+    EXPECT_TRUE(fs::remove(folder.path() / "run.json"));
+    EXPECT_EQ(folder.run("reproduce f.svg").status, 0);
+    EXPECT_FALSE(fs::exists(folder.path() / "run.json"));
+}
+
+TEST(Figure, refuses_steps_that_are_refused) {
+    const test::Folder folder;
+    for (const char* steps : {"--do 'set nothing 1'", "--do 'sett e 1'", "--do 'plot 1 t yy'",
+                              "--do 'grid 1 1' --view height", "--do 'text \"no\"'", "--journal none.journal"}) {
+        const test::Answer answer = folder.run(std::string("figure ball_on_sine --out a.svg ") + steps);
+        EXPECT_EQ(answer.status, 2) << steps << answer.err;
+        EXPECT_NE(answer.err, "");
+    }
+    EXPECT_TRUE(folder.files().empty());
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,150 @@
+// Tours: journals of the assets, which end in the same state at any pace, and in the same pixels.
+#include "tour.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+#include "journal.hpp"
+
+namespace achilles {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names() {
+    std::vector<std::string> result;
+    for (const auto& entry : fs::directory_iterator(ACHILLES_SOURCE_DIR "/assets/journals"))
+        result.push_back(entry.path().stem().string());
+    return result;
+}
+
+std::vector<Command> journal(const std::string& name) {
+    return read_journal(ACHILLES_SOURCE_DIR "/assets/journals/" + name + ".journal");
+}
+
+class Tours : public testing::TestWithParam<std::string> {};
+
+TEST_P(Tours, end_in_the_state_that_is_written_down) {
+    Session session = test::session("ball_on_floor");
+    for (const Command& command : journal(GetParam())) {
+        session.apply(command);
+        EXPECT_EQ(session.error(), "") << to_text(command);
+    }
+    const fs::path golden = fs::path(ACHILLES_SOURCE_DIR "/tests/golden/tours") / (GetParam() + ".txt");
+    const std::string state = to_text(session);
+    if (state == test::content(golden)) return;
+    const fs::path here = fs::path(ACHILLES_BINARY_DIR) / (GetParam() + ".txt");
+    std::ofstream(here, std::ios::binary) << state;
+    ADD_FAILURE() << "another state than in " << golden << ": see " << here;
+}
+
+// A session that something was done to before.
+TEST_P(Tours, begin_wherever_a_session_stands) {
+    Session fresh = test::session("ball_on_floor"), used = test::session("ball_on_sine");
+    for (const char* line :
+         {"pin", "show lens", "speed 7", "loop on", "select 3", "grid 1 1", "set e 0.2", "show editor"})
+        used.apply(parse_command(line));
+    for (Session* session : {&fresh, &used})
+        for (const Command& command : journal(GetParam())) session->apply(command);
+    EXPECT_EQ(to_text(used), to_text(fresh));
+}
+
+TEST_P(Tours, end_the_same_at_any_pace) {
+    Session at_once = test::session("ball_on_floor"), slowly = test::session("ball_on_floor");
+    for (const Command& command : journal(GetParam())) at_once.apply(command);
+    Tour tour(journal(GetParam()));
+    int frames = 0;
+    for (; tour.runs() && frames < 100000; ++frames)
+        for (const Command& command : tour.advance(0.07)) slowly.apply(command);
+    EXPECT_GT(frames, 300);  // a person could not read it in less than 20 seconds
+    EXPECT_EQ(to_text(slowly), to_text(at_once));
+}
+
+TEST_P(Tours, draw_the_same_pixels_twice) {
+    const SurfaceOptions options = test::surface(900, 640);
+    test::Hands a("ball_on_floor", options), b("ball_on_floor", options);
+    for (test::Hands* hands : {&a, &b})
+        for (const Command& command : journal(GetParam())) hands->session.apply(command);
+    EXPECT_EQ(a.picture(), b.picture());
+}
+
+// From sentence to sentence the mechanism stands still.
+TEST_P(Tours, say_what_fits) {
+    test::Hands hands("ball_on_floor");
+    hands.state.on_tour = true;
+    float top = 0.0F;
+    int sentences = 0;
+    for (const Command& command : journal(GetParam())) {
+        hands.session.apply(command);
+        if (!std::holds_alternative<command::Say>(command)) continue;
+        hands.rest(1);
+        const float y = hands.state.places.at("mechanism").y;
+        if (sentences++ == 0) top = y;
+        EXPECT_EQ(y, top) << to_text(command);
+    }
+    EXPECT_GE(sentences, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Journals, Tours, testing::ValuesIn(names()));
+
+TEST(Tour, there_are_three) { EXPECT_GE(names().size(), 3U); }
+
+TEST(Tour, waits_add_up) {
+    Tour tour({command::Play{}, command::Wait{1.0}, command::Pause{}, command::Wait{0.25}, command::Seek{1.0}});
+    EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Play{}}));
+    EXPECT_EQ(tour.advance(0.75), (std::vector<Command>{command::Wait{0.75}}));
+    // What is left of a frame is the next wait's.
+    EXPECT_EQ(tour.advance(0.375), (std::vector<Command>{command::Wait{0.25}, command::Pause{}, command::Wait{0.125}}));
+    EXPECT_EQ(tour.next(), (std::vector<Command>{command::Wait{0.125}}));
+    EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Seek{1.0}}));
+    EXPECT_FALSE(tour.runs());
+    EXPECT_TRUE(tour.next().empty());
+}
+
+TEST(Tour, a_journal_in_a_journal_comes_first) {
+    Tour tour({command::Replay{"a"}, command::Seek{1.0}});
+    EXPECT_EQ(tour.advance(1.0), (std::vector<Command>{command::Replay{"a"}}));
+    tour.begin({command::Play{}});
+    EXPECT_EQ(tour.advance(1.0), (std::vector<Command>{command::Play{}, command::Seek{1.0}}));
+}
+
+// Offscreen a session replays by itself, what the journals replay too, and one that names itself comes to an end.
+TEST(Tour, sessions_replay_journals) {
+    Library library = test::library();
+    library.journal = [](const std::string& name) -> std::string {
+        if (name == "inner") return "set e 0.25\n";
+        if (name == "outer") return "replay inner\nseek 2\n";
+        if (name == "wrong") return "set nothing 1\nseek 3\n";
+        if (name == "unreadable") return "sett e 1\n";
+        return "replay endless\n";
+    };
+    Session session("ball_on_sine", test::system("ball_on_sine"), library);
+    session.apply(command::Replay{"outer"});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.value("e"), 0.25);
+    EXPECT_EQ(session.time(), 2.0);
+    session.apply(command::Replay{"wrong"});
+    EXPECT_NE(session.error().find("nothing"), std::string::npos);
+    EXPECT_EQ(session.time(), 3.0);
+    session.apply(command::Replay{"unreadable"});
+    EXPECT_NE(session.error().find("sett"), std::string::npos);
+    session.apply(command::Replay{"endless"});
+    EXPECT_NE(session.error().find("no end"), std::string::npos);
+}
+
+TEST(Tour, is_chosen_from_the_menu) {
+    test::Hands hands("ball_on_sine");
+    hands.state.tours = {{"the_ball", "The paper's ball"}};
+    hands.click("menu Tours");
+    hands.all.clear();
+    hands.click("tour the_ball");
+    ASSERT_EQ(hands.all.size(), 1U);
+    EXPECT_EQ(hands.all[0], Command(command::Replay{"the_ball"}));
+}
+
+}  // namespace
+}  // namespace achilles
