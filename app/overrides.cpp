@@ -47,4 +47,19 @@ SystemDescription open_system(const std::filesystem::path& file, const std::vect
     return adjusted(read_system(file), settings, overrides);
 }
 
+Run run_of_text(const SystemDescription& description) {
+    const SystemDescription text = parse_system(description.source_text, description.file);
+    Run run;
+    run.options = text.options;
+    const auto n = static_cast<Eigen::Index>(text.coordinates.size());
+    run.q.resize(n);
+    run.v.resize(n);
+    for (const ParameterDescription& parameter : text.parameters) run.parameters.push_back(parameter.value);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        run.q[i] = text.coordinates[static_cast<std::size_t>(i)].start;
+        run.v[i] = text.coordinates[static_cast<std::size_t>(i)].rate;
+    }
+    return run;
+}
+
 }  // namespace achilles

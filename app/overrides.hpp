@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/description.hpp"
+#include "trajectory.hpp"
 
 namespace achilles {
 
@@ -29,5 +30,8 @@ SystemDescription adjusted(SystemDescription description, const std::vector<std:
                            const OptionOverrides& overrides);
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides);
+
+// What the text of a system says, whatever the command line put over it: where "reset" leads.
+Run run_of_text(const SystemDescription& description);
 
 }  // namespace achilles

@@ -5,28 +5,13 @@
 #include <filesystem>
 
 #include "model/model.hpp"
+#include "overrides.hpp"
 
 namespace achilles {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-// What the text of a system says, whatever the command line put over it.
-Run run_of_text(const SystemDescription& description) {
-    const SystemDescription text = parse_system(description.source_text, description.file);
-    Run run;
-    run.options = text.options;
-    const auto n = static_cast<Eigen::Index>(text.coordinates.size());
-    run.q.resize(n);
-    run.v.resize(n);
-    for (const ParameterDescription& parameter : text.parameters) run.parameters.push_back(parameter.value);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        run.q[i] = text.coordinates[static_cast<std::size_t>(i)].start;
-        run.v[i] = text.coordinates[static_cast<std::size_t>(i)].rate;
-    }
-    return run;
-}
 
 // Every value that differs, by name: a parameter, a start x, a rate x'.
 std::vector<std::pair<std::string, double>> changed_values(const SystemDescription& description, const Run& from,
@@ -165,7 +150,7 @@ std::vector<Command> recipe(const Session& session) {
     }
     append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
                                 description.source_text));
-    append(steps, run_steps(session, run_of_text(description)));
+    append(steps, run_steps(session, session.file_run()));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.
     const Document& document = session.document();
@@ -177,7 +162,7 @@ std::vector<Command> recipe(const Session& session) {
 
 std::vector<std::string> run_options(const Session& session) {
     const SystemDescription& description = session.description();
-    const Run text = run_of_text(description), &run = session.run();
+    const Run &text = session.file_run(), &run = session.run();
     std::vector<std::string> words;
     for (const auto& [name, value] : changed_values(description, text, run))
         words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});

@@ -44,7 +44,10 @@ InputError no_such_name(const SystemDescription& description, const std::string&
 }  // namespace
 
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
-    : name(name_as_opened), model(std::make_shared<const Model>(description)), mechanism(*model) {}
+    : name(name_as_opened),
+      model(std::make_shared<const Model>(description)),
+      mechanism(*model),
+      file_run(run_of_text(description)) {}
 
 Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
                         Watch* watch)
@@ -105,7 +108,7 @@ void Session::perform(const command::Redo&) {
     restore(history_.redo(moment()));
 }
 
-void Session::perform(const command::Reset&) { rerun(system_->model->default_run()); }
+void Session::perform(const command::Reset&) { rerun(system_->file_run); }
 
 void Session::perform(const command::UseTheme& command) {
     theme_ = command.dark ? dark_theme() : light_theme();

@@ -97,6 +97,8 @@ class Session {
     bool playing() const { return playing_; }
     int selected() const { return selected_; }           // an event's number, from 1; 0: none
     const std::string& error() const { return error_; }  // why the last command was refused; empty: it was not
+    // Every value and option as the text of the system has them.
+    const Run& file_run() const { return system_->file_run; }
     const Theme& theme() const { return theme_; }
     // What the last command did that cannot be seen otherwise: a file written, a line copied. Empty: nothing.
     const std::string& notice() const { return notice_; }
@@ -111,6 +113,7 @@ class Session {
         std::string name;
         std::shared_ptr<const Model> model;
         Mechanism mechanism;
+        Run file_run;
     };
     // One run and what is shown of it.
     struct Motion {

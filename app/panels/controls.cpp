@@ -222,7 +222,7 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
     describe_system(session);
     // Rows close enough that most systems need no scrolling.
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});
-    const Run file = session.model()->default_run();
+    const Run& file = session.file_run();
     const bool has_parameters = !file.parameters.empty();
     if (has_parameters) first_section("Parameters", session, file, state, commands);
     parameters(session, file, state, commands);

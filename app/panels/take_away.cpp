@@ -59,6 +59,7 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
 }
 
 void show_tour_items(const Session& session, PanelState& state, Commands& commands) {
+    if (state.tours.empty()) ImGui::TextDisabled("there are none beside this program");
     for (const SystemEntry& tour : state.tours) {
         if (ImGui::MenuItem((tour.title + "##" + tour.name).c_str()))
             request(session, state, command::Replay{tour.name}, commands);

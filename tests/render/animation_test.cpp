@@ -59,15 +59,15 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     EXPECT_EQ(second.markers[3].points[0].x, 3.2);
     EXPECT_EQ(second.markers[4].points[0].x, 3.2);
     EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
-    // The ball in front of its way in contact, which is in front of the surface, then the way in flight.
+    // The surface, on it the ball's ways in flight and in contact, before them the ball.
     const std::vector<Shape>& shapes = after.world.shapes;
     ASSERT_EQ(shapes.size(), 4u);
+    EXPECT_EQ(shapes[0].stroke.color, light_theme().surface);
+    EXPECT_FALSE(shapes[1].stroke.dash.empty());
+    EXPECT_TRUE(shapes[2].stroke.dash.empty());
+    EXPECT_EQ(shapes[2].stroke.color, phase_color(light_theme(), Phase::Kind::constrained));
     const Shape& disc = shapes[3];
     EXPECT_EQ(disc.kind, Shape::Kind::disc);
-    EXPECT_TRUE(shapes[2].stroke.dash.empty());
-    EXPECT_EQ(shapes[2].stroke.color.r, phase_color(light_theme(), Phase::Kind::constrained).r);
-    EXPECT_EQ(shapes[1].stroke.color, light_theme().surface);
-    EXPECT_FALSE(shapes[0].stroke.dash.empty());
     EXPECT_NEAR(disc.points[0].x, Sampler(trajectory).at(3.2).state.q[0], 1e-12);
 }
 
