@@ -199,8 +199,12 @@ std::vector<Point> thinned(const std::vector<Point>& points, const Axis& x, doub
 // A run of very many impacts has more points than a screen shows; short runs keep every one.
 void thin(Panel& panel) {
     constexpr std::size_t many_points = 20000, many_markers = 8000;
-    for (Curve& curve : panel.curves)
-        if (curve.points.size() > many_points) curve.points = thinned(curve.points, panel.x, 4000.0);
+    for (Curve& curve : panel.curves) {
+        if (curve.points.size() <= many_points) continue;
+        curve.points = thinned(curve.points, panel.x, 2000.0);
+        // Strokes so close together show no dashes, and half a million of these take long to draw.
+        curve.stroke.dash.clear();
+    }
     for (Markers& markers : panel.markers)
         if (markers.points.size() > many_markers) markers.points = thinned(markers.points, panel.x, 1000.0);
 }
