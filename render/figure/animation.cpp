@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "figure/label.hpp"
 #include "figure/publication.hpp"
@@ -34,6 +35,27 @@ void append(std::vector<Point>& all, const std::vector<Point>& more) {
 
 }  // namespace
 
+namespace {
+
+// The number of columns in which plots are nearest to a pleasant shape and few places are empty.
+int columns_in(const Rectangle& area, std::size_t plots) {
+    constexpr double pleasant = 1.6, empty = 0.3;  // width over height; what an empty place costs
+    std::size_t best = 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t columns = 1; columns <= plots; ++columns) {
+        const std::size_t rows = (plots + columns - 1) / columns;
+        const double shape =
+            double{area.width} / static_cast<double>(columns) * static_cast<double>(rows) / area.height;
+        const double cost = std::abs(std::log(shape / pleasant)) + empty * static_cast<double>(rows * columns - plots);
+        if (!(cost < least)) continue;
+        least = cost;
+        best = columns;
+    }
+    return static_cast<int>(best);
+}
+
+}  // namespace
+
 double still_scale(const StillSize& size) {
     constexpr double wide = 1600.0, high = 1000.0, at_that = 1.3, least = 0.5, most = 11.0;
     const double fitting = std::max(at_that * std::min(size.width / wide, size.height / high), least);
@@ -52,12 +74,11 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
     if (unit_in(left_world, shape) >= unit_in(upper_world, shape)) {
         areas.world = left_world;
         areas.plots = {area.x + right, area.y, area.width - right, area.height};
-        areas.columns = plots > 4 ? 2 : 1;
     } else {
         areas.world = upper_world;
         areas.plots = {area.x, area.y + below, area.width, area.height - below};
-        areas.columns = static_cast<int>(plots > 4 ? (plots + 1) / 2 : plots);
     }
+    areas.columns = columns_in(areas.plots, plots);
     return areas;
 }
 

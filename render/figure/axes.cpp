@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "figure/label.hpp"
+
 namespace achilles {
 
 namespace {
@@ -88,10 +90,13 @@ std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m
                   m.text * closest_ticks);
 }
 
-// The size at which a label is at most `room` long.
+// The size at which a label is at most `room` long: if need be that of indices, for which there are letters, and other
+// sizes, for which letters are stretched, only below it.
 float fitting(const std::string& label, const Metrics& m, float room) {
-    const float width = m.width(label, m.text);
-    return width > room ? std::max(m.text * room / width, m.text * 0.5F) : m.text;
+    const float width = m.width(label, m.text), small = std::round(m.text * script_size);
+    if (width <= room) return m.text;
+    if (m.width(label, small) <= room) return small;
+    return std::max(m.text * room / width, m.text * 0.5F);
 }
 
 void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,

@@ -239,15 +239,15 @@ TEST(Frames, ATerminalSeesTheProgress) {
     EXPECT_NE(seen.find("\r\x1b[K3 frames of 320x200 in "), std::string::npos) << seen;
 }
 
-// A program of its own, drawing 401 pictures into "film" by one process. Its first picture is there.
-class Drawing401 {
+// A program of its own, drawing 161 pictures into "film" by one process. Its first picture is there.
+class Drawing161 {
  public:
-    explicit Drawing401(const Folder& folder) {
+    explicit Drawing161(const Folder& folder) {
         fs::create_directory(folder.path() / "film");
         const int watch = ::inotify_init1(IN_CLOEXEC);
         ::inotify_add_watch(watch, (folder.path() / "film").c_str(), IN_MOVED_TO);
         const std::string command =
-            "cd '" + folder.path().string() + "' && exec '" ACHILLES_BINARY_DIR "/achilles' " + film401 + " 2>err";
+            "cd '" + folder.path().string() + "' && exec '" ACHILLES_BINARY_DIR "/achilles' " + film161 + " 2>err";
         id_ = ::fork();
         if (id_ == 0) {
             ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
@@ -269,8 +269,8 @@ class Drawing401 {
         ::waitpid(id_, &status, 0);
         return status;
     }
-    static constexpr const char* film401 =
-        "frames ball_on_sine --end 20 --fps 20 --size 320x200 --scale 0.5 --jobs 1 --out film";
+    static constexpr const char* film161 =
+        "frames ball_on_sine --end 20 --fps 8 --size 320x200 --scale 0.5 --jobs 1 --out film";
 
  private:
     pid_t id_ = 0;
@@ -278,23 +278,23 @@ class Drawing401 {
 
 // All pictures, whole, after the same command once more.
 void expect_completed(const Folder& folder) {
-    const Answer answer = folder.run(Drawing401::film401);
+    const Answer answer = folder.run(Drawing161::film161);
     EXPECT_EQ(answer.status, 0) << answer.err;
     const auto files = contents(folder.path() / "film");
-    EXPECT_EQ(files.size(), 401u);
+    EXPECT_EQ(files.size(), 161u);
     EXPECT_EQ(files.begin()->first, "frame_00000.png");
-    EXPECT_EQ(files.rbegin()->first, "frame_00400.png");
+    EXPECT_EQ(files.rbegin()->first, "frame_00160.png");
     for (const auto& [name, bytes] : files) EXPECT_EQ(origin_of(bytes).picture + ".png", name);
 }
 
 TEST(Frames, AKilledProcessIsToldAndLeavesWholePictures) {
     const Folder folder;
-    const Drawing401 drawing(folder);
+    const Drawing161 drawing(folder);
     ASSERT_EQ(::kill(drawing.child(), SIGKILL), 0);
     EXPECT_EQ(WEXITSTATUS(drawing.wait()), 3);
     const std::string err = content(folder.path() / "err");
     EXPECT_EQ(err.rfind("achilles: a process that drew was ended by signal 9: ", 0), 0u) << err;
-    EXPECT_NE(err.find(" of 401 frames are missing\nthe same command draws those that are\n"), std::string::npos)
+    EXPECT_NE(err.find(" of 161 frames are missing\nthe same command draws those that are\n"), std::string::npos)
         << err;
     expect_completed(folder);
 }
@@ -302,12 +302,12 @@ TEST(Frames, AKilledProcessIsToldAndLeavesWholePictures) {
 // Then those that draw end by themselves, and let go of the folder.
 TEST(Frames, AKilledProgramLeavesNobodyBehind) {
     const Folder folder;
-    const Drawing401 drawing(folder);
+    const Drawing161 drawing(folder);
     ASSERT_EQ(::kill(drawing.id(), SIGKILL), 0);
     EXPECT_TRUE(WIFSIGNALED(drawing.wait()));
     const int lock = ::open((folder.path() / "film").c_str(), O_RDONLY | O_DIRECTORY);
     EXPECT_EQ(::flock(lock, LOCK_EX), 0);
-    EXPECT_LT(contents(folder.path() / "film").size(), 401u);
+    EXPECT_LT(contents(folder.path() / "film").size(), 161u);
     ::close(lock);
     expect_completed(folder);
 }

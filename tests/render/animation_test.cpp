@@ -19,6 +19,10 @@ TEST(Animation, PutsThePlotsWhereTheWorldIsLarger) {
     EXPECT_EQ(tall.world.height, 950.0F);
     EXPECT_EQ(tall.plots.x, tall.world.width);
     EXPECT_EQ(still_areas(1.0, 0, screen).world.width, 1600.0F);
+    // Upright, and many.
+    EXPECT_EQ(still_areas(4.0, 2, {0, 0, 1080, 1850}).columns, 1);
+    EXPECT_EQ(still_areas(0.8, 5, screen).columns, 2);
+    EXPECT_EQ(still_areas(4.0, 6, screen).columns, 3);
 }
 
 TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {

@@ -160,6 +160,25 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
     EXPECT_TRUE(holds(200, 150, "2"));
 }
 
+// Full size, the size of indices, and only then any other: letters that are stretched look pale in pixels.
+TEST(Layout, labels_are_of_sizes_that_have_letters) {
+    const auto size_of = [](const std::string& label) {
+        Figure figure;
+        figure.panels.push_back(samples::corners(""));
+        figure.panels[0].x.label = label;
+        for (const auto& item : layout(figure, half, {0, 0, 400, 400}, 1.0))
+            if (const auto* words = std::get_if<Words>(&item); words != nullptr && words->label == label)
+                return words->size;
+        return 0.0F;
+    };
+    EXPECT_EQ(size_of(std::string(50, 'x')), 14.0F);  // 350 px
+    EXPECT_EQ(size_of(std::string(60, 'x')), 10.0F);
+    EXPECT_EQ(size_of(std::string(75, 'x')), 10.0F);
+    const float least = size_of(std::string(90, 'x'));
+    EXPECT_LT(least, 10.0F);
+    EXPECT_GE(least, 7.0F);
+}
+
 TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
     const auto ticks_in = [](float width) {
         Figure figure;
