@@ -80,6 +80,7 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
     Library library;
     library.find = find_system;
     library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
+    library.exports = false;
     const std::string first = "ball_on_sine";  // as the program opens without a word
     Session session(first, read_system(find_system(first)), std::move(library));
     for (const Command& command : read_journal(journal)) session.apply(command);
