@@ -11,6 +11,15 @@ namespace {
 
 InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
+// The text that a command line finds under a system's name; nothing where there is no such file.
+std::optional<std::string> held_by_file(const Library& library, const std::string& system) {
+    try {
+        return (library.open ? library.open(system) : open_document(system, library.find(system))).text;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
 constexpr int deepest = 8;  // journals in journals: one that names itself comes to an end
 
 }  // namespace
@@ -25,10 +34,8 @@ void Session::perform(const command::Export& command) {
 
 void Session::perform(const command::Copy& command) {
     // The line names a file: it must hold what runs here.
-    const Document kept = library_.open ? library_.open(system()) : open_document(system(), library_.find(system()));
-    if (kept.text != description().source_text || !document_.problems.empty())
-        throw refusal("the text has changes that no file holds, and a command line can only name a file",
-                      "save it first, then copy");
+    if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
+        throw refusal("no file holds this text, and a command line can only name a file", "save it first, then copy");
     copied_ = command_for(*this, command.what);
     ++copies_;
     notice_ = "copied: " + copied_;

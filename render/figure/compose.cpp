@@ -205,8 +205,11 @@ void thin(Panel& panel) {
         // Strokes so close together show no dashes, and half a million of these take long to draw.
         curve.stroke.dash.clear();
     }
-    for (Markers& markers : panel.markers)
-        if (markers.points.size() > many_markers) markers.points = thinned(markers.points, panel.x, 1000.0);
+    for (Markers& markers : panel.markers) {
+        if (markers.points.size() <= many_markers) continue;
+        markers.points = thinned(markers.points, panel.x, 1000.0);
+        markers.edge.a = 0;  // side by side their edges would be all that is seen
+    }
 }
 
 void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, double margin) {

@@ -138,6 +138,9 @@ TEST(CopyCommand, quotes_for_a_shell_and_names_files_anywhere) {
     session.apply(command::Copy{"run"});
     EXPECT_NE(session.error().find("save it first"), std::string::npos) << session.error();
     EXPECT_EQ(session.copies(), copies);
+    session.apply(command::New{});
+    session.apply(command::Copy{"run"});
+    EXPECT_NE(session.error().find("save it first"), std::string::npos) << session.error();
 }
 
 TEST(Export, writes_whole_files_or_says_why_not) {
