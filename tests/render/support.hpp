@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "golden/tolerance.hpp"
 #include "surface/offscreen.hpp"
 
 namespace achilles::support {
@@ -16,9 +17,7 @@ inline SurfaceOptions options(int width = 600, int height = 400, double scale = 
     return result;
 }
 
-// A distance up to which two pictures are the same: another rasteriser scores 0.0016, the faintest change that was ever
-// tried (a hue, by a tenth) 0.009.
-constexpr double worst_tile_allowed = 0.005;
+using golden::worst_tile_allowed;
 
 // Draws on the list behind everything, over white.
 template <class Draw>

@@ -1,0 +1,101 @@
+// How well the comparison of pixels tells lies from honest pictures: every lie about every figure of the gallery, the
+// least scores of each kind and how many the coarse bar alone would miss, and the greatest score of pictures made again
+// by other means. tests/golden/tolerance.hpp holds what is allowed; 1 is the bar.
+//
+//     bench_golden [REPETITIONS [SYSTEM...]]        1 if a lie is missed or an honest picture refused
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "assets.hpp"
+#include "golden/comparer.hpp"
+#include "golden/lies.hpp"
+#include "golden/pictures.hpp"
+#include "golden/tolerance.hpp"
+
+namespace {
+
+using namespace achilles;
+using namespace achilles::golden;
+
+struct Tally {
+    int told = 0, missed = 0, missed_by_coarse = 0;
+    Distance least;
+    std::string example;
+    void add(const Distance& distance, const std::string& what) {
+        if (told++ == 0 || distance.score() < least.score()) least = distance, example = what;
+        if (distance.coarse <= worst_tile_allowed) ++missed_by_coarse;
+        if (distance.score() <= 1.0) {
+            ++missed;
+            fmt::print("missed: {} (coarse {:.4f}, fine {:.4f})\n", what, distance.coarse, distance.fine);
+        }
+    }
+};
+
+// How many are missed.
+int tell_lies(const std::vector<std::string>& systems) {
+    constexpr std::pair<Lie::Kind, const char*> kinds[] = {{Lie::Kind::moved_right, "curve moved right"},
+                                                           {Lie::Kind::moved_up, "curve moved up"},
+                                                           {Lie::Kind::other_hue, "hue"},
+                                                           {Lie::Kind::thicker, "thicker"},
+                                                           {Lie::Kind::no_marker, "marker missing"},
+                                                           {Lie::Kind::other_digit, "digit"}};
+    std::map<Lie::Kind, Tally> tallies;
+    for (const std::string& system : systems) {
+        Easel easel(system);
+        const Image truth = easel.draw(easel.truth());
+        for (const Lie& lie : lies_about(easel.truth()))
+            tallies[lie.kind].add(distance(truth, easel.draw(told(lie, easel.truth()))),
+                                  system + ": " + to_text(lie, easel.truth()));
+    }
+    int missed = 0;
+    fmt::print("{:<18} {:>5} {:>6} {:>11} {:>8} {:>8}\n", "lie", "told", "missed", "coarse only", "coarse", "fine");
+    for (const auto& [kind, name] : kinds) {
+        const Tally& tally = tallies[kind];
+        fmt::print("{:<18} {:>5} {:>6} {:>11} {:>8.4f} {:>8.4f}  {}\n", name, tally.told, tally.missed,
+                   tally.missed_by_coarse, tally.least.coarse, tally.least.fine, tally.example);
+        missed += tally.missed;
+    }
+    return missed;
+}
+
+// How many honest pictures are taken for lies.
+int be_honest(const std::vector<std::string>& systems, int repetitions) {
+    const std::vector<std::string> commands{figure_command(systems.back()),
+                                            "screenshot --size 1200x750 " + systems.back()};
+    int refused = 0;
+    for (const std::string& command : commands) {
+        const Image truth = image_of(command);
+        for (const char* means :
+             {"LP_NUM_THREADS=1 LP_NATIVE_VECTOR_WIDTH=128", "LP_NUM_THREADS=1 LP_NATIVE_VECTOR_WIDTH=256",
+              "LP_NUM_THREADS=2 LP_NATIVE_VECTOR_WIDTH=128", "LP_NUM_THREADS=2 LP_NATIVE_VECTOR_WIDTH=256",
+              "ACHILLES_OFFSCREEN=egl", "GALLIUM_OVERRIDE_CPU_CAPS=sse2"}) {
+            Distance greatest;
+            for (int i = 0; i < repetitions; ++i) {
+                const Distance distance = golden::distance(truth, image_of(command, means));
+                if (distance.score() > greatest.score()) greatest = distance;
+                refused += distance.score() > 1.0 ? 1 : 0;
+            }
+            fmt::print("{:<10} {:<44} {} times: score {:.2f} (coarse {:.4f}, fine {:.4f})\n",
+                       command.substr(0, command.find(' ')), means, repetitions, greatest.score(), greatest.coarse,
+                       greatest.fine);
+            std::fflush(stdout);
+        }
+    }
+    return refused;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
+    const int repetitions = argc > 1 ? std::max(std::atoi(argv[1]), 1) : 30;
+    std::vector<std::string> systems(argv + std::min(argc, 2), argv + argc);
+    if (systems.empty()) systems = system_names();
+    const int refused = be_honest(systems, repetitions), missed = tell_lies(systems);
+    return refused + missed == 0 ? 0 : 1;
+}

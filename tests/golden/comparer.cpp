@@ -1,0 +1,146 @@
+#include "golden/comparer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "golden/tolerance.hpp"
+
+namespace achilles::golden {
+
+namespace {
+
+constexpr int fine_tile = 10, stride = 5;
+
+std::size_t at(const Image& image, int x, int y) {
+    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
+}
+
+// The mean difference over a tile in the channel that differs most; what lies outside the image does not differ.
+double fine_difference(const Image& a, const Image& b, int left, int top) {
+    std::array<long, 3> sums{};
+    const int right = std::min(left + fine_tile, a.width), bottom = std::min(top + fine_tile, a.height);
+    for (int y = top; y < bottom; ++y)
+        for (std::size_t i = at(a, left, y); i < at(a, right, y); i += 3)
+            for (std::size_t c = 0; c < 3; ++c) sums[c] += std::abs(int{a.rgb[i + c]} - int{b.rgb[i + c]});
+    return static_cast<double>(*std::max_element(sums.begin(), sums.end())) / (255.0 * fine_tile * fine_tile);
+}
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        lines.push_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+}
+
+// Takes a number off the text's front.
+std::optional<double> take_number(std::string_view& text) {
+    double value = 0.0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (read.ec != std::errc() || !std::isfinite(value)) return {};
+    text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+    return value;
+}
+
+bool same_number(double a, double b) {
+    const double larger = std::max(std::abs(a), std::abs(b)), apart = std::abs(a - b);
+    if (apart <= absolute_allowed) return true;
+    const double unit = std::pow(10.0, std::floor(std::log10(larger)) - (digits_compared - 1));
+    return apart < 1.5 * unit;
+}
+
+// Where two lines part; nothing where they do not.
+std::optional<std::size_t> parting(std::string_view golden, std::string_view actual) {
+    const std::size_t length = golden.size();
+    bool in_word = false;  // the digits of a name or a colour are no number
+    while (!golden.empty() && !actual.empty()) {
+        std::string_view a = golden, b = actual;
+        const std::optional<double> x = in_word ? std::nullopt : take_number(a), y = x ? take_number(b) : x;
+        if (x && y) {
+            if (!same_number(*x, *y)) break;
+            golden = a, actual = b;
+            in_word = true;
+            continue;
+        }
+        if (golden[0] != actual[0]) break;
+        in_word = std::isalnum(static_cast<unsigned char>(golden[0])) != 0 || golden[0] == '#';
+        golden.remove_prefix(1);
+        actual.remove_prefix(1);
+    }
+    if (golden.empty() && actual.empty()) return {};
+    return length - golden.size();
+}
+
+// A long line's part about a column.
+std::string shown(std::string_view line, std::size_t column) {
+    constexpr std::size_t before = 60, most = 150;
+    std::size_t begin = column > before && line.size() > most ? std::min(column - before, line.size()) : 0;
+    std::size_t end = std::min(begin + most, line.size());
+    // Whole letters only.
+    const auto in_letter = [&](std::size_t i) {
+        return i < line.size() && (static_cast<unsigned char>(line[i]) & 0xC0U) == 0x80U;
+    };
+    while (in_letter(begin)) ++begin;
+    while (in_letter(end)) ++end;
+    return fmt::format("{}{}{}", begin > 0 ? "..." : "", line.substr(begin, end - begin),
+                       end < line.size() ? "..." : "");
+}
+
+}  // namespace
+
+double Distance::score() const { return std::max(coarse / worst_tile_allowed, fine / worst_fine_tile_allowed); }
+
+Distance distance(const Image& a, const Image& b) {
+    Distance result;
+    result.coarse = worst_tile(a, b);
+    if (!std::isfinite(result.coarse)) {
+        result.fine = result.coarse;
+        return result;
+    }
+    for (int top = 0; top < a.height; top += stride) {
+        for (int left = 0; left < a.width; left += stride) {
+            const double fine = fine_difference(a, b, left, top);
+            if (fine > result.fine) result.fine = fine, result.left = left, result.top = top;
+        }
+    }
+    return result;
+}
+
+Image difference(const Image& a, const Image& b) {
+    Image result{a.width, a.height, std::vector<std::uint8_t>(a.rgb.size(), 0)};
+    if (a.width != b.width || a.height != b.height) return result;
+    for (std::size_t i = 0; i < a.rgb.size(); ++i)
+        result.rgb[i] = static_cast<std::uint8_t>(std::min(10 * std::abs(int{a.rgb[i]} - int{b.rgb[i]}), 255));
+    return result;
+}
+
+std::string difference(std::string_view golden, std::string_view actual) {
+    constexpr std::size_t most = 5;  // of either kind
+    std::vector<std::string_view> a = lines_of(golden), b = lines_of(actual);
+    std::size_t line = 0;
+    for (; line < std::min(a.size(), b.size()) && !parting(a[line], b[line]); ++line) {
+    }
+    // What is the same at the end: a line more or less must not make all that follow look different.
+    while (a.size() > line && b.size() > line && !parting(a.back(), b.back())) a.pop_back(), b.pop_back();
+    const std::size_t lost = a.size() - line, found = b.size() - line;
+    if (lost == 0 && found == 0) return {};
+    const std::size_t column = lost > 0 && found > 0 ? parting(a[line], b[line]).value_or(0) : 0;
+    std::string text = fmt::format("line {}: {} of the golden lines, {} of the new ones\n", line + 1, lost, found);
+    for (std::size_t i = line; i < line + std::min(lost, most); ++i)
+        text += "- " + shown(a[i], i == line ? column : parting(a[i], i < b.size() ? b[i] : "").value_or(0)) + "\n";
+    for (std::size_t i = line; i < line + std::min(found, most); ++i)
+        text += "+ " + shown(b[i], i == line ? column : parting(i < a.size() ? a[i] : "", b[i]).value_or(0)) + "\n";
+    return text;
+}
+
+}  // namespace achilles::golden

@@ -1,0 +1,158 @@
+#include "golden/lies.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "assets.hpp"
+#include "figure/layout.hpp"
+#include "golden/pictures.hpp"
+#include "paint/label.hpp"
+#include "paint/sheet.hpp"
+
+namespace achilles::golden {
+
+namespace {
+
+// The digit that looks most like it: the hardest change to see.
+char lookalike(char digit) {
+    constexpr std::string_view others = "8738168138";
+    return others[static_cast<std::size_t>(digit - '0')];
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Turned on the colour wheel by a tenth of it, as bright as before.
+Color turned(const Color& color) {
+    const double high = std::max({color.r, color.g, color.b}), low = std::min({color.r, color.g, color.b});
+    if (high == low) return color;
+    const double span = high - low;
+    const double hue = high == color.r   ? (color.g - color.b) / span
+                       : high == color.g ? (color.b - color.r) / span + 2.0
+                                         : (color.r - color.g) / span + 4.0;
+    const auto channel = [&](double offset) {
+        const double k = std::fmod(hue + 0.6 + offset + 12.0, 6.0);
+        return static_cast<std::uint8_t>(std::lround(high - span * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0)));
+    };
+    return {channel(5.0), channel(3.0), channel(1.0), color.a};
+}
+
+// Whether no other marker covers it.
+bool stands_alone(const Sheet& sheet, std::size_t item) {
+    const auto& mark = std::get<Mark>(sheet[item]);
+    for (std::size_t i = 0; i < sheet.size(); ++i) {
+        const auto* other = std::get_if<Mark>(&sheet[i]);
+        if (other == nullptr || i == item) continue;
+        if (std::hypot(other->at.x - mark.at.x, other->at.y - mark.at.y) < mark.size) return false;
+    }
+    return true;
+}
+
+// How far a curve goes to the side and up or down; of parts that are not joined, the sum.
+Point extent(const Path& path) {
+    Point sum;
+    for (std::size_t i = 1; i < path.points.size(); ++i) {
+        const double x = std::abs(path.points[i].x - path.points[i - 1].x);
+        const double y = std::abs(path.points[i].y - path.points[i - 1].y);
+        if (std::isfinite(x) && std::isfinite(y)) sum = {sum.x + x, sum.y + y};
+    }
+    return sum;
+}
+
+void move(Path& path, double x, double y) {
+    for (Point& point : path.points) point = {point.x + x, point.y + y};
+}
+
+SurfaceOptions page() {
+    SurfaceOptions options;
+    options.width = figure_width;
+    options.height = figure_height;
+    options.scale = figure_scale;
+    options.text_size = options.figure_text_size = Figure().text_size;
+    options.curve_fineness = 2;
+    options.fonts = assets() / "fonts";
+    return options;
+}
+
+}  // namespace
+
+std::string to_text(const Lie& lie, const Sheet& truth) {
+    switch (lie.kind) {
+        case Lie::Kind::moved_right:
+            return fmt::format("curve {} one pixel to the right", lie.item);
+        case Lie::Kind::moved_up:
+            return fmt::format("curve {} one pixel up", lie.item);
+        case Lie::Kind::other_hue:
+            return fmt::format("curve {} in another hue", lie.item);
+        case Lie::Kind::thicker:
+            return fmt::format("curve {} thicker by a fifth", lie.item);
+        case Lie::Kind::no_marker:
+            return fmt::format("marker {} missing", lie.item);
+        case Lie::Kind::other_digit:
+            break;
+    }
+    return fmt::format("\"{}\" for \"{}\"", std::get<Words>(told(lie, truth)[lie.item]).label,
+                       std::get<Words>(truth[lie.item]).label);
+}
+
+std::vector<Lie> lies_about(const Sheet& truth) {
+    constexpr double visible = 8.0;  // pixels: shorter ones hide under the markers at their ends
+    std::vector<Lie> lies;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        if (const auto* path = std::get_if<Path>(&truth[i])) {
+            const Point goes = extent(*path);
+            // A straight line moved along itself stays what it is.
+            if (goes.y > visible) lies.push_back({Lie::Kind::moved_right, i, 0});
+            if (goes.x > visible) lies.push_back({Lie::Kind::moved_up, i, 0});
+            if (goes.x + goes.y > visible)
+                for (const Lie::Kind kind : {Lie::Kind::other_hue, Lie::Kind::thicker}) lies.push_back({kind, i, 0});
+        }
+        if (std::holds_alternative<Mark>(truth[i]) && stands_alone(truth, i))
+            lies.push_back({Lie::Kind::no_marker, i, 0});
+        if (const auto* words = std::get_if<Words>(&truth[i]))
+            for (std::size_t k = 0; k < words->label.size(); ++k)
+                if (is_digit(words->label[k])) lies.push_back({Lie::Kind::other_digit, i, k});
+    }
+    return lies;
+}
+
+Sheet told(const Lie& lie, Sheet sheet) {
+    auto& item = sheet[lie.item];
+    switch (lie.kind) {
+        case Lie::Kind::moved_right:
+            move(std::get<Path>(item), 1.0, 0.0);
+            break;
+        case Lie::Kind::moved_up:
+            move(std::get<Path>(item), 0.0, -1.0);
+            break;
+        case Lie::Kind::other_hue:
+            std::get<Path>(item).stroke.color = turned(std::get<Path>(item).stroke.color);
+            break;
+        case Lie::Kind::thicker:
+            std::get<Path>(item).stroke.width *= 1.2;
+            break;
+        case Lie::Kind::no_marker:
+            sheet.erase(sheet.begin() + static_cast<std::ptrdiff_t>(lie.item));
+            break;
+        case Lie::Kind::other_digit: {
+            char& letter = std::get<Words>(item).label[lie.letter];
+            letter = lookalike(letter);
+            break;
+        }
+    }
+    return sheet;
+}
+
+Easel::Easel(const std::string& system) : surface_(page()) {
+    const Figure figure = gallery_figure(gallery_run(system));
+    const Rectangle area{0.0F, 0.0F, static_cast<float>(figure_width), static_cast<float>(figure_height)};
+    surface_.step([&] { truth_ = layout(figure, label_width, area, figure_scale); });
+}
+
+Image Easel::draw(const Sheet& sheet) {
+    return surface_.frame([&] { paint(sheet, ImGui::GetBackgroundDrawList()); });
+}
+
+}  // namespace achilles::golden

@@ -1,0 +1,51 @@
+// The comparison of pixels, tested by lies that it must notice and by what must not matter. bench_golden does both at
+// length: every lie about the gallery, and thirty repetitions.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "golden/comparer.hpp"
+#include "golden/lies.hpp"
+#include "golden/pictures.hpp"
+
+namespace achilles::golden {
+namespace {
+
+constexpr const char* system = "ball_on_sine";
+
+TEST(Lies, are_noticed_by_pixels_alone) {
+    Easel easel(system);
+    const Image truth = easel.draw(easel.truth());
+    EXPECT_EQ(distance(truth, easel.draw(easel.truth())).score(), 0.0);
+    std::map<Lie::Kind, std::vector<Lie>> all;
+    for (const Lie& lie : lies_about(easel.truth())) all[lie.kind].push_back(lie);
+    EXPECT_EQ(all.size(), 6U);
+    for (const auto& [kind, lies] : all) {
+        constexpr std::size_t sample = 6;
+        ASSERT_GE(lies.size(), sample);
+        for (std::size_t i = 0; i < lies.size(); i += lies.size() / sample)
+            EXPECT_GT(distance(truth, easel.draw(told(lies[i], easel.truth()))).score(), 1.0)
+                << to_text(lies[i], easel.truth());
+    }
+}
+
+// The bars stand between lies and what another machine may draw.
+TEST(Lies, a_picture_by_other_means_is_the_same) {
+    const Image truth = image_of(figure_command(system));
+    for (const char* threads : {"1", "2"})
+        for (const char* width : {"128", "256"})
+            EXPECT_EQ(distance(truth, image_of(figure_command(system), std::string("LP_NUM_THREADS=") + threads +
+                                                                           " LP_NATIVE_VECTOR_WIDTH=" + width))
+                          .score(),
+                      0.0);
+    EXPECT_LT(distance(truth, image_of(figure_command(system), "GALLIUM_OVERRIDE_CPU_CAPS=sse2")).score(), 0.5);
+}
+
+// What is drawn here is what the program draws.
+TEST(Lies, are_told_about_the_golden_figure) {
+    Easel easel(system);
+    EXPECT_EQ(easel.draw(easel.truth()), image_of(figure_command(system)));
+}
+
+}  // namespace
+}  // namespace achilles::golden

@@ -1,0 +1,138 @@
+#include "golden/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "app/program.hpp"
+#include "assets.hpp"
+#include "commands/commands.hpp"
+#include "figure/compose.hpp"
+#include "figure/paper.hpp"
+#include "journal.hpp"
+#include "session.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::golden {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a command of the program leaves in an empty folder, and how the files are called, texts first.
+class Made {
+ public:
+    explicit Made(const std::string& command, const std::string& environment = {}) {
+        const test::Answer answer = folder_.run(command, "MESA_SHADER_CACHE_DISABLE=true " + environment);
+        if (answer.status != reached_end && answer.status != stopped_early)
+            throw std::runtime_error(fmt::format("achilles {}\n{}", command, answer.err));
+    }
+    Image image(const std::string& file) const { return read_png(folder_.path() / file); }
+    std::vector<Layer> layers() const {
+        std::vector<std::string> files = folder_.files();
+        std::sort(files.begin(), files.end());
+        std::vector<Layer> texts, images;
+        for (const std::string& file : files) {
+            if (fs::path(file).extension() == ".png")
+                images.push_back({file, image(file)});
+            else
+                texts.push_back({file, test::content(folder_.path() / file)});
+        }
+        texts.insert(texts.end(), images.begin(), images.end());
+        return texts;
+    }
+
+ private:
+    test::Folder folder_;
+};
+
+constexpr const char* image_name = "picture.png";
+
+Trajectory run_of(const std::string& system, std::optional<Conditions> conditions) {
+    const auto model = std::make_shared<const Model>(read_system(find_system(system)));
+    Run run = model->default_run();
+    if (conditions) run.options.truncation.conditions = *conditions;
+    return simulate(model, run);
+}
+
+std::vector<Layer> figure_layers(const std::string& system) {
+    const Trajectory trajectory = gallery_run(system);
+    return {{"trajectory.txt", to_text(trajectory)},
+            {"figure.txt", to_text(gallery_figure(trajectory))},
+            {image_name, image_of(figure_command(system))}};
+}
+
+// Everything `achilles paper` writes.
+std::vector<Layer> paper_layers() {
+    const Trajectory ball = run_of("ball_on_sine", Conditions::paper);
+    const Trajectory pendulum = run_of("double_pendulum", Conditions::paper);
+    std::string figures;
+    for (const NamedFigure& figure : paper_figures(ball, pendulum))
+        figures += fmt::format("{} {} x {}\n{}", figure.name, figure.width, figure.height, to_text(figure.figure));
+    std::vector<Layer> layers{{"trajectory.txt", to_text(ball) + to_text(pendulum)}, {"figure.txt", figures}};
+    for (Layer& layer : Made("paper --scale 0.5 --out .").layers()) layers.push_back(std::move(layer));
+    return layers;
+}
+
+// The run, then the state of the session and its plots, then the picture.
+std::vector<Layer> explorer_layers(const fs::path& journal) {
+    Library library;
+    library.find = find_system;
+    library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
+    const std::string first = "ball_on_sine";  // as the program opens without a word
+    Session session(first, read_system(find_system(first)), std::move(library));
+    for (const Command& command : read_journal(journal)) session.apply(command);
+    const std::string trajectory = to_text(session.trajectory()), state = to_text(session);
+    Figure plots;
+    plots.panels = session.plots();
+    return {{"trajectory.txt", trajectory},
+            {"figure.txt", state.substr(0, state.size() - trajectory.size()) + to_text(plots)},
+            {image_name, image_of(explorer_command(journal))}};
+}
+
+void add_journals(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder) {
+    if (!fs::is_directory(folder)) return;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (const fs::path journal = entry.path(); journal.extension() == ".journal")
+            pictures.push_back({kind + "/" + journal.stem().string(), [journal] { return explorer_layers(journal); }});
+}
+
+}  // namespace
+
+std::vector<Picture> pictures() {
+    std::vector<Picture> all;
+    for (const std::string& system : system_names())
+        all.push_back({"figure/" + system, [system] { return figure_layers(system); }});
+    all.push_back({"paper", paper_layers});
+    add_journals(all, "explorer", place().goldens / "explorer");
+    add_journals(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals");
+    std::sort(all.begin(), all.end(), [](const Picture& a, const Picture& b) { return a.name < b.name; });
+    return all;
+}
+
+Trajectory gallery_run(const std::string& system) { return run_of(system, {}); }
+
+// All views, those over time first, as `achilles figure` orders them.
+Figure gallery_figure(const Trajectory& trajectory) {
+    std::vector<ViewDescription> views = trajectory.model->description().views;
+    std::stable_partition(views.begin(), views.end(), [](const ViewDescription& view) { return view.x.text == "t"; });
+    return publication(trajectory, views, {});
+}
+
+Image image_of(const std::string& command, const std::string& environment) {
+    return Made(fmt::format("{} --out {}", command, image_name), environment).image(image_name);
+}
+
+std::string figure_command(const std::string& system) {
+    return fmt::format("figure {} --size {}x{} --scale {}", system, figure_width, figure_height, figure_size);
+}
+
+std::string explorer_command(const fs::path& journal) {
+    const std::string text = journal_file(journal), sign = "# achilles ";
+    const std::string command = text.rfind(sign, 0) == 0 ? text.substr(sign.size(), text.find('\n') - sign.size())
+                                                         : "screenshot --size 1200x750";
+    return fmt::format("{} --journal '{}'", command, journal.string());
+}
+
+}  // namespace achilles::golden
