@@ -33,7 +33,7 @@ class Taylor : public Stepper {
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     Obstacle expand(double longest);
     double parabola_root(double longest) const;
-    double magnitude(int k) const;
+    double magnitude(const double* c) const;
     double natural_step() const;
     void stay_in_domain(double step);
     bool is_defined();
@@ -41,13 +41,13 @@ class Taylor : public Stepper {
 
     std::size_t n_, width_;  // width: q, v, what is watched
     double tolerance_;
+    const SeriesProgram *flight_program_, *contact_program_;
     SeriesEvaluator flight_, contact_;
     int flight_order_, contact_order_;
     Motion motion_ = Motion::flight;
     Gap gap_;
     State to_;
     std::vector<double> rows_;                                            // coefficients, order by order: q, v, watched
-    std::vector<double> scaled_;                                          // the same times span^k
     std::vector<double> units_;                                           // 1/(tolerance of each component)
     std::vector<double> end_;                                             // of the step, as the series take it
     std::array<double, SeriesEvaluator::highest_order + 1> magnitude_{};  // m_k
