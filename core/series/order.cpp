@@ -41,7 +41,10 @@ ACHILLES_INLINE void gather(const double* n, const std::uint32_t* i, Vector& v) 
     } else if constexpr (width<Vector> == 4) {
         v = Vector{n[i[0]], n[i[1]], n[i[2]], n[i[3]]};
     } else {
-        v = Vector{n[i[0]], n[i[1]], n[i[2]], n[i[3]], n[i[4]], n[i[5]], n[i[6]], n[i[7]]};
+        Four low, high;  // in halves: eight in a row would wait for one another
+        gather(n, i, low);
+        gather(n, i + 4, high);
+        v = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     }
 }
 

@@ -80,6 +80,17 @@ void SeriesEvaluator::begin(const double* inputs) {
     using Kind = SeriesProgram::Kind;
     std::copy_n(inputs, inputs_, zero_.registers_.data());
     zero_.run();
+    tables_ = {.rules = rules_.data(),
+               .rule_count = rules_.size(),
+               .run_rules = program_->code_ ? program_->code_->as<void(double*, const SeriesRule*)>() : nullptr,
+               .now = now_.data(),
+               .sums = program_->series_,
+               .lanes = lanes_,
+               .left = factors_.data(),
+               .right = factors_.data() + lanes_,
+               .weighted = weighted_.data(),
+               .rows = rows_.data(),
+               .older = older_.data()};
     std::fill_n(now_.begin() + static_cast<std::ptrdiff_t>(program_->series_), lanes_, 0.0);  // sums of order 1
     double* const z = zero_.registers_.data();
     const std::size_t own = zero_.program_->slots_.count + zero_.program_->constants_.size() + zero_.program_->size();
@@ -160,19 +171,6 @@ void SeriesEvaluator::extend(int k, const double* inputs) {
     extend(k);
 }
 
-void SeriesEvaluator::extend(int k) {
-    order_({.rules = rules_.data(),
-            .rule_count = rules_.size(),
-            .run_rules = program_->code_ ? program_->code_->as<void(double*, const SeriesRule*)>() : nullptr,
-            .now = now_.data(),
-            .sums = program_->series_,
-            .lanes = lanes_,
-            .left = factors_.data(),
-            .right = factors_.data() + lanes_,
-            .weighted = weighted_.data(),
-            .rows = rows_.data(),
-            .older = older_.data()},
-           k);
-}
+void SeriesEvaluator::extend(int k) { order_(tables_, k); }
 
 }  // namespace achilles

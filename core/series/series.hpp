@@ -122,6 +122,7 @@ class SeriesEvaluator {
     std::size_t inputs_ = 0;  // moving ones
     std::size_t lanes_ = 0;   // inner sums, rounded up to whole vectors of four
     SeriesOrder order_ = nullptr;
+    SeriesTables tables_;
     Evaluator<double> zero_;              // order 0, with room for hidden registers
     std::vector<double> coefficients_;    // of the program, by number
     std::vector<double> scale_;           // of the outputs

@@ -67,7 +67,8 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
 }
 
 // The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
-double newton(const Polynomial& p, double low, double high, double x) {
+// After so many rounds a small step is taken to be near the root.
+double newton(const Polynomial& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
         double value = 0.0, slope = 0.0;
@@ -80,7 +81,7 @@ double newton(const Polynomial& p, double low, double high, double x) {
         const double newtons = x - value / slope;
         const bool inside = newtons > low && newtons < high;
         const double next = inside ? newtons : 0.5 * (low + high);
-        if (std::abs(next - x) <= (inside && round > 1 ? squared_away : 0x1p-53) * x) return next;
+        if (std::abs(next - x) <= (inside && round >= rounds ? squared_away : 0x1p-53) * x) return next;
         if (next == low || next == high) return next;
         x = next;
     }
@@ -91,7 +92,7 @@ double polish(const Polynomial& p, double low, double high) {
     const double at_low = p(low), at_high = p(high);
     if (!(at_low > 0.0)) return low;
     if (!(at_high < 0.0)) return high;
-    return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)));
+    return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
 }
 
 // Looks through the step from left to right, in pieces that are halved until each says one thing.
@@ -175,8 +176,10 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
     if (p.c[0] - others > remainder) return {};
     // It only falls: most flights are nearly parabolas.
     if (p.c[0] > remainder && p.c[1] + slopes < 0.0 && end < -remainder) {
+        const bool steady = p.c[1] + 2.0 * slopes < 0.0;  // the slope changes by a factor of three at most
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * p.c[2]));
-        return {Descent::Kind::root, newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])))};
+        return {Descent::Kind::root,
+                newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
     }
     return Search(p, remainder).run();
 }

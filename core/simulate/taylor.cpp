@@ -64,15 +64,24 @@ double Taylor::parabola_root(double longest) const {
 }
 
 // m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
-double Taylor::magnitude(const double* c) const {
+double Taylor::magnitude(const double* c) {
     const double* const units = units_.data();
     double largest = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < width_; ++i) {
         const double size = std::abs(c[i]) * units[i];
+        if (size > largest) largest_ = i;
         largest = size > largest ? size : largest;
         sum += size;
     }
     return sum < std::numeric_limits<double>::infinity() ? largest : sum;
+}
+
+// Where order_ is not finite: back to the last order before the first that is not.
+Obstacle Taylor::leave_out_infinite() {
+    int finite = 0;
+    while (finite + 1 < order_ && magnitude(row(finite + 1)) < std::numeric_limits<double>::infinity()) ++finite;
+    order_ = finite;
+    return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
 }
 
 // The series at the state where the stepper stands, to the order that is needed.
@@ -118,13 +127,15 @@ Obstacle Taylor::expand(double longest) {
             const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target;
             if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
         }
-        const double m = magnitude(c);
-        magnitude_[static_cast<std::size_t>(k)] = m;
-        if (!(m < std::numeric_limits<double>::infinity())) {
-            --order_;
-            return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
-        }
         power = k == 2 ? target * target : power * target;
+        // One large component is enough to go on, if it is not the end; which one, the last look told.
+        if (k < most && k > 2 && std::abs(c[largest_]) * units_[largest_] * power > 1.0) {
+            zeros = 0;
+            small = false;
+            continue;
+        }
+        const double m = magnitude(c);
+        if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
         const bool now = m * power <= 1.0;
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
         if (k >= most || (k >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
@@ -134,11 +145,11 @@ Obstacle Taylor::expand(double longest) {
 
 // Where the last two terms reach 1. By symmetry they may be much smaller than the first ones left out; the two before
 // them tell: half of the step is within their reach. In a series that was cut early these are large by right.
-double Taylor::natural_step() const {
+double Taylor::natural_step() {
     double exponent = std::numeric_limits<double>::infinity();  // of 2
     const int counted = order_ < guarded ? 2 : 4;
     for (int k = order_; k > order_ - counted; --k) {
-        const double m = magnitude_[static_cast<std::size_t>(k)];
+        const double m = magnitude(row(k));
         if (m > 0.0) exponent = std::min(exponent, (k > order_ - 2 ? 0.0 : 1.0) - std::log2(m) / k);
     }
     return std::exp2(exponent);
