@@ -12,11 +12,12 @@ namespace achilles {
 
 // Written first, made executable then, and never both at once.
 std::shared_ptr<const MachineCode> MachineCode::of(const std::vector<std::uint8_t>& bytes) {
-    void* const memory = mmap(nullptr, bytes.size(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    const std::size_t size = margin + bytes.size();
+    void* const memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) return nullptr;
-    std::shared_ptr<const MachineCode> code(new MachineCode(memory, bytes.size()));
-    std::memcpy(memory, bytes.data(), bytes.size());
-    if (mprotect(memory, bytes.size(), PROT_READ | PROT_EXEC) != 0) return nullptr;
+    std::shared_ptr<const MachineCode> code(new MachineCode(memory, size));
+    std::memcpy(static_cast<std::uint8_t*>(memory) + margin, bytes.data(), bytes.size());
+    if (mprotect(memory, size, PROT_READ | PROT_EXEC) != 0) return nullptr;
     return code;
 }
 

@@ -25,10 +25,11 @@ class MachineCode {
 
     template <class Function>
     Function* as() const {
-        return reinterpret_cast<Function*>(memory_);
+        return reinterpret_cast<Function*>(static_cast<std::uint8_t*>(memory_) + margin);
     }
 
  private:
+    static constexpr std::size_t margin = 16;  // sanitizers look at what stands before a function
     MachineCode(void* memory, std::size_t size) : memory_(memory), size_(size) {}
     void* memory_;
     std::size_t size_;
