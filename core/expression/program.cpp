@@ -5,6 +5,7 @@
 #include <map>
 
 #include "expression/graph.hpp"
+#include "expression/program_code.hpp"
 
 namespace achilles {
 
@@ -88,6 +89,8 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
         if (&part == &order[0]) fixed_runs_ = runs_.size();
     }
     for (const Expression output : outputs) outputs_.push_back(place[output.id()]);
+    const auto first = slots_.count + static_cast<std::uint32_t>(constants_.size() + fixed_);
+    code_ = machine_code(std::span(instructions_).subspan(fixed_), first);
 }
 
 }  // namespace achilles

@@ -5,10 +5,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "expression/expression.hpp"
+#include "expression/machine.hpp"
 #include "expression/scalar.hpp"
 
 namespace achilles {
@@ -45,7 +48,8 @@ class Program {
     std::size_t fixed_ = 0;                  // instructions that depend on parameters alone come first
     std::vector<std::size_t> runs_;          // ends of runs of instructions of one operation
     std::size_t fixed_runs_ = 0;
-    std::vector<std::uint32_t> outputs_;  // registers
+    std::vector<std::uint32_t> outputs_;       // registers
+    std::shared_ptr<const MachineCode> code_;  // of the instructions that move, over double; may be none
 };
 
 // A program with its registers. One per thread; copying copies the registers.
@@ -66,7 +70,13 @@ class Evaluator {
     // Evaluates what depends on the parameters alone. Call after the parameter inputs change, before run().
     void fix() { execute(0, program_->fixed_runs_); }
     // Evaluates the rest. Inputs must be set.
-    void run() { execute(program_->fixed_runs_, program_->runs_.size()); }
+    void run() {
+        if constexpr (std::is_same_v<Scalar, double>)
+            if (program_->code_) return program_->code_->template as<void(double*)>()(registers_.data());
+        run_by_loop();
+    }
+    // The same without machine code.
+    void run_by_loop() { execute(program_->fixed_runs_, program_->runs_.size()); }
 
  private:
     friend class SeriesEvaluator;

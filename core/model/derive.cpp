@@ -52,20 +52,38 @@ Expression dot(const Row& a, const Row& b, Graph& graph) {
     return sum;
 }
 
-// b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i
+// b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i, with the two terms of v_j v_k gathered: half the
+// products.
 Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std::uint32_t>& q, Graph& graph) {
     const std::size_t n = v.size();
     const std::vector<Row> dM = jacobian(M, q);  // dM[i n + j][k] = dM_ij/dq_k
     Row b = gradient(potential, q);
     for (std::size_t i = 0; i < n; ++i) {
+        const auto of = [&](std::size_t j, std::size_t k) {
+            return dM[i * n + j][k] - graph.number(1, 2) * dM[j * n + k][i];
+        };
         for (std::size_t j = 0; j < n; ++j) {
-            Expression inner = graph.number(0);
-            for (std::size_t k = 0; k < n; ++k)
-                inner = inner + (dM[i * n + j][k] - graph.number(1, 2) * dM[j * n + k][i]) * v[k];
+            Expression inner = of(j, j) * v[j];
+            for (std::size_t k = 0; k < j; ++k) inner = inner + (of(j, k) + of(k, j)) * v[k];
             b[i] = b[i] + inner * v[j];
         }
     }
     return b;
+}
+
+// A quotient whose divisor is never zero: a factor that it shares with the dividend goes.
+Expression cancelled(Expression quotient, Graph& graph) {
+    const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
+    const Graph::Node node = graph.node(quotient.id());  // a copy: what follows makes nodes
+    if (node.operation == Operation::multiply && at(node.a).is_number())
+        return at(node.a) * cancelled(at(node.b), graph);
+    if (node.operation == Operation::multiply && at(node.b).is_number())
+        return at(node.b) * cancelled(at(node.a), graph);
+    if (node.operation != Operation::divide) return quotient;
+    const Graph::Node dividend = graph.node(node.a);
+    if (dividend.operation != Operation::multiply) return quotient;
+    if (dividend.a == node.b) return at(dividend.b);
+    return dividend.b == node.b ? at(dividend.a) : quotient;
 }
 
 }  // namespace
@@ -97,12 +115,13 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     const Row impulse = mass.solve(e.g);  // M^-1 g'
     e.W = dot(e.g, impulse, graph);
     if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
-    for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : u / e.W);
+    for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : cancelled(u / e.W, graph));
 
     e.hddot = curvature + dot(e.g, e.f, graph);
     e.lambda = -(e.hddot / e.W);
     for (std::size_t i = 0; i < n; ++i) {
         e.f_c.push_back(e.f[i] - e.n[i] * e.hddot);
+        e.f_by_force.push_back(e.f[i] + impulse[i] * e.lambda);
         e.s.push_back(v[i] - e.n[i] * e.hdot);
     }
     e.energy = e.kinetic + e.potential;

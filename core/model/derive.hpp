@@ -26,6 +26,7 @@ struct Layout {
 struct Equations {
     std::vector<Expression> M, bias, f, g, H, n, s, f_c;
     Expression kinetic, potential, gap, restitution;
+    std::vector<Expression> f_by_force;  // f_c as f + M^-1 g' lambda
     Expression W, hdot, hddot, lambda, energy;
     Expression jerk;                 // h''': the rate of hddot along the constrained motion
     std::vector<Expression> pivots;  // D of M = L D L': all positive exactly where M is positive definite

@@ -58,7 +58,10 @@ void Model::compile() {
     force_ = program({{e.lambda}});
     restitution_ = program({{e.restitution}});
     flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.n + 1);
+    // Two ways to say the same; one takes fewer products.
     contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.n + 1);
+    SeriesProgram by_force(program({e.f_by_force, {e.hddot}, e.pivots}), layout_.n + 1);
+    if (by_force.inner_sums() < contact_series_.inner_sums()) contact_series_ = std::move(by_force);
 }
 
 const Bouncing& Model::bouncing() const {

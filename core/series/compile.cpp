@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "series/rule_code.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -26,12 +27,13 @@ class SeriesCompiler {
         for (std::uint32_t reg = first_moving_; reg < count; ++reg) {
             const Instruction& in = program_.instructions_[reg - first];
             function_registers_.emplace(std::pair(in.operation, in.a), reg);
+            series_.partial_ = series_.partial_ || has_edge(in.operation);
         }
         for (std::uint32_t reg = first_moving_; reg < count; ++reg)
             forms_[reg] = translate(program_.instructions_[reg - first], reg);
         for (const std::uint32_t output : program_.outputs_) {
             const bool wanted = series_.outputs_.size() < series_.wanted_;
-            const Operand value = wanted ? operand(output) : Operand{output, 0, one};
+            const Operand value = wanted ? apart_from_inputs(operand(output)) : Operand{output, 0, one};
             series_.outputs_.push_back({output, value.series, value.scale});
         }
         series_.registers_ = next_register_;
@@ -56,6 +58,11 @@ class SeriesCompiler {
     };
     static constexpr std::uint32_t one = 0;              // the coefficient
     static constexpr std::uint32_t sum_mark = 1u << 31;  // an inner sum, before it has its place
+
+    static bool has_edge(Operation operation) {
+        return operation == Operation::sqrt || operation == Operation::log || operation == Operation::asin ||
+               operation == Operation::acos || operation == Operation::real_power;
+    }
 
     bool moves(std::uint32_t reg) const { return reg < program_.slots_.fixed_begin || reg >= first_moving_; }
 
@@ -120,6 +127,15 @@ class SeriesCompiler {
         Form& form = forms_[reg];
         if (form.size() > 1) form = {{written_out(form), one}};
         return {reg, form[0].series, form[0].coefficient};
+    }
+
+    // An output that is an input, copied: the inputs of the next order may be written while outputs are still read.
+    Operand apart_from_inputs(const Operand& output) {
+        if (output.series > program_.slots_.fixed_begin || output.series == 0) return output;
+        const std::uint32_t copy = next_series_++;
+        series_.combinations_.push_back({static_cast<std::uint32_t>(series_.rules_.size()), {output.scale, one, one}});
+        series_.rules_.push_back({copy, output.series, 0, 0});
+        return {output.value, copy, one};
     }
 
     // ---- recurrences ----
@@ -309,7 +325,7 @@ class SeriesCompiler {
             }
             if (weighted) series_.weighted_ = series_.sums_.size();
         }
-        for (SeriesProgram::Rule& rule : series_.rules_)
+        for (SeriesRule& rule : series_.rules_)
             for (std::uint32_t* operand : {&rule.x, &rule.y, &rule.w})
                 if (*operand & sum_mark) *operand = position[*operand & ~sum_mark];
     }
@@ -333,6 +349,7 @@ class SeriesCompiler {
 
 SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program), wanted_(wanted) {
     SeriesCompiler(*this).compile();
+    code_ = machine_code(rules_);
 }
 
 }  // namespace achilles

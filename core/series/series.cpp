@@ -5,17 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "series/convolution.hpp"
-
 namespace achilles {
 
 namespace {
-
-constexpr auto reciprocals = [] {
-    std::array<double, SeriesEvaluator::highest_order + 1> table{};
-    for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k);
-    return table;
-}();
 
 double function_value(Operation function, double a) {
     switch (function) {
@@ -52,12 +44,20 @@ double combined(Operation operation, double a, double b) {
 SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters)
     : program_(&program),
       inputs_(program.program_.slots_.fixed_begin),
-      lanes_((program.sums_.size() + 7) / 8 * 8),
+      lanes_((program.sums_.size() + 3) / 4 * 4),
+      order_(series_order_versions(lanes_).version[0].function),
       zero_(program.program_),
+      rules_(program.rules_),
       now_(program.series_ + lanes_, 0.0),
-      factors_(program.rules_.size(), {0.0, 0.0, 0.0}),
+      factors_(2 * lanes_, 0),
+      weighted_(lanes_, 0.0),
       rows_(2 * lanes_ * (highest_order + 1), 0.0),
       older_(lanes_, 0.0) {
+    for (std::size_t i = 0; i < program.sums_.size(); ++i) {
+        factors_[i] = program.sums_[i].x;
+        factors_[lanes_ + i] = program.sums_[i].y;
+    }
+    std::fill_n(weighted_.begin(), program.weighted_, 1.0);
     for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
     zero_.fix();
     zero_.registers_.resize(program.registers_, 0.0);
@@ -71,7 +71,7 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
         }
     }
     for (const SeriesProgram::Combination& c : program.combinations_)
-        for (std::size_t i = 0; i < 3; ++i) factors_[c.rule][i] = coefficients_[c.coefficient[i]];
+        for (std::size_t i = 0; i < 3; ++i) rules_[c.rule].f[i] = coefficients_[c.coefficient[i]];
     for (const SeriesProgram::Output& output : program.outputs_) scale_.push_back(coefficients_[output.coefficient]);
 }
 
@@ -80,107 +80,97 @@ void SeriesEvaluator::begin(const double* inputs) {
     using Kind = SeriesProgram::Kind;
     std::copy_n(inputs, inputs_, zero_.registers_.data());
     zero_.run();
+    tables_ = {.rules = rules_.data(),
+               .rule_count = rules_.size(),
+               .run_rules = program_->code_ ? program_->code_->as<void(double*, const SeriesRule*)>() : nullptr,
+               .now = now_.data(),
+               .sums = program_->series_,
+               .lanes = lanes_,
+               .left = factors_.data(),
+               .right = factors_.data() + lanes_,
+               .weighted = weighted_.data(),
+               .rows = rows_.data(),
+               .older = older_.data()};
+    std::fill_n(now_.begin() + static_cast<std::ptrdiff_t>(program_->series_), lanes_, 0.0);  // sums of order 1
     double* const z = zero_.registers_.data();
     const std::size_t own = zero_.program_->slots_.count + zero_.program_->constants_.size() + zero_.program_->size();
     for (const SeriesProgram::Seed& seed : program_->seeds_) {
         const double a = z[seed.a], b = z[seed.b], sign = seed.sign;
         const double by_a = coefficients_[seed.scale_a], by_b = coefficients_[seed.scale_b];
-        std::array<double, 3>* const f = &factors_[seed.rule];
+        const auto set = [&](std::size_t rule, double x, double y, double w) {
+            double* const f = rules_[seed.rule + rule].f;
+            f[0] = x;
+            f[1] = y;
+            f[2] = w;
+        };
         double& r = z[seed.result];
         const bool hidden = seed.result >= own;
         switch (seed.kind) {
             case Kind::multiply:
                 if (hidden) r = a * b;
-                f[0] = {a * by_b, b * by_a, by_a * by_b};
+                set(0, a * by_b, b * by_a, by_a * by_b);
                 break;
             case Kind::square:
                 if (hidden) r = a * a;
-                f[0] = {2.0 * a * by_a, 0.0, by_a * by_a};
+                set(0, 2.0 * a * by_a, 0.0, by_a * by_a);
                 break;
             case Kind::unit_and_square:
                 if (hidden) r = 1.0 + sign * (a * a);
-                f[0] = {sign * 2.0 * a * by_a, 0.0, sign * by_a * by_a};
+                set(0, sign * 2.0 * a * by_a, 0.0, sign * by_a * by_a);
                 break;
             case Kind::divide: {
                 if (hidden) r = sign < 0.0 ? 1.0 / b : a / b;
                 const double inverse = 1.0 / b;
-                f[0] = {by_a * inverse, -(r * by_b * inverse), -(by_b * inverse)};
+                set(0, by_a * inverse, -(r * by_b * inverse), -(by_b * inverse));
                 break;
             }
             case Kind::sqrt: {
                 if (hidden) r = std::sqrt(a);
                 const double inverse = 0.5 / r;
-                f[0] = {by_a * inverse, 0.0, -inverse};
+                set(0, by_a * inverse, 0.0, -inverse);
                 break;
             }
             case Kind::exp:
                 if (hidden) r = std::exp(a);
-                f[0] = {by_a * r, 0.0, by_a};
+                set(0, by_a * r, 0.0, by_a);
                 break;
             case Kind::sin_cos: {
                 double& c = z[seed.partner];
                 if (hidden) r = sign < 0.0 ? std::sin(a) : std::sinh(a);
                 if (seed.partner >= own) c = sign < 0.0 ? std::cos(a) : std::cosh(a);
-                f[0] = {by_a * c, 0.0, by_a};
-                f[1] = {sign * by_a * r, 0.0, sign * by_a};
+                set(0, by_a * c, 0.0, by_a);
+                set(1, sign * by_a * r, 0.0, sign * by_a);
                 break;
             }
             case Kind::tangent: {
                 if (hidden) r = sign > 0.0 ? std::tan(a) : std::tanh(a);
                 const double w = z[seed.partner] = 1.0 + sign * (r * r);
-                f[0] = {by_a * w, 0.0, by_a};
-                f[1] = {sign * 2.0 * r, 0.0, sign};
+                set(0, by_a * w, 0.0, by_a);
+                set(1, sign * 2.0 * r, 0.0, sign);
                 break;
             }
             case Kind::integral_of_ratio: {
                 if (hidden) r = function_value(seed.function, a);
                 const double inverse = 1.0 / b;
-                f[0] = {sign * by_a * inverse, 0.0, -(by_b * inverse)};
+                set(0, sign * by_a * inverse, 0.0, -(by_b * inverse));
                 break;
             }
             case Kind::power: {
                 // a p' = e a' p:  a_0 p_k = e (a_k p_0 + sum j a_j p_{k-j}/k) - sum j p_j a_{k-j}/k
                 if (hidden) r = std::pow(a, b);
                 const double inverse = by_a / a;
-                f[0] = {b * r * inverse, b * inverse, -inverse};
+                set(0, b * r * inverse, b * inverse, -inverse);
                 break;
             }
         }
     }
 }
 
-// Order k becomes a row. Rows 0 and k are not read for order k: the inner sums leave these terms out.
-void SeriesEvaluator::keep(int k) {
-    double* const x = rows_.data() + 2 * lanes_ * static_cast<std::size_t>(k);
-    double* const y = x + lanes_;
-    const double* const n = now_.data();
-    const double weight = k;
-    const SeriesProgram::InnerSum* const sums = program_->sums_.data();
-    const std::size_t weighted = program_->weighted_, count = program_->sums_.size();
-    for (std::size_t i = 0; i < weighted; ++i) {
-        x[i] = weight * n[sums[i].x];
-        y[i] = n[sums[i].y];
-    }
-    for (std::size_t i = weighted; i < count; ++i) {
-        x[i] = n[sums[i].x];
-        y[i] = n[sums[i].y];
-    }
+void SeriesEvaluator::extend(int k, const double* inputs) {
+    std::copy_n(inputs, inputs_, now_.data() + 1);
+    extend(k);
 }
 
-void SeriesEvaluator::extend(int k, const double* inputs) {
-    static const InnerSums inner = inner_sums();
-    double* const n = now_.data();
-    double* const sums = n + program_->series_;
-    inner(rows_.data(), lanes_, k, older_.data(), sums);
-    const double inverse = reciprocals[static_cast<std::size_t>(k)];
-    for (std::size_t i = 0; i < program_->weighted_; ++i) sums[i] *= inverse;
-    for (std::size_t i = 0; i < inputs_; ++i) n[1 + i] = inputs[i];
-    const std::array<double, 3>* f = factors_.data();
-    for (const SeriesProgram::Rule& rule : program_->rules_) {
-        n[rule.result] = ((*f)[2] * n[rule.w] + (*f)[1] * n[rule.y]) + (*f)[0] * n[rule.x];
-        ++f;
-    }
-    keep(k);
-}
+void SeriesEvaluator::extend(int k) { order_(tables_, k); }
 
 }  // namespace achilles

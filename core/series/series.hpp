@@ -7,8 +7,8 @@
 // with a moving exponent is exp(b log a); whole powers are products, because their base may be zero.
 //
 // Every recurrence is a sum of three terms with factors that depend on order 0 alone, so one loop without a branch runs
-// them all. The inner sums need lower orders alone: all of them are formed first, one lane of a vector each
-// (convolution.hpp). Sums, differences and multiples by what does not move need no recurrence: they are carried along
+// them all. The inner sums need lower orders alone: all of them are formed at once, one lane of a vector each
+// (order.hpp). Sums, differences and multiples by what does not move need no recurrence: they are carried along
 // as linear forms of the others, with coefficients evaluated once a run, and written out where a product needs them.
 #pragma once
 
@@ -17,7 +17,9 @@
 #include <span>
 #include <vector>
 
+#include "expression/machine.hpp"
 #include "expression/program.hpp"
+#include "series/order.hpp"
 
 namespace achilles {
 
@@ -30,6 +32,8 @@ class SeriesProgram {
 
     std::size_t inner_sums() const { return sums_.size(); }
     std::size_t rules() const { return rules_.size(); }
+    // Whether a function in it has an edge, past which it is no number: a root, a logarithm.
+    bool is_partial() const { return partial_; }
 
  private:
     friend class SeriesEvaluator;
@@ -39,11 +43,6 @@ class SeriesProgram {
     struct Coefficient {
         Operation operation = Operation::number;  // number: register a
         std::uint32_t a = 0, b = 0;
-    };
-    // Order k of series `result` is (f[2] w_k + f[1] y_k) + f[0] x_k: what is known last comes last. An operand is a
-    // series or an inner sum.
-    struct Rule {
-        std::uint32_t result, x, y, w;
     };
     // How the factors of a rule (of two, where a function has a partner) follow from order 0.
     enum class Kind : std::uint8_t {
@@ -83,8 +82,9 @@ class SeriesProgram {
 
     Program program_;
     std::size_t wanted_ = 0;
+    bool partial_ = false;
     std::vector<Coefficient> coefficients_;  // the first is 1
-    std::vector<Rule> rules_;
+    std::vector<SeriesRule> rules_;
     std::vector<Seed> seeds_;
     std::vector<Combination> combinations_;
     std::vector<InnerSum> sums_;  // those of j x_j first
@@ -92,6 +92,7 @@ class SeriesProgram {
     std::size_t registers_ = 0;   // of order 0: the program's, then hidden ones
     std::size_t series_ = 0;      // series 0 is zero, then the inputs that move, then results; inner sums follow
     std::vector<Output> outputs_;
+    std::shared_ptr<const MachineCode> code_;  // of the rules; may be none
 };
 
 // A series program with its coefficients. One per thread.
@@ -107,24 +108,30 @@ class SeriesEvaluator {
     // Order 0 of an output, after begin().
     double start(std::size_t index) const { return zero_.registers_[program_->outputs_[index].value]; }
 
+    // Where order k of the moving inputs goes before extend(k). (Copied there as one, they would keep the next loads
+    // waiting until they are written.)
+    double* inputs() { return now_.data() + 1; }
     // Evaluates order k, 1 <= k <= highest_order, from that order of the inputs, after all lower ones.
+    void extend(int k);
     void extend(int k, const double* inputs);
-    // Order k of an output, after extend(k).
+    // Order k of an output, after extend(k) until the next: it is never one of inputs().
     double output(std::size_t index) const { return scale_[index] * now_[program_->outputs_[index].series]; }
 
  private:
-    void keep(int k);
-
     const SeriesProgram* program_ = nullptr;
-    std::size_t inputs_ = 0;                      // moving ones
-    std::size_t lanes_ = 0;                       // inner sums, rounded up to whole vectors
-    Evaluator<double> zero_;                      // order 0, with room for hidden registers
-    std::vector<double> coefficients_;            // of the program, by number
-    std::vector<double> scale_;                   // of the outputs
-    std::vector<double> now_;                     // order k: series, inner sums
-    std::vector<std::array<double, 3>> factors_;  // per rule
-    std::vector<double> rows_;                    // per order: the left factors of all inner sums, then the right ones
-    std::vector<double> older_;                   // what the inner sums of the next order have so far
+    std::size_t inputs_ = 0;  // moving ones
+    std::size_t lanes_ = 0;   // inner sums, rounded up to whole vectors of four
+    SeriesOrder order_ = nullptr;
+    SeriesTables tables_;
+    Evaluator<double> zero_;              // order 0, with room for hidden registers
+    std::vector<double> coefficients_;    // of the program, by number
+    std::vector<double> scale_;           // of the outputs
+    std::vector<SeriesRule> rules_;       // with their factors
+    std::vector<double> now_;             // order k: series, inner sums
+    std::vector<std::uint32_t> factors_;  // the series that a lane multiplies: the left ones, the right ones
+    std::vector<double> weighted_;        // of a lane: 1 or 0
+    std::vector<double> rows_;            // per order: the left factors of all inner sums, then the right ones
+    std::vector<double> older_;           // what the inner sums of the next order have so far
 };
 
 }  // namespace achilles

@@ -26,13 +26,13 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 }  // namespace
 
-Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch)
+Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep)
     : model_(std::move(model)),
       run_(run),
       watch_(watch),
       flow_(*model_, run_),
       surface_(*model_, run_),
-      record_(model_, run_),
+      record_(model_, run_, keep),
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
       state_{run.q, run.v} {}
 
@@ -207,15 +207,9 @@ void Execution::bounce(const Contact& contact, double e) {
                          t_, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
         return;
     }
-    Event event;
-    event.kind = Event::Kind::impact;
-    event.t = t_;
-    event.q = state_.q;
-    event.v_before = state_.v;
-    event.v_after = impact(contact, state_.v, e);
-    event.impact_speed = -contact.hdot;
-    state_.v = event.v_after;
-    record_.event(std::move(event));
+    const Vector v_after = impact(contact, state_.v, e);
+    record_.impact(t_, state_, v_after, -contact.hdot);
+    state_.v = v_after;
     const double hdot = -e * contact.hdot;
     takeoff_ = {{0.0, hdot}, 1};
     first_step_ = 0.0;

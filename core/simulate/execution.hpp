@@ -18,7 +18,7 @@ std::string where(double t, const State& state);
 class Execution {
  public:
     // `watch` may be null; otherwise it lives as long as this.
-    Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch);
+    Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep);
 
     // Decides how the run starts: in flight, in contact, or at an impact.
     void begin();

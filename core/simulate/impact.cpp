@@ -6,6 +6,10 @@ namespace achilles {
 
 namespace {
 
+double rounding_of_q(const Contact& contact, const State& state) {
+    return 0x1p-53 * contact.g.cwiseProduct(state.q).cwiseAbs().sum();
+}
+
 // A computed number stands for every number within this relative distance.
 Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
 
@@ -48,8 +52,7 @@ double Surface::gap_error(const State& state) {
 
 // What the rounding of q alone does to h is a part of the bound and at hand.
 bool Surface::within_gap_error(double value, double times, const Contact& contact, const State& state) {
-    constexpr double surely = 0.5 * 0x1p-53;  // half, for its own rounding
-    const double part = surely * contact.g.cwiseProduct(state.q).cwiseAbs().sum();
+    const double part = 0.5 * rounding_of_q(contact, state);  // half, for its own rounding
     return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
 }
 
@@ -64,7 +67,9 @@ std::optional<Surface::Placed> Surface::project(State state, bool keep_velocity)
     for (int round = 0; round <= rounds; ++round) {
         Contact contact = at(state);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
-        if (within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state)) {
+        // What is far off at first need not be compared with the bound, which costs more than a second look.
+        const bool far = round == 0 && std::abs(contact.h) > 64.0 * rounding_of_q(contact, state);
+        if (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state)) {
             if (!keep_velocity) {
                 state.v -= contact.hdot * contact.n;
                 contact.hdot = 0.0;

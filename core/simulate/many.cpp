@@ -8,9 +8,9 @@ namespace achilles {
 
 namespace {
 
-Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
+Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run, Keep keep) {
     try {
-        return simulate(model, run);
+        return simulate(model, run, nullptr, keep);
     } catch (const InputError& error) {
         return error;
     }
@@ -20,9 +20,9 @@ Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
 
 void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
-                   const std::function<void(std::size_t, Attempt&&)>& take, int threads) {
+                   const std::function<void(std::size_t, Attempt&&)>& take, int threads, Keep keep) {
     const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) take(i, attempt(model, run_of(i)));
+        for (std::size_t i = range.begin(); i != range.end(); ++i) take(i, attempt(model, run_of(i), keep));
     };
     // One run takes long enough (10 us and more) to be a task of its own, and may take a thousand times longer than
     // its neighbour.

@@ -19,9 +19,9 @@ namespace achilles {
 // not the end of it).
 using Attempt = std::variant<Trajectory, InputError>;
 
-// Makes run_of(i), simulates it and hands the result to take(i, attempt), for 0 <= i < count, on at most `threads`
-// threads (0: one for every core). Runs share the model only, which never changes, so that no result depends on the
-// number of threads or on the other runs; only Statistics::seconds does.
+// Makes run_of(i), simulates it, keeping what `keep` says, and hands the result to take(i, attempt), for 0 <= i <
+// count, on at most `threads` threads (0: one for every core). Runs share the model only, which never changes, so that
+// no result depends on the number of threads or on the other runs; only Statistics::seconds does.
 //
 // run_of and take are called once for every i, from several threads at once and in no order: they may write to a place
 // that belongs to i and share nothing else that changes. A trajectory ends with its take() unless that keeps it, so
@@ -29,18 +29,19 @@ using Attempt = std::variant<Trajectory, InputError>;
 // (where several throw, one of theirs); that is how a caller cancels.
 void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
-                   const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0);
+                   const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0,
+                   Keep keep = Keep::everything);
 
 // The same for a list of runs, each reduced to what is wanted of it: results[i] = summarize(i, attempt of runs[i]).
 template <class Summarize>
 auto simulate_many(const std::shared_ptr<const Model>& model, std::span<const Run> runs, const Summarize& summarize,
-                   int threads = 0) {
+                   int threads = 0, Keep keep = Keep::everything) {
     using Summary = std::invoke_result_t<const Summarize&, std::size_t, Attempt&&>;
     static_assert(!std::is_same_v<Summary, bool>, "neighbours in a vector<bool> share a byte: return a char");
     std::vector<std::optional<Summary>> places(runs.size());
     simulate_many(
         model, runs.size(), [&](std::size_t i) { return runs[i]; },
-        [&](std::size_t i, Attempt&& attempt) { places[i].emplace(summarize(i, std::move(attempt))); }, threads);
+        [&](std::size_t i, Attempt&& attempt) { places[i].emplace(summarize(i, std::move(attempt))); }, threads, keep);
     std::vector<Summary> results;
     results.reserve(places.size());
     for (std::optional<Summary>& place : places) results.push_back(std::move(*place));

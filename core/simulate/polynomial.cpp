@@ -66,12 +66,10 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
     }
 }
 
-// The root between a positive and a negative end: Newton's method, kept inside the shrinking bracket.
-double polish(const Polynomial& p, double low, double high) {
-    const double at_low = p(low), at_high = p(high);
-    if (!(at_low > 0.0)) return low;
-    if (!(at_high < 0.0)) return high;
-    double x = low + (high - low) * (at_low / (at_low - at_high));
+// The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
+// After so many rounds a small step is taken to be near the root.
+double newton(const Polynomial& p, double low, double high, double x, int rounds) {
+    constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
         double value = 0.0, slope = 0.0;
         for (int i = p.degree; i >= 0; --i) {
@@ -80,12 +78,21 @@ double polish(const Polynomial& p, double low, double high) {
         }
         if (value == 0.0) return x;
         (value > 0.0 ? low : high) = x;
-        double next = x - value / slope;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-        if (std::abs(next - x) <= 0x1p-53 * x || next == low || next == high) return next;
+        const double newtons = x - value / slope;
+        const bool inside = newtons > low && newtons < high;
+        const double next = inside ? newtons : 0.5 * (low + high);
+        if (std::abs(next - x) <= (inside && round >= rounds ? squared_away : 0x1p-53) * x) return next;
+        if (next == low || next == high) return next;
         x = next;
     }
     return x;
+}
+
+double polish(const Polynomial& p, double low, double high) {
+    const double at_low = p(low), at_high = p(high);
+    if (!(at_low > 0.0)) return low;
+    if (!(at_high < 0.0)) return high;
+    return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
 }
 
 // Looks through the step from left to right, in pieces that are halved until each says one thing.
@@ -168,8 +175,12 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
     }
     if (p.c[0] - others > remainder) return {};
     // It only falls: most flights are nearly parabolas.
-    if (p.c[0] > remainder && p.c[1] + slopes < 0.0 && end < -remainder)
-        return {Descent::Kind::root, polish(p, 0.0, 1.0)};
+    if (p.c[0] > remainder && p.c[1] + slopes < 0.0 && end < -remainder) {
+        const bool steady = p.c[1] + 2.0 * slopes < 0.0;  // the slope changes by a factor of three at most
+        const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * p.c[2]));
+        return {Descent::Kind::root,
+                newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
+    }
     return Search(p, remainder).run();
 }
 

@@ -5,10 +5,11 @@
 
 namespace achilles {
 
-Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run)
-    : energy_(model->evaluator(model->energy(), run.parameters)) {
+Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep) : keep_(keep) {
+    if (keep_ == Keep::everything) energy_ = model->evaluator(model->energy(), run.parameters);
     trajectory_.model = std::move(model);
     trajectory_.run = run;
+    if (keep_ == Keep::end) return;
     // A usual run grows no further than this.
     trajectory_.events.reserve(64);
     trajectory_.pieces.reserve(128);
@@ -29,6 +30,7 @@ void Recorder::close(double t) {
 }
 
 void Recorder::stretch(const State& state) {
+    if (keep_ == Keep::end) return;
     put(energy_, state);
     energy_.run();
     reference_ = energy_.output(0);
@@ -36,11 +38,12 @@ void Recorder::stretch(const State& state) {
 }
 
 void Recorder::step(const Flow& flow, double gap) {
-    trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
     Statistics& statistics = trajectory_.statistics;
     ++statistics.steps;
     statistics.least_gap = any_gap_ ? std::min(statistics.least_gap, gap) : gap;
     any_gap_ = true;
+    if (keep_ == Keep::end) return;
+    trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
     put(energy_, flow.end());
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
@@ -49,11 +52,21 @@ void Recorder::step(const Flow& flow, double gap) {
         statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.output(0) - reference_) / scale_);
 }
 
+void Recorder::impact(double t, const State& before, const Vector& v_after, double speed) {
+    ++trajectory_.statistics.impacts;
+    ++trajectory_.phases.back().impacts;
+    if (keep_ == Keep::end) return;
+    Event& event = trajectory_.events.emplace_back();
+    event.kind = Event::Kind::impact;
+    event.t = t;
+    event.q = before.q;
+    event.v_before = before.v;
+    event.v_after = v_after;
+    event.impact_speed = speed;
+}
+
 void Recorder::event(Event event) {
-    if (event.kind == Event::Kind::impact) {
-        ++trajectory_.statistics.impacts;
-        ++trajectory_.phases.back().impacts;
-    }
+    if (keep_ == Keep::end) return;
     if (event.kind == Event::Kind::zeno) event.impacts = trajectory_.phases.back().impacts;
     trajectory_.events.push_back(std::move(event));
 }

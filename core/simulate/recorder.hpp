@@ -3,13 +3,14 @@
 
 #include "model/model.hpp"
 #include "simulate/flow.hpp"
+#include "simulate/simulate.hpp"
 #include "trajectory.hpp"
 
 namespace achilles {
 
 class Recorder {
  public:
-    Recorder(std::shared_ptr<const Model> model, const Run& run);
+    Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep);
 
     void open(Phase::Kind kind, double t);
     void close(double t);
@@ -19,6 +20,9 @@ class Recorder {
     void stretch(const State& state);
     // The flow's last step, as it stands; `gap` is h at its end.
     void step(const Flow& flow, double gap);
+    // An impact at this state before it.
+    void impact(double t, const State& before, const Vector& v_after, double speed);
+    // Any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
     long steps() const { return trajectory_.statistics.steps; }
@@ -27,6 +31,7 @@ class Recorder {
     Trajectory finish(double t, const State& state, Outcome outcome, long evaluations);
 
  private:
+    Keep keep_;
     Trajectory trajectory_;
     Evaluator<double> energy_;
     double reference_ = 0.0;  // the energy at the start of the stretch

@@ -8,10 +8,10 @@ namespace achilles {
 
 // Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a
 // vanishing contact force releases into the next hybrid execution.
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch) {
+Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();
-    Execution execution(std::move(model), run, watch);
+    Execution execution(std::move(model), run, watch, keep);
     execution.begin();
     while (execution.running()) {
         if (execution.constrained()) {

@@ -17,8 +17,13 @@ struct Watch {
     std::atomic<long> impacts{0};   // so far
 };
 
+// What a trajectory keeps of its run: everything, or the end alone (state, time, outcome, phases, counts and the least
+// gap) without events, dense output and energy. The motion is the same.
+enum class Keep { everything, end };
+
 // Runs. Never throws for what happens on the way: that is the trajectory's outcome. Throws InputError if the run cannot
 // start (Model::check).
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch = nullptr);
+Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch = nullptr,
+                    Keep keep = Keep::everything);
 
 }  // namespace achilles

@@ -12,6 +12,12 @@ constexpr int highest = SeriesEvaluator::highest_order;
 constexpr int guarded = 10;
 constexpr int lowest = 5;  // a release is a triple root: the gap needs more terms than that
 
+constexpr auto reciprocals = [] {
+    std::array<double, highest + 1> table{};
+    for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k);
+    return table;
+}();
+
 // The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
 // radius of convergence. The weights are processor cycles, measured: a step on its own, a rule, a lane of inner sums.
 int best_order(const SeriesProgram& program, double tolerance) {
@@ -33,12 +39,13 @@ Taylor::Taylor(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
       width_(2 * n_ + 1),
       tolerance_(std::max(run.options.tolerance, 0x1p-53)),
+      flight_program_(&model.flight_series()),
+      contact_program_(&model.contact_series()),
       flight_(model.flight_series(), run.parameters),
       contact_(model.contact_series(), run.parameters),
       flight_order_(best_order(model.flight_series(), tolerance_)),
       contact_order_(best_order(model.contact_series(), tolerance_)),
       rows_((highest + 1) * width_, 0.0),
-      scaled_(rows_.size(), 0.0),
       units_(width_, 0.0),
       end_(width_, 0.0) {}
 
@@ -57,15 +64,24 @@ double Taylor::parabola_root(double longest) const {
 }
 
 // m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
-double Taylor::magnitude(int k) const {
-    const double* const c = row(k);
+double Taylor::magnitude(const double* c) {
+    const double* const units = units_.data();
     double largest = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < width_; ++i) {
-        const double size = std::abs(c[i]) * units_[i];
-        largest = std::max(largest, size);
+        const double size = std::abs(c[i]) * units[i];
+        if (size > largest) largest_ = i;
+        largest = size > largest ? size : largest;
         sum += size;
     }
     return sum < std::numeric_limits<double>::infinity() ? largest : sum;
+}
+
+// Where order_ is not finite: back to the last order before the first that is not.
+Obstacle Taylor::leave_out_infinite() {
+    int finite = 0;
+    while (finite + 1 < order_ && magnitude(row(finite + 1)) < std::numeric_limits<double>::infinity()) ++finite;
+    order_ = finite;
+    return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
 }
 
 // The series at the state where the stepper stands, to the order that is needed.
@@ -89,6 +105,7 @@ Obstacle Taylor::expand(double longest) {
     c[w] = flying ? gap_.h : series.start(n_);
     units_[w] = 1.0 / (tolerance_ * (1.0 + std::abs(c[w])));
 
+    double* const moving = series.inputs();
     double target = longest, power = 1.0;
     bool small = false;  // the last term was
     int zeros = 0;
@@ -96,13 +113,13 @@ Obstacle Taylor::expand(double longest) {
     for (order_ = 1;; ++order_) {
         const int k = order_;
         const double* const below = c;
-        c = row(k);
-        const double inverse = 1.0 / k;
+        c += width_;
+        const double inverse = reciprocals[static_cast<std::size_t>(k)];
         for (std::size_t i = 0; i < n_; ++i) {
-            c[i] = below[n_ + i] * inverse;
-            c[n_ + i] = (k == 1 ? series.start(i) : series.output(i)) * inverse;
+            moving[i] = c[i] = below[n_ + i] * inverse;
+            moving[n_ + i] = c[n_ + i] = (k == 1 ? series.start(i) : series.output(i)) * inverse;
         }
-        series.extend(k, c);
+        series.extend(k);
         c[w] = flying && k == 1 ? gap_.hdot : series.output(n_);
         if (k == 2 && flying) {
             // A flight is short where its parabola is; what is watched must be known well against its height.
@@ -110,13 +127,15 @@ Obstacle Taylor::expand(double longest) {
             const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target;
             if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
         }
-        const double m = magnitude(k);
-        magnitude_[static_cast<std::size_t>(k)] = m;
-        if (!std::isfinite(m)) {
-            --order_;
-            return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
-        }
         power = k == 2 ? target * target : power * target;
+        // One large component is enough to go on, if it is not the end; which one, the last look told.
+        if (k < most && k > 2 && std::abs(c[largest_]) * units_[largest_] * power > 1.0) {
+            zeros = 0;
+            small = false;
+            continue;
+        }
+        const double m = magnitude(c);
+        if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
         const bool now = m * power <= 1.0;
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
         if (k >= most || (k >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
@@ -126,32 +145,30 @@ Obstacle Taylor::expand(double longest) {
 
 // Where the last two terms reach 1. By symmetry they may be much smaller than the first ones left out; the two before
 // them tell: half of the step is within their reach. In a series that was cut early these are large by right.
-double Taylor::natural_step() const {
+double Taylor::natural_step() {
     double exponent = std::numeric_limits<double>::infinity();  // of 2
     const int counted = order_ < guarded ? 2 : 4;
     for (int k = order_; k > order_ - counted; --k) {
-        const double m = magnitude_[static_cast<std::size_t>(k)];
+        const double m = magnitude(row(k));
         if (m > 0.0) exponent = std::min(exponent, (k > order_ - 2 ? 0.0 : 1.0) - std::log2(m) / k);
     }
     return std::exp2(exponent);
 }
 
+// The even and the odd terms by themselves: half as many sums wait for one another.
 void Taylor::evaluate(double duration) {
     span_ = duration;
-    double power = 1.0;
-    for (int k = 0; k <= order_; ++k, power *= duration) {
-        const double* const c = row(k);
-        double* const s = scaled_.data() + static_cast<std::size_t>(k) * width_;
-        for (std::size_t i = 0; i < width_; ++i) s[i] = c[i] * power;
-    }
+    const double square = duration * duration;
+    const int even = order_ & ~1, odd = (order_ - 1) | 1;
     for (std::size_t i = 0; i < n_; ++i) {
-        double q = 0.0, v = 0.0;  // from the smallest terms on
-        for (std::size_t k = static_cast<std::size_t>(order_) + 1; k-- > 0;) {
-            q += scaled_[k * width_ + i];
-            v += scaled_[k * width_ + n_ + i];
-        }
-        to_.q[static_cast<Eigen::Index>(i)] = q;
-        to_.v[static_cast<Eigen::Index>(i)] = v;
+        double* const ends[2] = {&to_.q[static_cast<Eigen::Index>(i)], &to_.v[static_cast<Eigen::Index>(i)]};
+        double a[2] = {0.0, 0.0}, b[2] = {0.0, 0.0};
+        const double* const c = rows_.data() + i;
+        for (int k = even; k >= 0; k -= 2)
+            for (std::size_t j = 0; j < 2; ++j) a[j] = a[j] * square + c[static_cast<std::size_t>(k) * width_ + j * n_];
+        for (int k = odd; k >= 1; k -= 2)
+            for (std::size_t j = 0; j < 2; ++j) b[j] = b[j] * square + c[static_cast<std::size_t>(k) * width_ + j * n_];
+        for (std::size_t j = 0; j < 2; ++j) *ends[j] = a[j] + duration * b[j];
     }
 }
 
@@ -167,7 +184,8 @@ Obstacle Taylor::do_step(double longest, double, double least) {
 // A term that hardly matters may end the domain inside a step that its series allows: sqrt(x) with a small factor. Then
 // the step goes as far as its end is defined; what ends there is found by the next one.
 void Taylor::stay_in_domain(double step) {
-    if (is_defined()) return;
+    const SeriesProgram& program = motion_ == Motion::flight ? *flight_program_ : *contact_program_;
+    if (!program.is_partial() || is_defined()) return;
     double inside = 0.0, outside = step;
     while (outside - inside > 1e-12 * step) {
         const double middle = 0.5 * (inside + outside);
@@ -200,18 +218,24 @@ Obstacle Taylor::redo_step(double duration, double least) {
 Polynomial Taylor::watched() const {
     Polynomial p;
     p.degree = order_;
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); ++k) p.c[k] = scaled_[k * width_ + 2 * n_];
+    const double* c = row(0) + 2 * n_;
+    double power = 1.0;
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); ++k, c += width_, power *= span_)
+        p.c[k] = *c * power;
     return p;
 }
 
 std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
-    const auto block = [&](int k) { return scaled_.begin() + k * static_cast<std::ptrdiff_t>(width_); };
+    const std::size_t block = 2 * n_;
     int degree = order_;
-    while (degree > 1 && std::all_of(block(degree), block(degree) + static_cast<std::ptrdiff_t>(2 * n_),
-                                     [](double x) { return x == 0.0; }))
-        --degree;
-    for (int k = 0; k <= degree; ++k)
-        coefficients.insert(coefficients.end(), block(k), block(k) + static_cast<std::ptrdiff_t>(2 * n_));
+    while (degree > 1 && std::all_of(row(degree), row(degree) + block, [](double x) { return x == 0.0; })) --degree;
+    const std::size_t first = coefficients.size();
+    coefficients.resize(first + static_cast<std::size_t>(degree + 1) * block);
+    double* to = coefficients.data() + first;
+    const double* c = row(0);
+    double power = 1.0;
+    for (int k = 0; k <= degree; ++k, c += width_, to += block, power *= span_)
+        for (std::size_t i = 0; i < block; ++i) to[i] = c[i] * power;
     return static_cast<std::uint32_t>(degree);
 }
 
@@ -219,9 +243,10 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 // than the last two together. The steps before have made errors of the size of the tolerance as well, which is in units
 // of the flight's height: a dip within that can be neither claimed nor denied.
 double Taylor::remainder() const {
-    double terms = 0.0, size = 0.0;
-    for (int k = 0; k <= order_; ++k) {
-        const double term = std::abs(scaled_[static_cast<std::size_t>(k) * width_ + 2 * n_]);
+    double terms = 0.0, size = 0.0, power = 1.0;
+    const double* c = row(0) + 2 * n_;
+    for (int k = 0; k <= order_; ++k, c += width_, power *= span_) {
+        const double term = std::abs(*c) * power;
         size += term;
         if (k >= order_ - 1) terms += term;
     }

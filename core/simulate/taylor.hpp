@@ -33,25 +33,26 @@ class Taylor : public Stepper {
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     Obstacle expand(double longest);
     double parabola_root(double longest) const;
-    double magnitude(int k) const;
-    double natural_step() const;
+    double magnitude(const double* c);
+    Obstacle leave_out_infinite();
+    double natural_step();
     void stay_in_domain(double step);
     bool is_defined();
     void evaluate(double duration);
 
     std::size_t n_, width_;  // width: q, v, what is watched
     double tolerance_;
+    const SeriesProgram *flight_program_, *contact_program_;
     SeriesEvaluator flight_, contact_;
     int flight_order_, contact_order_;
     Motion motion_ = Motion::flight;
     Gap gap_;
     State to_;
-    std::vector<double> rows_;                                            // coefficients, order by order: q, v, watched
-    std::vector<double> scaled_;                                          // the same times span^k
-    std::vector<double> units_;                                           // 1/(tolerance of each component)
-    std::vector<double> end_;                                             // of the step, as the series take it
-    std::array<double, SeriesEvaluator::highest_order + 1> magnitude_{};  // m_k
-    int order_ = 0;                                                       // of the last expansion
+    std::vector<double> rows_;   // coefficients, order by order: q, v, watched
+    std::vector<double> units_;  // 1/(tolerance of each component)
+    std::vector<double> end_;    // of the step, as the series take it
+    std::size_t largest_ = 0;    // the component of which a coefficient was largest last
+    int order_ = 0;              // of the last expansion
     double span_ = 0.0;
     long evaluations_ = 0;
 };

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <random>
@@ -221,6 +222,59 @@ TEST_F(Expressions, AProgramEvaluatesTheParametersOnceAndIntervalsEnclose) {
     EXPECT_LE(run.output(0).lo(), std::sin(0.5) * 0.1 + std::exp(0.5));
     EXPECT_GE(run.output(0).hi(), std::sin(0.5) * 0.2 + std::exp(0.5));
     EXPECT_LT(run.output(0).hi() - run.output(0).lo(), 0.0480);
+}
+
+// Machine code gives the bits of the loop: more operations than there are registers, every function, odd powers.
+TEST(Program, GivesTheSameBitsAsMachineCode) {
+    Graph graph;
+    Scope scope;
+    scope.allowed = {{"x", graph.symbol(0)}, {"y", graph.symbol(1)}, {"p", graph.symbol(2)}};
+    std::vector<Expression> outputs;
+    for (const char* text : {"x + y",
+                             "x - y",
+                             "x*y",
+                             "x/y",
+                             "-x",
+                             "-(x*y)",
+                             "x^7",
+                             "x^(-3)",
+                             "2^x",
+                             "y^pi",
+                             "sqrt(y)",
+                             "sin(x)",
+                             "cos(x)",
+                             "tan(x)",
+                             "asin(x)",
+                             "acos(x)",
+                             "atan(x)",
+                             "sinh(x)",
+                             "cosh(x)",
+                             "tanh(x)",
+                             "exp(x)",
+                             "log(y)",
+                             "p*x + sin(p)*y",
+                             "(x + y)*(x - y)/(1 + x^2) - sqrt(x^2 + y^2)*cos(x*y)",
+                             "log(x - 2)"})
+        outputs.push_back(parse(text, scope, graph));
+    for (int k = 1; k < 40; ++k) outputs.push_back(outputs[outputs.size() - 20] * outputs[2] - outputs.back());
+    const Program program(outputs, Slots{3, 2, 3});
+    Evaluator<double> code(program), loop(program);
+    for (const double x : {0.3, -0.7, 0.0, -0.0, 1e-310, 1.0, 1e200}) {
+        for (Evaluator<double>* one : {&code, &loop}) {
+            one->input(0) = x;
+            one->input(1) = 1.7;
+            one->input(2) = 0.4;
+            one->fix();
+        }
+        code.run();
+        loop.run_by_loop();
+        for (std::size_t i = 0; i < outputs.size(); ++i) {
+            const double a = code.output(i), b = loop.output(i);
+            EXPECT_TRUE(std::isnan(a) ? std::isnan(b)
+                                      : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b))
+                << i << " at " << x << ": " << a << ", " << b;
+        }
+    }
 }
 
 }  // namespace

@@ -122,6 +122,30 @@ TEST(ManyRuns, KeepNothingThatTakeDoesNotKeep) {
         model, 0, [&](std::size_t) { return model->default_run(); }, [](std::size_t, Attempt&&) { FAIL(); });
 }
 
+// Which end a run comes to does not depend on what is kept of it.
+TEST(ManyRuns, EndTheSameWhenOnlyTheEndIsKept) {
+    const auto model = test::load("ball_on_sine");
+    const auto runs = balls(*model, 40);
+    const auto end_of = [](std::size_t, const Attempt& attempt) {
+        if (const auto* error = std::get_if<InputError>(&attempt)) return std::string(error->what());
+        const auto& trajectory = std::get<Trajectory>(attempt);
+        std::string bytes = trajectory.outcome.message;
+        append(bytes, trajectory.end_time);
+        append(bytes, trajectory.end.q);
+        append(bytes, trajectory.end.v);
+        append(bytes, trajectory.statistics.least_gap);
+        append(bytes, static_cast<double>(trajectory.statistics.steps + 1000 * trajectory.statistics.impacts));
+        for (const Phase& phase : trajectory.phases) append(bytes, phase.start + phase.impacts);
+        return bytes;
+    };
+    EXPECT_EQ(simulate_many(model, runs, end_of, 1, Keep::end), simulate_many(model, runs, end_of, 1));
+    const auto kept = [](std::size_t, const Attempt& attempt) {
+        const auto* trajectory = std::get_if<Trajectory>(&attempt);
+        return trajectory == nullptr ? std::size_t{0} : trajectory->events.size() + trajectory->coefficients.size();
+    };
+    for (const std::size_t numbers : simulate_many(model, runs, kept, 1, Keep::end)) EXPECT_EQ(numbers, 0u);
+}
+
 TEST(ManyRuns, AreCancelledByAnException) {
     const auto model = test::load("ball_on_sine");
     struct Cancelled {};

@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include "expression/parse.hpp"
-#include "series/convolution.hpp"
+#include "series/rule_code.hpp"
 
 namespace achilles {
 namespace {
@@ -95,35 +96,98 @@ TEST(Series, SumTheirTermsToTheFunction) {
         expect_series(text);
 }
 
-// All that a processor offers give the same bits as a plain loop in the same order.
-TEST(Series, InnerSumsAreTheSameInEveryVersion) {
-    constexpr int orders = 20;
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> number(-1.0, 1.0);
-    for (const std::size_t lanes : {8u, 16u, 24u, 32u, 40u, 64u}) {
-        std::vector<double> rows(2 * lanes * orders);
-        for (double& x : rows) x = number(random);
-        const InnerSumsVersions versions = inner_sums_versions();
-        ASSERT_GE(versions.count, 1u);
-        std::vector<std::vector<double>> results(versions.count);
-        for (std::size_t v = 0; v < versions.count; ++v) {
-            std::vector<double> older(lanes), sums(lanes);
-            for (int k = 1; k <= orders; ++k) {
-                versions.version[v].function(rows.data(), lanes, k, older.data(), sums.data());
-                results[v].insert(results[v].end(), sums.begin(), sums.end());
-            }
-            EXPECT_EQ(results[v], results[0]) << versions.version[v].name;
+// Random tables for any number of lanes: one input moves, every rule takes one inner sum, and there is one of each
+// kind.
+struct RandomSeries {
+    explicit RandomSeries(std::size_t count) : lanes(count) {
+        std::mt19937_64 random(lanes);
+        std::uniform_real_distribution<double> number(-0.5, 0.5);
+        const auto any = [&](std::size_t below) { return static_cast<std::uint32_t>(random() % below); };
+        const std::size_t series = 2 + lanes;  // zero, the input, one a rule
+        now.assign(series + lanes, 0.0);
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+            rules.push_back({2 + i,
+                             any(2 + i),
+                             any(2 + i),
+                             static_cast<std::uint32_t>(series) + i,
+                             {number(random), number(random), number(random)}});
+            left.push_back(1 + any(1 + lanes));
+            right.push_back(1 + any(1 + lanes));
+            weighted.push_back(i % 3 == 0 ? 1.0 : 0.0);
         }
-        for (int k = 1; k <= orders; ++k) {
-            for (std::size_t l = 0; l < lanes; ++l) {
-                double sum = 0.0;
-                for (int j = 1; j < k; ++j)
-                    sum += rows[2 * lanes * static_cast<std::size_t>(j) + l] *
-                           rows[2 * lanes * static_cast<std::size_t>(k - j) + lanes + l];
-                EXPECT_NEAR(results[0][static_cast<std::size_t>(k - 1) * lanes + l], sum, 1e-14);
+        rows.assign(2 * lanes * (orders + 1), 0.0);
+        older.assign(lanes, 0.0);
+    }
+    void extend(SeriesOrder order, const MachineCode* code, int k) {
+        now[1] = 0.7 / k;
+        order({.rules = rules.data(),
+               .rule_count = rules.size(),
+               .run_rules = code == nullptr ? nullptr : code->as<void(double*, const SeriesRule*)>(),
+               .now = now.data(),
+               .sums = 2 + lanes,
+               .lanes = lanes,
+               .left = left.data(),
+               .right = right.data(),
+               .weighted = weighted.data(),
+               .rows = rows.data(),
+               .older = older.data()},
+              k);
+    }
+    static constexpr int orders = 20;
+    std::size_t lanes;
+    std::vector<SeriesRule> rules;
+    std::vector<std::uint32_t> left, right;
+    std::vector<double> now, weighted, rows, older;
+};
+
+// All that a processor offers give the same bits, with machine code and without, and they are the sums.
+TEST(Series, OrdersAreTheSameInEveryVersion) {
+    for (const std::size_t lanes : {4u, 8u, 12u, 16u, 20u, 24u, 28u, 32u, 36u, 40u, 44u, 64u}) {
+        const auto code = machine_code(RandomSeries(lanes).rules);
+#if defined(__x86_64__) && defined(__linux__)
+        EXPECT_NE(code, nullptr);
+#endif
+        std::vector<double> first;
+        const SeriesOrderVersions versions = series_order_versions(lanes);
+        for (std::size_t v = 0; v < 2 * versions.count; ++v) {
+            const SeriesOrderVersion& version = versions.version[v / 2];
+            RandomSeries one(lanes);
+            std::vector<double> results;
+            std::vector<std::vector<double>> orders{{}};  // of the series
+            for (int k = 1; k <= RandomSeries::orders; ++k) {
+                one.extend(version.function, v % 2 == 0 ? nullptr : code.get(), k);
+                results.insert(results.end(), one.now.begin(), one.now.end());
+                orders.push_back(one.now);
+                for (std::size_t l = 0; v == 0 && l < lanes; ++l) {
+                    double sum = 0.0;
+                    for (int j = 1; j <= k; ++j)
+                        sum += (one.weighted[l] == 1.0 ? static_cast<double>(j) / (k + 1) : 1.0) *
+                               orders[static_cast<std::size_t>(j)][one.left[l]] *
+                               orders[static_cast<std::size_t>(k + 1 - j)][one.right[l]];
+                    EXPECT_NEAR(one.now[2 + lanes + l], sum, 1e-14 * (1.0 + std::abs(sum)));
+                }
             }
+            if (v == 0) first = results;
+            EXPECT_EQ(std::memcmp(results.data(), first.data(), first.size() * sizeof(double)), 0)
+                << version.name << ", " << lanes << " lanes" << (v % 2 == 0 ? "" : ", machine code");
         }
     }
+}
+
+// An output that is an input, and stays what it is while the next order's inputs are written.
+TEST(Series, OutputsAreNeverInputs) {
+    Graph graph;
+    Scope scope;
+    scope.allowed = {{"x", graph.symbol(0)}};
+    const Expression expression = parse("3*x", scope, graph);
+    const SeriesProgram series(Program(std::span(&expression, 1), Slots{1, 1, 1}), 1);
+    SeriesEvaluator terms(series, {});
+    const double x = 1.0;
+    terms.begin(&x);
+    terms.inputs()[0] = 0.5;
+    terms.extend(1);
+    terms.inputs()[0] = 7.0;
+    EXPECT_EQ(terms.output(0), 1.5);
 }
 
 // A function that is not defined at the start gives no number, at order 0 or at the next.
