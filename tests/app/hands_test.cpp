@@ -93,7 +93,7 @@ TEST(HandOnMechanism, zooms_at_the_pointer_pans_and_shows_all) {
     const Rectangle mechanism = hands.state.places.at("mechanism");
     drag(hands, "mechanism", -40.0, 0.0);
     const command::Look moved = *hands.session.scene().look();
-    EXPECT_EQ(moved.width, closer.width);
+    EXPECT_NEAR(moved.width, closer.width, 1e-12 * closer.width);
     EXPECT_NEAR(moved.x - closer.x, 40.0 * closer.width / mechanism.width, 8.0 * closer.width / mechanism.width);
     EXPECT_NEAR(moved.y, closer.y, 1e-9);
     hands.point("mechanism", 0.9);
