@@ -242,7 +242,7 @@ Command read_size(const Line& line) {
     return command::Size{panel, share};
 }
 
-constexpr std::array<Verb, 44> verbs{{{"open", read_open},
+constexpr std::array<Verb, 45> verbs{{{"open", read_open},
                                       {"set", read_set},
                                       {"end", read_number<command::End>},
                                       {"tolerance", read_number<command::Tolerance>},
@@ -279,6 +279,7 @@ constexpr std::array<Verb, 44> verbs{{{"open", read_open},
                                       {"theme", read_theme},
                                       {"size", read_size},
                                       {"reset", read_alone<command::Reset>},
+                                      {"done", read_alone<command::Done>},
                                       {"method", read_method},
                                       {"max-impacts", read_max_impacts},
                                       {"export", read_file_to_write<command::Export>},

@@ -15,7 +15,7 @@
 //     all) copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
 //     say "Look at the ball."  wait 2.5 (s; passes at once without a window)         replay the_ball
 //     theme dark               hide plots         size controls 0.3 (a share of the window)   size events auto
-//     reset (every value and option as the file has it)
+//     reset (every value and option as the file has it)     done (what follows is another change)
 //
 // Values are in the file's units, angles in radians; words.hpp tells how words with spaces are written.
 #pragma once
@@ -109,6 +109,9 @@ struct UseTheme {
 
 struct Reset {  // every value and option as the file has it
     friend bool operator==(const Reset&, const Reset&) = default;
+};
+struct Done {  // with this change: what follows is another one, be it of the same value
+    friend bool operator==(const Done&, const Done&) = default;
 };
 struct Start {  // several values at once: the run in between might be none
     std::vector<std::pair<std::string, double>> values;
@@ -233,8 +236,8 @@ using Command =
                  command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link, command::Start,
                  command::Look, command::LookAll, command::Speed, command::Loop, command::Step, command::Undo,
                  command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset,
-                 command::UseMethod, command::MaxImpacts, command::Export, command::Copy, command::Range, command::Say,
-                 command::Wait, command::Replay>;
+                 command::Done, command::UseMethod, command::MaxImpacts, command::Export, command::Copy, command::Range,
+                 command::Say, command::Wait, command::Replay>;
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

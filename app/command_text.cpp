@@ -85,6 +85,7 @@ struct Print {
         return c.share > 0.0 ? fmt::format("size {} {}", c.panel, c.share) : fmt::format("size {} auto", c.panel);
     }
     std::string operator()(const command::Reset&) const { return "reset"; }
+    std::string operator()(const command::Done&) const { return "done"; }
     std::string operator()(const command::Link& c) const { return fmt::format("link {}", on_off(c.on)); }
 };
 

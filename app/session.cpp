@@ -76,13 +76,13 @@ void Session::apply(const Command& command) {
     const std::string noticed = std::exchange(notice_, {});
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
-        // Playing on must not wipe away what the last change of the run complained about.
-        const bool moves_time_only =
+        // Playing on, or letting go, must not wipe away what the last change of the run complained about.
+        const bool changes_nothing =
             std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
             std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command) ||
-            std::holds_alternative<command::Wait>(command);
-        if (!moves_time_only) error_.clear();
-        if (moves_time_only) notice_ = noticed;
+            std::holds_alternative<command::Wait>(command) || std::holds_alternative<command::Done>(command);
+        if (!changes_nothing) error_.clear();
+        if (changes_nothing) notice_ = noticed;
         history_.remember(command, before);
     } catch (const InputError& problem) {
         error_ = problem.what();
@@ -387,26 +387,6 @@ void play_on(Session& session, double seconds) {
         session.apply(command::Play{});  // at the end: once more
     else
         session.apply(command::Pause{});
-}
-
-std::string to_text(const Session& session) {
-    std::string text = fmt::format("system {}\n", session.system());
-    const SystemDescription& description = session.description();
-    const Run& run = session.run();
-    for (std::size_t i = 0; i < description.parameters.size(); ++i)
-        text += fmt::format("{} = {:.9g}\n", description.parameters[i].name, run.parameters[i]);
-    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        text += fmt::format("{0} = {1:.9g}, {0}' = {2:.9g}\n", description.coordinates[i].name, run.q[at], run.v[at]);
-    }
-    text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
-                        session.selected());
-    text += to_text(session.plotted()) + to_text(session.scene());
-    if (session.theme().dark) text += "theme dark\n";
-    if (!session.error().empty()) text += "error " + session.error() + "\n";
-    if (session.document().is_changed()) text += "the text is not saved\n";
-    for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());
-    return text + to_text(session.trajectory());
 }
 
 }  // namespace achilles

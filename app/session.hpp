@@ -150,6 +150,7 @@ class Session {
     void perform(const command::Pin& command);
     void perform(const command::Step& command);
     void perform(const command::Reset& command);
+    void perform(const command::Done&) {}  // the history heard it
     void perform(const command::UseTheme& command);
     void perform(const command::UseMethod& command);
     void perform(const command::MaxImpacts& command);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "history.hpp"
 #include "panels/arrangement.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
@@ -118,11 +119,21 @@ void copy(const Session& session, PanelState& state) {
     ImGui::SetClipboardText(session.copied().c_str());
 }
 
+// A hand that presses anew begins another change, be it of the same slider. A double click is one with its first press.
+void begin_change(PanelState& state, Commands& commands) {
+    if (!state.changing || ImGui::GetIO().MouseClickedCount[ImGuiMouseButton_Left] != 1) return;
+    state.changing = false;
+    commands.emplace_back(command::Done{});
+}
+
+bool is_part_of_change(const Command& command) { return goes_on(command, command); }
+
 }  // namespace
 
 std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
     use_theme(session.theme().dark);
+    begin_change(state, commands);
     const std::string message = card_text(session);
     const Arrangement parts = arrange(session, state, message);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
@@ -152,6 +163,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
     use_keys(session, commands);
+    state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);
     return commands;
 }

@@ -70,6 +70,7 @@ struct PanelState {
     PlotMenu plot_menu;
     PlotBox box;
     enum class Hand { free, body, arrow, world } hand = Hand::free;  // what it holds in the mechanism
+    bool changing = false;                             // a change was made that more commands may go on with
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
     int followed = -1;                                 // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here

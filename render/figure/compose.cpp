@@ -82,10 +82,11 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
 }
 
 std::vector<Sample> plot_samples(const Trajectory& trajectory) {
-    // A few thousand points fill any screen; between the step ends of a short run there is room for more.
+    // A few thousand points fill any screen; between the step ends of a short run there is room for more. Where there
+    // are more flights than that each has its middle, lest a run of very many bounces lie flat on the ground.
     constexpr std::size_t wanted = 4000;
     const std::size_t steps = std::max<std::size_t>(1, trajectory.pieces.size());
-    const int between = static_cast<int>(std::min<std::size_t>(400, wanted / steps));
+    const int between = static_cast<int>(std::clamp<std::size_t>(wanted / steps, 1, 400));
     return Sampler(trajectory).all(between);
 }
 

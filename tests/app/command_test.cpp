@@ -54,6 +54,7 @@ const std::vector<Command> one_of_each{
     command::Size{"controls", 0.3},
     command::Size{"plots", 0.0},
     command::Reset{},
+    command::Done{},
     command::UseMethod{Method::dopri5},
     command::MaxImpacts{1000},
     command::Range{2, true, -1.0, 0.1 + 0.2},

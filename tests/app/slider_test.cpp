@@ -135,6 +135,22 @@ TEST(Slider, every_change_of_the_hand_is_undone) {
     }
 }
 
+TEST(Slider, two_drags_of_one_slider_are_two_changes) {
+    SliderHand hands("ball_on_sine");
+    const auto e = [&] { return *hands.session.value("e"); };
+    const double first = e();
+    hands.click("set e", 0.3);
+    const double second = e();
+    hands.click("set e", 0.8);
+    EXPECT_NE(e(), second);
+    hands.hand.mouse_y = -1e6;
+    hands.rest(1);
+    hands.press_with_control('Z');
+    EXPECT_EQ(e(), second);
+    hands.press_with_control('Z');
+    EXPECT_EQ(e(), first);
+}
+
 TEST(Slider, a_changed_value_is_marked) {
     SliderHand hands("ball_on_sine");
     const auto accents = [&] {

@@ -164,6 +164,25 @@ TEST(Composing, AnglesAreShownInDegrees) {
     EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);
 }
 
+// With thousands of steps no flight may lose its height.
+TEST(Composing, EveryOneOfVeryManyFlightsHasItsHeight) {
+    const auto model = test::load("ball_on_floor");
+    auto run = model->default_run();
+    run.parameters[3] = 1.0;  // e
+    run.options.end_time = 5000.0;
+    const Trajectory trajectory = simulate(model, run);
+    ASSERT_GT(trajectory.events.size(), 5000u);
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    const auto height = [](const Sample& sample) { return sample.state.q[1]; };
+    for (std::size_t i = 0; i + 1 < trajectory.events.size(); i += 100) {
+        double highest = 0.0;
+        for (const Sample& sample : samples)
+            if (sample.t > trajectory.events[i].t && sample.t < trajectory.events[i + 1].t)
+                highest = std::max(highest, height(sample));
+        EXPECT_NEAR(highest, 1.0, 1e-3) << "flight " << i;
+    }
+}
+
 TEST(Composing, ALegendHidesNoCurve) {
     const auto model = test::load("double_pendulum");
     const Trajectory trajectory = simulate(model, model->default_run());
