@@ -145,15 +145,18 @@ std::string state_text(const Session& session, const Event& event, float width) 
     return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
 }
 
-// At the left of `right`: pin the present run, and the comparison of the two ways to cut a bouncing.
-void show_comparing(const Session& session, float right, PanelState& state, Commands& commands) {
-    const char* both = "paper | sharp";
-    const char* pin = session.pinned() != nullptr ? "unpin" : "pin";
-    const float padding = 2.0F * ImGui::GetStyle().FramePadding.x, gap = units(6.0F);
-    const float both_width = ImGui::CalcTextSize(both).x + padding,
-                pin_width = ImGui::CalcTextSize("unpin").x + padding;
-    ImGui::SameLine(right - both_width);
-    if (ImGui::Button(both)) {
+constexpr const char* both_ways = "paper | sharp";
+constexpr float button_gap = 6.0F;
+
+float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F * ImGui::GetStyle().FramePadding.x; }
+
+float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
+
+// Its left end at x: pin the present run, and the comparison of the two ways to cut a bouncing.
+void show_comparing(const Session& session, float x, PanelState& state, Commands& commands) {
+    const float pin_width = button_width("unpin");
+    ImGui::SameLine(x + pin_width + units(button_gap));
+    if (ImGui::Button(both_ways)) {
         using namespace command;
         commands.insert(commands.end(),
                         {UseConditions{Conditions::paper}, UseReinitialization{Reinitialization::euclidean}, Select{0},
@@ -163,8 +166,9 @@ void show_comparing(const Session& session, float right, PanelState& state, Comm
     tooltip(
         "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with the kinetic "
         "restart");
-    ImGui::SameLine(right - both_width - gap - pin_width);
-    if (ImGui::Button(pin, {pin_width, 0.0F})) commands.emplace_back(command::Pin{session.pinned() == nullptr});
+    ImGui::SameLine(x);
+    if (ImGui::Button(session.pinned() != nullptr ? "unpin" : "pin", {pin_width, 0.0F}))
+        commands.emplace_back(command::Pin{session.pinned() == nullptr});
     remember(state, "pin");
     tooltip("keep the present run in the plots, in grey, beside those that follow");
 }
@@ -174,22 +178,24 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
+    const float width =
+        ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
+    const float buttons = right - width - units(16.0F) - comparing_width();
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t (s)"},
                                    std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
         if (!with_state && at >= speed_at) continue;  // a certificate stands there
+        if (left + units(at) + ImGui::CalcTextSize(text).x > buttons) break;
         if (at != number_at) ImGui::SameLine();
         ImGui::SetCursorPosX(left + units(at));
         ImGui::TextUnformatted(text);
     }
     ImGui::PopStyleColor();
-    const float width =
-        ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
     ImGui::SameLine(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
     tooltip("list the impacts, or only Zeno points and releases");
-    show_comparing(session, right - width - units(16.0F), state, commands);
+    show_comparing(session, buttons, state, commands);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {

@@ -141,7 +141,7 @@ bool moved(Slider& slider, PanelState& state) {
     ImGui::SameLine(0.0F, 0.0F);
     const float width = ImGui::GetContentRegionAvail().x;
     if (state.typed.id == slider.id) return typed_over(slider, state, width) || was_reset;
-    const float track = std::max(1.0F, width - units(value_width));
+    const float track = std::floor(std::max(0.4F * width, width - units(value_width)));
     bool changed = dragged(slider, track) || was_reset;
     remember(state, slider.id);
     tooltip(about);
