@@ -22,10 +22,10 @@ constexpr std::array<std::string_view, 34> greek{
     "nu",    "xi",    "pi",     "rho",   "sigma",   "tau",   "upsilon", "phi",   "chi",  "psi",   "omega",  "Gamma",
     "Delta", "Theta", "Lambda", "Xi",    "Pi",      "Sigma", "Upsilon", "Phi",   "Psi",  "Omega"};
 
-// One run of letters: a Greek letter by its name, one letter as it is, a word upright.
+// One run of letters or digits: a Greek letter by its name, one letter or a number as it is, a word in one piece.
 std::string latex_word(std::string_view word) {
     if (std::find(greek.begin(), greek.end(), word) != greek.end()) return fmt::format("\\{}", word);
-    return word.size() <= 1 ? std::string(word) : fmt::format("\\mathit{{{}}}", word);
+    return word.size() <= 1 || is_digit(word.front()) ? std::string(word) : fmt::format("\\mathit{{{}}}", word);
 }
 
 // theta1 is \theta_{1}, m_t is m_{t}, x' is \dot{x}.
@@ -87,12 +87,14 @@ Written write_sum(const Written& a, bool minus, const Written& b, Notation notat
 }
 
 Written write_negated(const Written& a, Notation notation) {
-    return {fmt::format("-{}", inside(a, 3, notation)), 1, {}};
+    return {fmt::format("-{}", inside(a, notation == Notation::text ? 3 : 2, notation)), 1, {}};
 }
 
 Written write_product(const Written& a, const Written& b, Notation notation) {
-    const std::string left = inside(a, 2, notation), right = inside(b, 3, notation);
-    if (notation == Notation::text) return {fmt::format("{}*{}", left, right), 2, {}};
+    const std::string left = inside(a, 2, notation);
+    // Text keeps the order of evaluation: a*(b*c) reads back as it was.
+    if (notation == Notation::text) return {fmt::format("{}*{}", left, inside(b, 3, notation)), 2, {}};
+    const std::string right = inside(b, 2, notation);
     return {fmt::format("{}{}{}", left, starts_with_digit(right) ? " \\cdot " : " ", right), 2, {}};
 }
 
@@ -134,6 +136,25 @@ Written write_function(Operation function, const Written& argument, Notation not
     return {};
 }
 
+namespace {
+
+// A product whose first factor may be an exact number: x/2 as text, where it reads back to (1/2)*x, and a sign in front
+// of all in LaTeX.
+Written multiplied(Expression first, const Written& a, const Written& b, Notation notation) {
+    if (!first.is_number()) return write_product(a, b, notation);
+    const boost::multiprecision::cpp_rational& value = Builder::value(first);
+    if (value < 0)
+        return notation == Notation::text
+                   ? write_product(a, b, notation)
+                   : write_negated(write_product(write_number(-value, notation), b, notation), notation);
+    if (notation == Notation::latex || denominator(value) == 1) return write_product(a, b, notation);
+    const Written top =
+        numerator(value) == 1 ? b : write_product(write_number(numerator(value), notation), b, notation);
+    return write_quotient(top, write_number(denominator(value), notation), notation);
+}
+
+}  // namespace
+
 Written write(Expression expression, std::span<const std::string> names, Notation notation) {
     const Graph& graph = expression.graph();
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
@@ -158,7 +179,7 @@ Written write(Expression expression, std::span<const std::string> names, Notatio
                 written[id] = write_sum(a, node.operation == Op::subtract, b, notation);
                 break;
             case Op::multiply:
-                written[id] = write_product(a, b, notation);
+                written[id] = multiplied({&expression.graph(), node.a}, a, b, notation);
                 break;
             case Op::divide:
                 written[id] = write_quotient(a, b, notation);

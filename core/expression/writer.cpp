@@ -158,6 +158,25 @@ Written Writer::sum(std::vector<Item> items) const {
     return result;
 }
 
+// c - c cos(u)^2 is c sin(u)^2, where sin(u) is at hand.
+void Writer::gather_sines(std::vector<Item>& items, const Algebra& algebra) const {
+    for (std::size_t cosine = 0; cosine < written_.size(); ++cosine) {
+        const std::optional<std::size_t> sine = algebra.sine_of(cosine);
+        if (!sine || *sine >= written_.size()) continue;
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (items[i].powers[cosine] < 2) continue;
+            Monomial rest = items[i].powers;
+            rest[cosine] = static_cast<std::uint8_t>(rest[cosine] - 2);
+            const auto whole = std::find_if(items.begin(), items.end(), [&](const Item& item) {
+                return item.powers == rest && item.number == -items[i].number;
+            });
+            if (whole == items.end()) continue;
+            whole->powers[*sine] = static_cast<std::uint8_t>(whole->powers[*sine] + 2);
+            items.erase(items.begin() + static_cast<std::ptrdiff_t>(i--));
+        }
+    }
+}
+
 Written Writer::write(const Multinomial& polynomial) const { return write(Factored{1, {{polynomial, 1}}}); }
 
 Written Writer::write(const Fraction& fraction, Algebra& algebra) const {
@@ -165,6 +184,7 @@ Written Writer::write(const Fraction& fraction, Algebra& algebra) const {
     std::vector<Item> items;
     for (const Multinomial::Term& term : fraction.numerator.terms())
         items.push_back({Rational(term.coefficient, fraction.denominator.number()), term.powers});
+    gather_sines(items, algebra);
     if (items.size() == 1) return sum(std::move(items));
     const Piece all = collected(std::move(items), Monomial{});
     return all.negative ? Written{fmt::format("-{}", inside(all.written, 2, notation_)), 1, {}} : all.written;

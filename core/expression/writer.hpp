@@ -31,6 +31,7 @@ class Writer {
         bool negative = false;
         Written written;
     };
+    void gather_sines(std::vector<Item>& items, const Algebra& algebra) const;
     Written sum(std::vector<Item> items) const;
     std::vector<std::size_t> next_group(const std::vector<Item>& items, const std::vector<std::size_t>& left) const;
     Written product(const Rational& number, const Monomial& powers, const Written* bracket) const;

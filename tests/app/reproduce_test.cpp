@@ -252,6 +252,9 @@ TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
 }
 
 TEST(Figure, TooLittleMemoryIsAMessage) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the address sanitizer needs more address space than this test allows";
+#endif
     const Folder folder;
     const Answer answer =
         folder.run("figure ball_on_sine --view gap --size 16384x16384 --out a.png", "ulimit -v 1200000;");
