@@ -76,6 +76,14 @@ std::vector<Layer> paper_layers() {
 }
 
 // The run, then the state of the session and its plots, then the picture.
+// Without the folder of the systems: where that stands is no matter.
+std::string anywhere(std::string text) {
+    const std::string folder = find_system("ball_on_sine").parent_path().string() + "/";
+    for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
+        text.erase(at, folder.size());
+    return text;
+}
+
 std::vector<Layer> explorer_layers(const fs::path& journal) {
     Library library;
     library.find = find_system;
@@ -84,7 +92,7 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
     const std::string first = "ball_on_sine";  // as the program opens without a word
     Session session(first, read_system(find_system(first)), std::move(library));
     for (const Command& command : read_journal(journal)) session.apply(command);
-    const std::string trajectory = to_text(session.trajectory()), state = to_text(session);
+    const std::string trajectory = to_text(session.trajectory()), state = anywhere(to_text(session));
     Figure plots;
     plots.panels = session.plots();
     return {{"trajectory.txt", trajectory},
