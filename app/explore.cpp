@@ -11,6 +11,7 @@
 #include "image/png_notes.hpp"
 #include "journal.hpp"
 #include "open_session.hpp"
+#include "panels/print.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
@@ -65,7 +66,7 @@ SurfaceOptions surface_options(const ExploreOptions& options) {
     surface.width = options.width;
     surface.height = options.height;
     surface.scale = options.scale;
-    surface.figure_text_size = 13.0;
+    surface.figure_text_size = screen_text_size;
     surface.fonts = assets() / "fonts";
     return surface;
 }

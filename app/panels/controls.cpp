@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "figure/label.hpp"
+#include "panels/print.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
 #include "surface/interface.hpp"
@@ -23,15 +24,6 @@ std::string short_name(const std::string& system) {
     std::string name = std::filesystem::path(system).stem().string();
     std::replace(name.begin(), name.end(), '_', ' ');
     return name;
-}
-
-void paragraph(const std::string& text, const Color& color) {
-    if (text.empty()) return;
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(color));
-    ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    ImGui::PopStyleColor();
 }
 
 void choose_system(const Session& session, PanelState& state, Commands& commands, float width) {
@@ -52,8 +44,10 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
 
 void describe_system(const Session& session) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {units(8.0F), units(2.0F)});
-    paragraph(session.description().title, text_color());
-    paragraph(session.description().source, faint_color());
+    const float width = ImGui::GetContentRegionAvail().x;
+    const SystemDescription& description = session.description();
+    if (!description.title.empty()) paragraph(description.title, width, text_color());
+    if (!description.source.empty()) paragraph(description.source, width, faint_color());
     ImGui::PopStyleVar();
 }
 

@@ -9,7 +9,7 @@ Figure screen_style(const Theme& theme) {
     style.background = theme.background;
     style.ink = theme.ink;
     style.grid = theme.grid;
-    style.text_size = 13.0;
+    style.text_size = screen_text_size;
     return style;
 }
 

@@ -102,6 +102,19 @@ Multinomial primitive_gcd(Multinomial a, Multinomial b, std::size_t atom, Work& 
     }
 }
 
+// Of several, the shortest first.
+Multinomial gcd_of(std::vector<Multinomial> parts, Work& work) {
+    std::sort(parts.begin(), parts.end(),
+              [](const Multinomial& x, const Multinomial& y) { return x.terms().size() < y.terms().size(); });
+    Multinomial result;
+    for (const Multinomial& part : parts) {
+        if (part.is_zero()) continue;
+        result = gcd(result, part, work);
+        if (result.is_one()) break;
+    }
+    return result;
+}
+
 // Of stripped polynomials.
 Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     if (a.is_number() || b.is_number()) return Multinomial(1);
@@ -129,19 +142,11 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     }
     if (!common) return Multinomial(1);
     if (absent != most_atoms) {
-        // The divisor divides every coefficient of that atom's powers, the shortest first.
+        // The divisor divides every coefficient of that atom's powers.
         std::vector<Multinomial> parts = a.coefficients(absent);
         const std::vector<Multinomial> more = b.coefficients(absent);
         parts.insert(parts.end(), more.begin(), more.end());
-        std::sort(parts.begin(), parts.end(),
-                  [](const Multinomial& x, const Multinomial& y) { return x.terms().size() < y.terms().size(); });
-        Multinomial result;
-        for (const Multinomial& part : parts) {
-            if (part.is_zero()) continue;
-            result = gcd(result, part, work);
-            if (result.is_number()) break;
-        }
-        return stripped(result);
+        return stripped(gcd_of(std::move(parts), work));
     }
     const Multinomial content_a = content(a, best, work), content_b = content(b, best, work);
     const Multinomial shared = gcd(content_a, content_b, work);
@@ -159,17 +164,6 @@ Multinomial gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     return positive(times(core_gcd(stripped(a), stripped(b), work), shared));
 }
 
-Multinomial content(const Multinomial& a, std::size_t atom, Work& work) {
-    std::vector<Multinomial> parts = a.coefficients(atom);
-    std::sort(parts.begin(), parts.end(),
-              [](const Multinomial& x, const Multinomial& y) { return x.terms().size() < y.terms().size(); });
-    Multinomial result;
-    for (const Multinomial& part : parts) {
-        if (part.is_zero()) continue;
-        result = gcd(result, part, work);
-        if (result.is_one()) break;
-    }
-    return result;
-}
+Multinomial content(const Multinomial& a, std::size_t atom, Work& work) { return gcd_of(a.coefficients(atom), work); }
 
 }  // namespace achilles
