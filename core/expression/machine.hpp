@@ -6,10 +6,12 @@
 // processor, a system that lets no program write code) the loops do the work.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <optional>
+#include <unordered_map>
 #include <vector>
 
 namespace achilles {
@@ -23,9 +25,10 @@ class MachineCode {
     MachineCode(const MachineCode&) = delete;
     MachineCode& operator=(const MachineCode&) = delete;
 
+    // What begins at this byte.
     template <class Function>
-    Function* as() const {
-        return reinterpret_cast<Function*>(static_cast<std::uint8_t*>(memory_) + margin);
+    Function* as(std::size_t offset = 0) const {
+        return reinterpret_cast<Function*>(static_cast<std::uint8_t*>(memory_) + margin + offset);
     }
 
  private:
@@ -35,52 +38,116 @@ class MachineCode {
     std::size_t size_;
 };
 
-// Writes x86-64 code on doubles. Numbers stand at (base, index): the base is a pointer in a register of the processor.
-// The last results are kept in xmm2 .. xmm15, besides being stored; xmm0 and xmm1 are free for use.
+// How many doubles an instruction works on; four need AVX2, as one does here, and eight AVX-512.
+enum class Width : unsigned { one = 1, two = 2, four = 4, eight = 8 };
+
+// The widest that this processor and system can run; none where no code can.
+std::optional<Width> widest_code();
+
+// Writes x86-64 code on doubles (AVX encodings: three operands). A number stands at an index, counted in doubles, from
+// an address in a register of the processor. Of the vector registers 0 .. 15 the first few are free for use; results
+// are kept in the others as long as there is room, besides being stored.
 class Assembler {
  public:
-    enum class Base : unsigned { kept = 3, second = 6, first = 7 };  // rbx, rsi, rdi: by the calling convention
+    enum class Base : unsigned { rax = 0, rcx = 1, rdx = 2, rbx = 3, rsi = 6, rdi = 7, r8 = 8, r10 = 10, r11 = 11 };
     enum class Code : std::uint8_t {
         load = 0x10,
         store = 0x11,
+        unpack = 0x14,     // the low halves of two
+        load_high = 0x16,  // the low half, and a number from memory
         sqrt = 0x51,
+        exclusive_or = 0x57,
         add = 0x58,
         multiply = 0x59,
         subtract = 0x5C,
         divide = 0x5E
     };
 
-    explicit Assembler(Base base) : base_(base) {}
-    // Begin and end of a function that calls others: its first argument is kept.
-    void enter();
-    void leave();
-    void leave_at_once() { put(0xC3); }
+    // Numbers of the function stand at (numbers, index), `width` doubles each, one after the other.
+    Assembler(Base numbers, unsigned free, Width width = Width::one) : numbers_(numbers), free_(free), width_(width) {}
+
+    // ---- numbers ----
 
     // A register for the result with this index. What it held is forgotten.
     unsigned result(std::uint32_t index);
-    void store(unsigned reg, std::uint32_t index) { memory(Code::store, reg, base_, index); }
-    // reg = reg op number, or op(number) for load and sqrt; from the register that holds it, or from memory.
-    void apply(Code code, unsigned reg, std::uint32_t index);
-    void registers(Code code, unsigned reg, unsigned other);
-    void memory(Code code, unsigned reg, Base base, std::size_t index);
+    void store(unsigned reg, std::uint32_t index) { memory(Code::store, width_, reg, numbers_, place(index)); }
+    // to = number
+    void get(unsigned to, std::uint32_t index);
+    // to = from op number, and op(number) for sqrt; from the register that holds it, or from memory.
+    void apply(Code code, unsigned to, unsigned from, std::uint32_t index);
+    // to = a op b, both numbers
+    void combine(Code code, unsigned to, std::uint32_t a, std::uint32_t b);
+    // The register that holds a number.
+    std::optional<unsigned> holder(std::uint32_t index) const;
+    void forget_all();
+
+    // ---- vectors ----
+
+    // to = from op other
+    void registers(Code code, Width width, unsigned to, unsigned from, unsigned other);
+    // to = from op the doubles at (base, index); loads and stores have no `from`.
+    void memory(Code code, Width width, unsigned to, unsigned from, Base base, std::ptrdiff_t index);
+    void memory(Code code, Width width, unsigned reg, Base base, std::ptrdiff_t index) {
+        memory(code, width, reg, 0, base, index);
+    }
+    // Into all places of a register.
+    void broadcast(Width width, unsigned to, Base base, std::ptrdiff_t index);
+    // to = the first half of `low`, then `high`; `width` of the result.
+    void join(Width width, unsigned to, unsigned low, unsigned high);
+    void zero(unsigned reg) { registers(Code::exclusive_or, Width::two, reg, reg, reg); }
     // reg = -0.0
     void negative_zero(unsigned reg);
+
+    // ---- addresses and jumps ----
+
+    // to = from + so many doubles
+    void address(Base to, Base from, std::ptrdiff_t doubles);
+    // A jump forward to where land() is called with what this returns, if a >= b; a jump back to a place if a < b.
+    std::size_t jump_if_not_below(Base a, Base b);
+    void land(std::size_t jump);
+    void jump_back_if_below(Base a, Base b, std::size_t place);
+    std::size_t here() const { return bytes_.size(); }
+
+    // ---- functions ----
+
+    // Begin and end of a function that calls others: its first argument is kept in rbx.
+    void enter();
+    void leave();
+    // End of one that calls none, after work on vectors.
+    void leave_at_once();
     void integer_argument(std::int32_t value);
-    // Calls a function with arguments in xmm0, xmm1, edi: its result is in xmm0, all other registers are lost.
+    // Calls a function with arguments in registers 0 and 1, and edi: its result is in 0, all others are lost.
     void call(const void* function);
 
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
  private:
+    // What the second operand is: a register, or memory at a base.
+    struct Operand {
+        unsigned reg = 0;
+        bool in_memory = false;
+        std::int32_t displacement = 0;
+    };
+    struct Prefix {
+        unsigned map = 1, pp = 1;  // opcode map; 1: packed, 3: scalar
+        bool wide = false;
+    };
+
+    std::ptrdiff_t place(std::uint32_t index) const {
+        return static_cast<std::ptrdiff_t>(index) * static_cast<std::ptrdiff_t>(width_);
+    }
     void put(unsigned byte) { bytes_.push_back(static_cast<std::uint8_t>(byte)); }
     void put(std::uint64_t value, unsigned count);
-    void prefix(Code code, unsigned reg, unsigned other);
+    void encode(const Prefix& prefix, Width width, unsigned opcode, unsigned reg, unsigned from, const Operand& other);
+    void compare(Base a, Base b);
 
-    Base base_;
+    Base numbers_;
+    unsigned free_;
+    Width width_;
     std::vector<std::uint8_t> bytes_;
     unsigned results_ = 0;
-    std::map<std::uint32_t, unsigned> holding_;  // the register that holds a number
-    std::map<unsigned, std::uint32_t> held_;     // and the other way round
+    std::unordered_map<std::uint32_t, unsigned> holding_;  // the register that holds a number
+    std::array<std::optional<std::uint32_t>, 16> held_;    // and the other way round
 };
 
 }  // namespace achilles

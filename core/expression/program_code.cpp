@@ -46,15 +46,14 @@ Function function_of(Operation operation) {
 
 // A function of xmm0 (and what else is in place).
 void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
-    code.apply(Code::load, 0, a);
+    code.get(0, a);
     code.call(function);
     code.store(0, result);
 }
 
 void arithmetic(Assembler& code, Code operation, const Instruction& in, std::uint32_t result) {
     const unsigned reg = code.result(result);
-    code.apply(Code::load, reg, in.a);
-    code.apply(operation, reg, in.b);
+    code.combine(operation, reg, in.a, in.b);
     code.store(reg, result);
 }
 
@@ -77,12 +76,12 @@ bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
         case Operation::negate:
             reg = code.result(result);
             code.negative_zero(reg);
-            code.apply(Code::subtract, reg, in.a);
+            code.apply(Code::subtract, reg, reg, in.a);
             code.store(reg, result);
             return true;
         case Operation::sqrt:
             reg = code.result(result);
-            code.apply(Code::sqrt, reg, in.a);
+            code.apply(Code::sqrt, reg, reg, in.a);
             code.store(reg, result);
             return true;
         case Operation::power:
@@ -90,7 +89,7 @@ bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
             call(code, reinterpret_cast<const void*>(&whole_power), in.a, result);
             return true;
         case Operation::real_power:
-            code.apply(Code::load, 1, in.b);
+            code.get(1, in.b);
             call(code, reinterpret_cast<const void*>(static_cast<double (*)(double, double)>(std::pow)), in.a, result);
             return true;
         default:
@@ -105,8 +104,8 @@ bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
 }  // namespace
 
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first) {
-    if (instructions.empty() || instructions.size() > most_instructions) return nullptr;
-    Assembler code(Assembler::Base::kept);
+    if (!widest_code() || instructions.empty() || instructions.size() > most_instructions) return nullptr;
+    Assembler code(Assembler::Base::rbx, 2);
     code.enter();
     for (const Instruction& in : instructions)
         if (!write(code, in, first++)) return nullptr;

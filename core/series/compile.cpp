@@ -1,11 +1,11 @@
 // From a flat program to the recurrences of its series.
 #include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <map>
 #include <optional>
 #include <tuple>
 
-#include "series/rule_code.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -37,7 +37,7 @@ class SeriesCompiler {
             series_.outputs_.push_back({output, value.series, value.scale});
         }
         series_.registers_ = next_register_;
-        series_.series_ = next_series_;
+        series_.plan_.series = next_series_;
         place_sums();
     }
 
@@ -106,15 +106,29 @@ class SeriesCompiler {
         return result.size() > longest_form ? Form{{written_out(result), one}} : result;
     }
 
+    // A rule whose factors are coefficients.
+    void combine(std::uint32_t result, const std::array<std::uint32_t, 3>& series,
+                 const std::array<std::uint32_t, 3>& coefficients) {
+        series_.combinations_.push_back({static_cast<std::uint32_t>(series_.plan_.rules.size()), coefficients});
+        SeriesRule rule{result, series[0], series[1], series[2]};
+        for (std::size_t i = 0; i < 3; ++i) rule.known[i] = known(coefficients[i]);
+        series_.plan_.rules.push_back(rule);
+    }
+    // 1 or -1 where a coefficient is always that; else 0.
+    std::int8_t known(std::uint32_t coefficient) const {
+        if (coefficient == one) return 1;
+        const SeriesProgram::Coefficient& c = series_.coefficients_[coefficient];
+        return c.operation == Operation::negate && c.a == one ? -1 : 0;
+    }
+
     // The series of a form, as rules of up to three terms each.
     std::uint32_t written_out(const Form& form) {
         std::uint32_t series = form[0].series, scale = form[0].coefficient;
         for (std::size_t i = 1; i < form.size(); i += 2) {
             const bool third = i + 1 < form.size();
             const std::uint32_t result = next_series_++;
-            series_.combinations_.push_back({static_cast<std::uint32_t>(series_.rules_.size()),
-                                             {scale, form[i].coefficient, third ? form[i + 1].coefficient : one}});
-            series_.rules_.push_back({result, series, form[i].series, third ? form[i + 1].series : 0});
+            combine(result, {series, form[i].series, third ? form[i + 1].series : 0},
+                    {scale, form[i].coefficient, third ? form[i + 1].coefficient : one});
             series = result;
             scale = one;
         }
@@ -133,8 +147,7 @@ class SeriesCompiler {
     Operand apart_from_inputs(const Operand& output) {
         if (output.series > program_.slots_.fixed_begin || output.series == 0) return output;
         const std::uint32_t copy = next_series_++;
-        series_.combinations_.push_back({static_cast<std::uint32_t>(series_.rules_.size()), {output.scale, one, one}});
-        series_.rules_.push_back({copy, output.series, 0, 0});
+        combine(copy, {output.series, 0, 0}, {output.scale, one, one});
         return {output.value, copy, one};
     }
 
@@ -158,7 +171,7 @@ class SeriesCompiler {
         seed.scale_a = a.scale;
         seed.scale_b = b.scale;
         seed.result = value;
-        seed.rule = static_cast<std::uint32_t>(series_.rules_.size());
+        seed.rule = static_cast<std::uint32_t>(series_.plan_.rules.size());
         const std::uint32_t r = next_series_++;
         const Operand result{value, r, one};
         Operand partner = result;
@@ -167,37 +180,44 @@ class SeriesCompiler {
             seed.partner = partner.value;
         }
         const std::uint32_t p = partner.series;
-        auto& rules = series_.rules_;
+        // The factor of w is known where it is made of scales alone (see SeriesEvaluator::begin).
+        const std::int8_t by_a = known(a.scale), by_b = known(b.scale);
+        const auto sign = static_cast<std::int8_t>(seed.sign);
+        const auto add = [&](std::uint32_t to, std::uint32_t x, std::uint32_t y, std::uint32_t w, int of_w = 0) {
+            series_.plan_.rules.push_back({to, x, y, w, {0, 0, static_cast<std::int8_t>(of_w)}});
+        };
         switch (seed.kind) {
             case Kind::multiply:
-                rules.push_back({r, b.series, a.series, inner(a.series, b.series, false)});
+                add(r, b.series, a.series, inner(a.series, b.series, false), by_a * by_b);
                 break;
             case Kind::square:
+                add(r, a.series, 0, inner(a.series, a.series, false), by_a * by_a);
+                break;
             case Kind::unit_and_square:
-                rules.push_back({r, a.series, 0, inner(a.series, a.series, false)});
+                add(r, a.series, 0, inner(a.series, a.series, false), sign * by_a * by_a);
                 break;
             case Kind::divide:
-                rules.push_back({r, a.series, b.series, inner(r, b.series, false)});
+                add(r, a.series, b.series, inner(r, b.series, false));
                 break;
             case Kind::sqrt:
-                rules.push_back({r, a.series, 0, inner(r, r, false)});
+                add(r, a.series, 0, inner(r, r, false));
                 break;
             case Kind::exp:
-                rules.push_back({r, a.series, 0, inner(a.series, r, true)});
+                add(r, a.series, 0, inner(a.series, r, true), by_a);
                 break;
             case Kind::sin_cos:
-                rules.push_back({r, a.series, 0, inner(a.series, p, true)});
-                rules.push_back({p, a.series, 0, inner(a.series, r, true)});
+                add(r, a.series, 0, inner(a.series, p, true), by_a);
+                add(p, a.series, 0, inner(a.series, r, true), sign * by_a);
                 break;
             case Kind::tangent:
-                rules.push_back({r, a.series, 0, inner(a.series, p, true)});
-                rules.push_back({p, r, 0, inner(r, r, false)});
+                add(r, a.series, 0, inner(a.series, p, true), by_a);
+                add(p, r, 0, inner(r, r, false), sign);
                 break;
             case Kind::integral_of_ratio:
-                rules.push_back({r, a.series, 0, inner(r, b.series, true)});
+                add(r, a.series, 0, inner(r, b.series, true));
                 break;
             case Kind::power:
-                rules.push_back({r, a.series, inner(a.series, r, true), inner(r, a.series, true)});
+                add(r, a.series, inner(a.series, r, true), inner(r, a.series, true));
                 break;
         }
         series_.seeds_.push_back(seed);
@@ -316,6 +336,7 @@ class SeriesCompiler {
 
     // Weighted sums come first: their left factors are stored times the order.
     void place_sums() {
+        SeriesPlan& plan = series_.plan_;
         std::vector<std::uint32_t> position(sums_.size());
         for (const bool weighted : {true, false}) {
             for (std::size_t i = 0; i < sums_.size(); ++i) {
@@ -323,9 +344,16 @@ class SeriesCompiler {
                 position[i] = next_series_ + static_cast<std::uint32_t>(series_.sums_.size());
                 series_.sums_.push_back(sums_[i].sum);
             }
-            if (weighted) series_.weighted_ = series_.sums_.size();
+            if (weighted) plan.weighted = static_cast<std::uint32_t>(series_.sums_.size());
         }
-        for (SeriesRule& rule : series_.rules_)
+        plan.lanes = static_cast<std::uint32_t>((series_.sums_.size() + 3) / 4 * 4);
+        plan.left.assign(plan.lanes, 0);
+        plan.right.assign(plan.lanes, 0);
+        for (std::size_t i = 0; i < series_.sums_.size(); ++i) {
+            plan.left[i] = series_.sums_[i].x;
+            plan.right[i] = series_.sums_[i].y;
+        }
+        for (SeriesRule& rule : plan.rules)
             for (std::uint32_t* operand : {&rule.x, &rule.y, &rule.w})
                 if (*operand & sum_mark) *operand = position[*operand & ~sum_mark];
     }
@@ -349,7 +377,7 @@ class SeriesCompiler {
 
 SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program), wanted_(wanted) {
     SeriesCompiler(*this).compile();
-    code_ = machine_code(rules_);
+    if (const auto widest = widest_code()) code_ = OrderCode::of(plan_, *widest);
 }
 
 }  // namespace achilles

@@ -3,51 +3,70 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "expression/machine.hpp"
 
 namespace achilles {
 
 // Order k of series `result` is (f[2] w_k + f[1] y_k) + f[0] x_k: what is known last comes last. An operand is a series
-// or an inner sum.
+// or an inner sum; 0 is none. A factor that is always 1 or -1 is known, the others are looked up.
 struct SeriesRule {
     std::uint32_t result = 0, x = 0, y = 0, w = 0;
-    double f[3] = {};
+    std::int8_t known[3] = {};
+};
+using SeriesFactors = std::array<double, 3>;
+
+// What is to be done, the same in every run. There are `lanes` inner sums, a multiple of 4; those of no use sum zeros.
+struct SeriesPlan {
+    std::vector<SeriesRule> rules;
+    std::uint32_t series = 0;  // how many there are; inner sums follow
+    std::uint32_t lanes = 0;
+    std::uint32_t weighted = 0;              // of these, the first are weighted
+    std::vector<std::uint32_t> left, right;  // of each lane: the series that it multiplies
+
+    std::size_t numbers() const { return series + 2 * static_cast<std::size_t>(lanes); }
+    std::size_t row() const { return 2 * static_cast<std::size_t>(lanes); }
 };
 
-// Runs rules one after the other on the numbers in `now`.
-using RunRules = void (*)(double* now, const SeriesRule* rules);
-
-// What the loop reads and writes. There are `lanes` inner sums, a multiple of 4; those of no use sum zeros.
+// What is read and written. `now` holds order k: the series, then the inner sums, then a place for as many numbers.
+// Row j >= 1 of `rows` starts at j plan.row(): the left factors of all sums, the right ones.
 struct SeriesTables {
-    const SeriesRule* rules = nullptr;
-    std::size_t rule_count = 0;
-    RunRules run_rules = nullptr;  // the rules as machine code, if there is some
-    double* now = nullptr;         // order k: the series, and from `sums` on the inner sums
-    std::size_t sums = 0;
-    std::size_t lanes = 0;
-    const std::uint32_t* left = nullptr;  // of each lane: the series of its left factor, and of its right one
-    const std::uint32_t* right = nullptr;
-    const double* weighted = nullptr;  // of each lane: 1 where the sum is weighted, else 0
-    double* rows = nullptr;            // row j >= 1 starts at 2 j lanes: the left factors of all sums, the right ones
-    double* older = nullptr;           // a place for `lanes` numbers
+    const SeriesFactors* factors = nullptr;  // of the rules
+    double* now = nullptr;
+    double* rows = nullptr;
 };
 
 // Makes order k >= 1 of all series, where order k of the inputs and the inner sums of order k stand in `now`, and then
 // the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or of j x_j y_{k+1-j}/(k+1) where it is weighted. All but
 // the two terms with row k are added up before the rules, so that the processor can do both at once. Every lane adds
-// its terms in the same order, and no product is fused into a sum, so that all versions give the same bits.
-using SeriesOrder = void (*)(const SeriesTables& tables, int k);
+// its terms in the same order, and no product is fused into a sum, so that this and the code below give the same bits.
+void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k);
 
-struct SeriesOrderVersion {
-    std::string_view name;  // "avx512", "avx2", "portable"
-    SeriesOrder function;
-};
+// The same as machine code for one plan, with vectors of this width (four or eight).
+class OrderCode {
+ public:
+    // Nothing where that is not to be had.
+    static std::shared_ptr<const OrderCode> of(const SeriesPlan& plan, Width width);
+    static constexpr int highest_order = 34;
 
-// The versions for so many lanes that this processor can run, fastest first; the portable one is last.
-struct SeriesOrderVersions {
-    SeriesOrderVersion version[3];
-    std::size_t count = 0;
+    void operator()(const SeriesTables& tables, int k) const {
+        double* const row = tables.rows + static_cast<std::size_t>(k) * row_;
+        const double* const weights = weights_.data() + static_cast<std::size_t>(k) * weights_per_order;
+        (k == 1 ? first_ : later_)(tables.now, tables.factors, tables.rows + row_, row, weights);
+    }
+
+ private:
+    using Function = void(double* now, const SeriesFactors* factors, const double* first, double* row,
+                          const double* weights);
+    static constexpr std::size_t weights_per_order = 18;
+    std::shared_ptr<const MachineCode> code_;
+    Function *first_ = nullptr, *later_ = nullptr;
+    std::size_t row_ = 0;
+    // Per order k: k, 1/(k + 1), and both again as they are in the vector whose first lanes alone are weighted.
+    std::vector<double> weights_;
 };
-SeriesOrderVersions series_order_versions(std::size_t lanes);
 
 }  // namespace achilles

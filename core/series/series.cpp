@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace achilles {
 
 namespace {
+
+constexpr std::size_t in_cache_line = 8;  // doubles
 
 double function_value(Operation function, double a) {
     switch (function) {
@@ -44,20 +47,10 @@ double combined(Operation operation, double a, double b) {
 SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters)
     : program_(&program),
       inputs_(program.program_.slots_.fixed_begin),
-      lanes_((program.sums_.size() + 3) / 4 * 4),
-      order_(series_order_versions(lanes_).version[0].function),
       zero_(program.program_),
-      rules_(program.rules_),
-      now_(program.series_ + lanes_, 0.0),
-      factors_(2 * lanes_, 0),
-      weighted_(lanes_, 0.0),
-      rows_(2 * lanes_ * (highest_order + 1), 0.0),
-      older_(lanes_, 0.0) {
-    for (std::size_t i = 0; i < program.sums_.size(); ++i) {
-        factors_[i] = program.sums_[i].x;
-        factors_[lanes_ + i] = program.sums_[i].y;
-    }
-    std::fill_n(weighted_.begin(), program.weighted_, 1.0);
+      factors_(program.plan_.rules.size()),
+      now_(program.plan_.numbers(), 0.0),
+      rows_(program.plan_.row() * (highest_order + 1) + in_cache_line, 0.0) {
     for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
     zero_.fix();
     zero_.registers_.resize(program.registers_, 0.0);
@@ -71,7 +64,7 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
         }
     }
     for (const SeriesProgram::Combination& c : program.combinations_)
-        for (std::size_t i = 0; i < 3; ++i) rules_[c.rule].f[i] = coefficients_[c.coefficient[i]];
+        for (std::size_t i = 0; i < 3; ++i) factors_[c.rule][i] = coefficients_[c.coefficient[i]];
     for (const SeriesProgram::Output& output : program.outputs_) scale_.push_back(coefficients_[output.coefficient]);
 }
 
@@ -80,28 +73,19 @@ void SeriesEvaluator::begin(const double* inputs) {
     using Kind = SeriesProgram::Kind;
     std::copy_n(inputs, inputs_, zero_.registers_.data());
     zero_.run();
-    tables_ = {.rules = rules_.data(),
-               .rule_count = rules_.size(),
-               .run_rules = program_->code_ ? program_->code_->as<void(double*, const SeriesRule*)>() : nullptr,
-               .now = now_.data(),
-               .sums = program_->series_,
-               .lanes = lanes_,
-               .left = factors_.data(),
-               .right = factors_.data() + lanes_,
-               .weighted = weighted_.data(),
-               .rows = rows_.data(),
-               .older = older_.data()};
-    std::fill_n(now_.begin() + static_cast<std::ptrdiff_t>(program_->series_), lanes_, 0.0);  // sums of order 1
+    void* rows = rows_.data();
+    std::size_t room = rows_.size() * sizeof(double);
+    std::align(in_cache_line * sizeof(double), sizeof(double), rows, room);
+    tables_ = {factors_.data(), now_.data(), static_cast<double*>(rows)};
+    const SeriesPlan& plan = program_->plan_;
+    std::fill_n(now_.begin() + plan.series, plan.lanes, 0.0);  // sums of order 1
     double* const z = zero_.registers_.data();
     const std::size_t own = zero_.program_->slots_.count + zero_.program_->constants_.size() + zero_.program_->size();
     for (const SeriesProgram::Seed& seed : program_->seeds_) {
         const double a = z[seed.a], b = z[seed.b], sign = seed.sign;
         const double by_a = coefficients_[seed.scale_a], by_b = coefficients_[seed.scale_b];
         const auto set = [&](std::size_t rule, double x, double y, double w) {
-            double* const f = rules_[seed.rule + rule].f;
-            f[0] = x;
-            f[1] = y;
-            f[2] = w;
+            factors_[seed.rule + rule] = {x, y, w};
         };
         double& r = z[seed.result];
         const bool hidden = seed.result >= own;
@@ -171,6 +155,9 @@ void SeriesEvaluator::extend(int k, const double* inputs) {
     extend(k);
 }
 
-void SeriesEvaluator::extend(int k) { order_(tables_, k); }
+void SeriesEvaluator::extend(int k) {
+    if (program_->code_) return (*program_->code_)(tables_, k);
+    make_order(program_->plan_, tables_, k);
+}
 
 }  // namespace achilles

@@ -31,7 +31,8 @@ class SeriesProgram {
     SeriesProgram(const Program& program, std::size_t wanted);
 
     std::size_t inner_sums() const { return sums_.size(); }
-    std::size_t rules() const { return rules_.size(); }
+    std::size_t rules() const { return plan_.rules.size(); }
+    const SeriesPlan& plan() const { return plan_; }
     // Whether a function in it has an edge, past which it is no number: a root, a logarithm.
     bool is_partial() const { return partial_; }
 
@@ -68,7 +69,7 @@ class SeriesProgram {
     // A rule whose factors are coefficients.
     struct Combination {
         std::uint32_t rule;
-        std::uint32_t coefficient[3];
+        std::array<std::uint32_t, 3> coefficient;
     };
     // sum_{0<j<k} x_j y_{k-j}, or of j x_j y_{k-j}, divided by k
     struct InnerSum {
@@ -84,21 +85,19 @@ class SeriesProgram {
     std::size_t wanted_ = 0;
     bool partial_ = false;
     std::vector<Coefficient> coefficients_;  // the first is 1
-    std::vector<SeriesRule> rules_;
+    SeriesPlan plan_;                        // series 0 is zero, then the inputs that move, then results
     std::vector<Seed> seeds_;
     std::vector<Combination> combinations_;
     std::vector<InnerSum> sums_;  // those of j x_j first
-    std::size_t weighted_ = 0;    // how many these are
     std::size_t registers_ = 0;   // of order 0: the program's, then hidden ones
-    std::size_t series_ = 0;      // series 0 is zero, then the inputs that move, then results; inner sums follow
     std::vector<Output> outputs_;
-    std::shared_ptr<const MachineCode> code_;  // of the rules; may be none
+    std::shared_ptr<const OrderCode> code_;  // may be none
 };
 
 // A series program with its coefficients. One per thread.
 class SeriesEvaluator {
  public:
-    static constexpr int highest_order = 34;
+    static constexpr int highest_order = OrderCode::highest_order;
 
     SeriesEvaluator() = default;
     SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters);
@@ -119,19 +118,14 @@ class SeriesEvaluator {
 
  private:
     const SeriesProgram* program_ = nullptr;
-    std::size_t inputs_ = 0;  // moving ones
-    std::size_t lanes_ = 0;   // inner sums, rounded up to whole vectors of four
-    SeriesOrder order_ = nullptr;
-    SeriesTables tables_;
+    std::size_t inputs_ = 0;              // moving ones
     Evaluator<double> zero_;              // order 0, with room for hidden registers
     std::vector<double> coefficients_;    // of the program, by number
     std::vector<double> scale_;           // of the outputs
-    std::vector<SeriesRule> rules_;       // with their factors
+    std::vector<SeriesFactors> factors_;  // of the rules
     std::vector<double> now_;             // order k: series, inner sums
-    std::vector<std::uint32_t> factors_;  // the series that a lane multiplies: the left ones, the right ones
-    std::vector<double> weighted_;        // of a lane: 1 or 0
-    std::vector<double> rows_;            // per order: the left factors of all inner sums, then the right ones
-    std::vector<double> older_;           // what the inner sums of the next order have so far
+    std::vector<double> rows_;            // with some room, to begin where a vector does
+    SeriesTables tables_;
 };
 
 }  // namespace achilles

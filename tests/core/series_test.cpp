@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <random>
 
 #include "expression/parse.hpp"
-#include "series/rule_code.hpp"
 
 namespace achilles {
 namespace {
@@ -99,77 +99,69 @@ TEST(Series, SumTheirTermsToTheFunction) {
 // Random tables for any number of lanes: one input moves, every rule takes one inner sum, and there is one of each
 // kind.
 struct RandomSeries {
-    explicit RandomSeries(std::size_t count) : lanes(count) {
-        std::mt19937_64 random(lanes);
-        std::uniform_real_distribution<double> number(-0.5, 0.5);
+    explicit RandomSeries(std::uint32_t lanes) : factors(lanes), random(lanes) {
         const auto any = [&](std::size_t below) { return static_cast<std::uint32_t>(random() % below); };
-        const std::size_t series = 2 + lanes;  // zero, the input, one a rule
-        now.assign(series + lanes, 0.0);
+        std::uniform_real_distribution<double> number(-0.5, 0.5);
+        plan.series = 2 + lanes;  // none, the input, one a rule
+        plan.lanes = lanes;
+        plan.weighted = any(lanes + 1);
         for (std::uint32_t i = 0; i < lanes; ++i) {
-            rules.push_back({2 + i,
-                             any(2 + i),
-                             any(2 + i),
-                             static_cast<std::uint32_t>(series) + i,
-                             {number(random), number(random), number(random)}});
-            left.push_back(1 + any(1 + lanes));
-            right.push_back(1 + any(1 + lanes));
-            weighted.push_back(i % 3 == 0 ? 1.0 : 0.0);
+            SeriesRule rule{2 + i, any(2 + i), any(2 + i), any(8) == 0 ? 0 : plan.series + i, {}};
+            for (std::size_t f = 0; f < 3; ++f) {
+                factors[i][f] = number(random);
+                rule.known[f] = static_cast<std::int8_t>(any(4) == 0 ? 1 : any(4) == 0 ? -1 : 0);
+            }
+            plan.rules.push_back(rule);
+            plan.left.push_back(1 + any(1 + lanes));
+            plan.right.push_back(1 + any(1 + lanes));
         }
-        rows.assign(2 * lanes * (orders + 1), 0.0);
-        older.assign(lanes, 0.0);
+        now.assign(plan.numbers(), 0.0);
+        rows.assign(plan.row() * (orders + 1), 0.0);
     }
-    void extend(SeriesOrder order, const MachineCode* code, int k) {
+    void extend(const OrderCode* code, int k) {
         now[1] = 0.7 / k;
-        order({.rules = rules.data(),
-               .rule_count = rules.size(),
-               .run_rules = code == nullptr ? nullptr : code->as<void(double*, const SeriesRule*)>(),
-               .now = now.data(),
-               .sums = 2 + lanes,
-               .lanes = lanes,
-               .left = left.data(),
-               .right = right.data(),
-               .weighted = weighted.data(),
-               .rows = rows.data(),
-               .older = older.data()},
-              k);
+        const SeriesTables tables{factors.data(), now.data(), rows.data()};
+        if (code == nullptr) {
+            make_order(plan, tables, k);
+        } else {
+            (*code)(tables, k);
+        }
     }
     static constexpr int orders = 20;
-    std::size_t lanes;
-    std::vector<SeriesRule> rules;
-    std::vector<std::uint32_t> left, right;
-    std::vector<double> now, weighted, rows, older;
+    SeriesPlan plan;
+    std::vector<SeriesFactors> factors;
+    std::vector<double> now, rows;
+    std::mt19937_64 random;
 };
 
-// All that a processor offers give the same bits, with machine code and without, and they are the sums.
+// The loops and all that a processor offers give the same bits, and they are the sums.
 TEST(Series, OrdersAreTheSameInEveryVersion) {
-    for (const std::size_t lanes : {4u, 8u, 12u, 16u, 20u, 24u, 28u, 32u, 36u, 40u, 44u, 64u}) {
-        const auto code = machine_code(RandomSeries(lanes).rules);
-#if defined(__x86_64__) && defined(__linux__)
-        EXPECT_NE(code, nullptr);
-#endif
+    for (const std::uint32_t lanes : {4u, 8u, 12u, 16u, 20u, 24u, 28u, 32u, 36u, 40u, 44u, 64u, 100u}) {
         std::vector<double> first;
-        const SeriesOrderVersions versions = series_order_versions(lanes);
-        for (std::size_t v = 0; v < 2 * versions.count; ++v) {
-            const SeriesOrderVersion& version = versions.version[v / 2];
+        for (const auto width : {std::optional<Width>(), std::optional(Width::four), std::optional(Width::eight)}) {
             RandomSeries one(lanes);
+            const auto code = width ? OrderCode::of(one.plan, *width) : nullptr;
+            EXPECT_EQ(code != nullptr, width && widest_code() && *width <= *widest_code());
+            if (width && code == nullptr) continue;
             std::vector<double> results;
             std::vector<std::vector<double>> orders{{}};  // of the series
             for (int k = 1; k <= RandomSeries::orders; ++k) {
-                one.extend(version.function, v % 2 == 0 ? nullptr : code.get(), k);
-                results.insert(results.end(), one.now.begin(), one.now.end());
-                orders.push_back(one.now);
-                for (std::size_t l = 0; v == 0 && l < lanes; ++l) {
+                one.extend(code.get(), k);
+                const std::vector<double> now(one.now.begin(), one.now.begin() + one.plan.series + one.plan.lanes);
+                results.insert(results.end(), now.begin(), now.end());
+                orders.push_back(now);
+                for (std::size_t l = 0; !width && l < lanes; ++l) {
                     double sum = 0.0;
                     for (int j = 1; j <= k; ++j)
-                        sum += (one.weighted[l] == 1.0 ? static_cast<double>(j) / (k + 1) : 1.0) *
-                               orders[static_cast<std::size_t>(j)][one.left[l]] *
-                               orders[static_cast<std::size_t>(k + 1 - j)][one.right[l]];
-                    EXPECT_NEAR(one.now[2 + lanes + l], sum, 1e-14 * (1.0 + std::abs(sum)));
+                        sum += (l < one.plan.weighted ? static_cast<double>(j) / (k + 1) : 1.0) *
+                               orders[static_cast<std::size_t>(j)][one.plan.left[l]] *
+                               orders[static_cast<std::size_t>(k + 1 - j)][one.plan.right[l]];
+                    EXPECT_NEAR(now[one.plan.series + l], sum, 1e-14 * (1.0 + std::abs(sum)));
                 }
             }
-            if (v == 0) first = results;
+            if (!width) first = results;
             EXPECT_EQ(std::memcmp(results.data(), first.data(), first.size() * sizeof(double)), 0)
-                << version.name << ", " << lanes << " lanes" << (v % 2 == 0 ? "" : ", machine code");
+                << (width ? static_cast<int>(*width) : 0) << " wide, " << lanes << " lanes";
         }
     }
 }

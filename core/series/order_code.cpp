@@ -1,0 +1,242 @@
+// One order of all series as machine code.
+#include <algorithm>
+#include <span>
+
+#include "series/order.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Base = Assembler::Base;
+using Code = Assembler::Code;
+
+// The function's arguments, by the calling convention, and the pointers of the loop over older rows.
+constexpr Base now = Base::rdi, factors = Base::rsi, first_row = Base::rdx, row = Base::rcx, weights = Base::r8,
+               left_row = Base::rax, right_row = Base::r10, last_pair = Base::r11;
+constexpr unsigned scratch = 4;  // free vector registers
+
+using Index = std::ptrdiff_t;  // of doubles
+
+// Lanes [begin, begin + width).
+struct Part {
+    Index begin;
+    Width width;
+    Index end() const { return begin + static_cast<Index>(width); }
+};
+
+class OrderWriter {
+ public:
+    OrderWriter(const SeriesPlan& plan, Width width)
+        : plan_(plan),
+          lanes_(static_cast<Index>(plan.lanes)),
+          weighted_(static_cast<Index>(plan.weighted)),
+          sums_(static_cast<Index>(plan.series)),
+          code_(now, scratch) {
+        for (Index lane = 0; lane < lanes_; lane = parts_.back().end())
+            parts_.push_back({lane, lanes_ - lane < 8 ? Width::four : width});
+    }
+
+    // Writes the function for order 1 or for all others; returns where it begins.
+    std::size_t write(bool first) {
+        const std::size_t begin = code_.here();
+        code_.forget_all();
+        if (!first) sum_older();
+        for (std::size_t i = 0; i < plan_.rules.size(); ++i) rule(plan_.rules[i], static_cast<Index>(3 * i));
+        for (const Part& part : parts_) keep_and_sum(part, first);
+        code_.leave_at_once();
+        return begin;
+    }
+    const std::vector<std::uint8_t>& bytes() const { return code_.bytes(); }
+
+ private:
+    Index older() const { return sums_ + lanes_; }
+
+    // ---- terms of the inner sums that lie before this order ----
+
+    // Two rows at a time, into sums of their own; so many vectors at once as there are registers.
+    void sum_older() {
+        constexpr std::size_t most = 6;
+        for (std::size_t i = 0; i < parts_.size(); i += most)
+            sum_older(std::span(parts_).subspan(i, std::min(most, parts_.size() - i)));
+    }
+    void sum_older(std::span<const Part> parts) {
+        const Index stride = 2 * lanes_;
+        const auto count = static_cast<unsigned>(parts.size());
+        for (unsigned i = 0; i < 2 * count; ++i) code_.zero(2 + i);
+        code_.address(left_row, first_row, stride);
+        code_.address(right_row, row, -stride);
+        code_.address(last_pair, row, -stride);
+        const std::size_t skip = code_.jump_if_not_below(left_row, last_pair);
+        const std::size_t loop = code_.here();
+        add_products(parts, 2, 0, 0);
+        add_products(parts, 2 + count, stride, -stride);
+        code_.address(left_row, left_row, 2 * stride);
+        code_.address(right_row, right_row, -2 * stride);
+        code_.jump_back_if_below(left_row, last_pair, loop);
+        code_.land(skip);
+        const std::size_t none = code_.jump_if_not_below(left_row, row);
+        add_products(parts, 2, 0, 0);
+        code_.land(none);
+        for (unsigned i = 0; i < count; ++i) {
+            code_.registers(Code::add, parts[i].width, 2 + i, 2 + i, 2 + count + i);
+            code_.memory(Code::store, parts[i].width, 2 + i, now, older() + parts[i].begin);
+        }
+    }
+    // sums[i] += left * right
+    void add_products(std::span<const Part> parts, unsigned sums, Index left, Index right) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const Part& part = parts[i];
+            const auto reg = static_cast<unsigned>(i % 2), sum = sums + static_cast<unsigned>(i);
+            code_.memory(Code::load, part.width, reg, 0, left_row, left + part.begin);
+            code_.memory(Code::multiply, part.width, reg, reg, right_row, right + part.begin + lanes_);
+            code_.registers(Code::add, part.width, sum, sum, reg);
+        }
+    }
+
+    // ---- rules ----
+
+    // A sum as far as it is known: in a register, or a number (or its negative) that is not looked up yet.
+    struct Sum {
+        enum class Kind { none, in_register, number, negative } kind = Kind::none;
+        unsigned reg = 0;
+        std::uint32_t number = 0;
+    };
+
+    // A factor times its number; into this register unless it is known to be 1 or -1.
+    Sum product(std::int8_t known, std::uint32_t number, Index factor, unsigned to) {
+        if (known > 0) return {Sum::Kind::number, 0, number};
+        if (known < 0) return {Sum::Kind::negative, 0, number};
+        const auto held = code_.holder(number);
+        if (!held) code_.get(to, number);
+        code_.memory(Code::multiply, Width::one, to, held ? *held : to, factors, factor);
+        return {Sum::Kind::in_register, to, 0};
+    }
+
+    void rule(const SeriesRule& rule, Index factor) {
+        using Kind = Sum::Kind;
+        const unsigned result = code_.result(rule.result);
+        const std::uint32_t operands[3] = {rule.x, rule.y, rule.w};
+        Sum sum;
+        for (int i = 2; i >= 0; --i) {
+            if (operands[i] == 0) continue;
+            const bool alone = sum.kind == Kind::none;
+            const Sum term = product(rule.known[i], operands[i], factor + i, alone ? result : 0);
+            sum = alone ? term : total(sum, term, result);
+        }
+        if (sum.kind == Kind::none) code_.zero(result);
+        if (sum.kind == Kind::number) code_.get(result, sum.number);
+        if (sum.kind == Kind::negative) negate(result, sum.number);
+        code_.store(result, rule.result);
+    }
+
+    void negate(unsigned to, std::uint32_t number) {
+        code_.negative_zero(to);
+        code_.apply(Code::subtract, to, to, number);
+    }
+
+    // sum + term, in the result's register
+    Sum total(const Sum& sum, const Sum& term, unsigned result) {
+        using Kind = Sum::Kind;
+        if (sum.kind == Kind::in_register && term.kind == Kind::in_register) {
+            code_.registers(Code::add, Width::one, result, sum.reg, term.reg);
+        } else if (sum.kind == Kind::in_register) {
+            code_.apply(term.kind == Kind::negative ? Code::subtract : Code::add, result, sum.reg, term.number);
+        } else if (term.kind == Kind::in_register) {
+            code_.apply(sum.kind == Kind::negative ? Code::subtract : Code::add, result, term.reg, sum.number);
+        } else if (sum.kind == Kind::number) {
+            code_.combine(term.kind == Kind::negative ? Code::subtract : Code::add, result, sum.number, term.number);
+        } else if (term.kind == Kind::number) {
+            code_.combine(Code::subtract, result, term.number, sum.number);
+        } else {
+            negate(result, sum.number);
+            code_.apply(Code::subtract, result, result, term.number);
+        }
+        return {Kind::in_register, result, 0};
+    }
+
+    // ---- this order as a row ----
+
+    // Two numbers side by side.
+    void pair(unsigned to, std::uint32_t low, std::uint32_t high) {
+        const auto a = code_.holder(low), b = code_.holder(high);
+        if (!a) code_.get(to, low);
+        const unsigned from = a ? *a : to;
+        if (b) {
+            code_.registers(Code::unpack, Width::two, to, from, *b);
+        } else {
+            code_.memory(Code::load_high, Width::one, to, from, now, high);
+        }
+    }
+    // So many as the width says, side by side, in `to`; `free` and the next are lost.
+    void gather(const std::uint32_t* numbers, Width width, unsigned to, unsigned free) {
+        pair(to, numbers[0], numbers[1]);
+        pair(free, numbers[2], numbers[3]);
+        code_.join(Width::four, to, to, free);
+        if (width != Width::eight) return;
+        pair(free, numbers[4], numbers[5]);
+        pair(free + 1, numbers[6], numbers[7]);
+        code_.join(Width::four, free, free, free + 1);
+        code_.join(Width::eight, to, to, free);
+    }
+
+    // reg *= the order (which = 0) or its successor's inverse (1), in the lanes that are weighted
+    void weigh(const Part& part, unsigned reg, Index which, unsigned free) {
+        if (part.begin >= weighted_) return;
+        if (part.end() <= weighted_) {
+            code_.broadcast(part.width, free, weights, which);
+            code_.registers(Code::multiply, part.width, reg, reg, free);
+        } else {
+            code_.memory(Code::multiply, part.width, reg, reg, weights, 2 + 8 * which);
+        }
+    }
+
+    void keep_and_sum(const Part& part, bool first) {
+        const Index right = part.begin + lanes_;
+        constexpr unsigned x = 0, y = 1;
+        gather(plan_.left.data() + part.begin, part.width, x, 1);
+        weigh(part, x, 0, 1);
+        code_.memory(Code::store, part.width, x, row, part.begin);
+        gather(plan_.right.data() + part.begin, part.width, y, 2);
+        code_.memory(Code::store, part.width, y, row, right);
+        code_.memory(Code::multiply, part.width, y, y, first_row, part.begin);
+        if (!first) {
+            code_.memory(Code::multiply, part.width, x, x, first_row, right);
+            code_.registers(Code::add, part.width, y, y, x);
+            code_.memory(Code::add, part.width, y, y, now, older() + part.begin);
+        }
+        weigh(part, y, 1, 2);
+        code_.memory(Code::store, part.width, y, now, sums_ + part.begin);
+    }
+
+    const SeriesPlan& plan_;
+    Index lanes_, weighted_, sums_;
+    Assembler code_;
+    std::vector<Part> parts_;
+};
+
+}  // namespace
+
+std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width width) {
+    constexpr std::size_t most_rules = 10000;
+    const auto widest = widest_code();
+    if (!widest || width > *widest || plan.rules.empty() || plan.rules.size() > most_rules) return nullptr;
+    OrderWriter writer(plan, width);
+    const std::size_t first = writer.write(true), later = writer.write(false);
+    auto order = std::make_shared<OrderCode>();
+    order->code_ = MachineCode::of(writer.bytes());
+    if (!order->code_) return nullptr;
+    order->first_ = order->code_->as<Function>(first);
+    order->later_ = order->code_->as<Function>(later);
+    order->row_ = plan.row();
+    const std::size_t mixed = plan.weighted % static_cast<std::size_t>(width);
+    for (int k = 0; k <= highest_order; ++k) {
+        const double weight = k, inverse = 1.0 / static_cast<double>(k + 1);
+        order->weights_.insert(order->weights_.end(), {weight, inverse});
+        for (const double x : {weight, inverse})
+            for (std::size_t lane = 0; lane < 8; ++lane) order->weights_.push_back(lane < mixed ? x : 1.0);
+    }
+    return order;
+}
+
+}  // namespace achilles
