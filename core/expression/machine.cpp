@@ -149,14 +149,15 @@ void Assembler::negative_zero(unsigned reg) {
     encode({.pp = packed, .wide = true}, Width::two, 0x6E, reg, 0, {0});
 }
 
-// lea
-void Assembler::address(Base to, Base from, std::ptrdiff_t doubles) {
-    const auto t = static_cast<unsigned>(to), f = static_cast<unsigned>(from);
-    put(0x48u | (t > 7 ? 4u : 0u) | (f > 7 ? 1u : 0u));
-    put(0x8D);
-    put(0x80u | rm(t) << 3 | rm(f));
-    put(static_cast<std::uint32_t>(8 * doubles), 4);
+void Assembler::integer(unsigned opcode, Base reg, Base base, std::ptrdiff_t index) {
+    const auto r = static_cast<unsigned>(reg), b = static_cast<unsigned>(base);
+    put(0x48u | (r > 7 ? 4u : 0u) | (b > 7 ? 1u : 0u));
+    put(opcode);
+    put(0x80u | rm(r) << 3 | rm(b));
+    put(static_cast<std::uint32_t>(8 * index), 4);
 }
+
+void Assembler::address(Base to, Base from, std::ptrdiff_t doubles) { integer(0x8D, to, from, doubles); }
 
 void Assembler::compare(Base a, Base b) {
     const auto x = static_cast<unsigned>(a), y = static_cast<unsigned>(b);
@@ -170,6 +171,20 @@ std::size_t Assembler::jump_if_not_below(Base a, Base b) {
     put(0x830F, 2);
     put(std::uint64_t{0}, 4);
     return here();
+}
+
+// vucomisd; jbe: also where they cannot be compared
+std::size_t Assembler::jump_if_not_above(unsigned reg, Base base, std::ptrdiff_t index) {
+    encode({.pp = packed}, Width::one, 0x2E, reg, 0,
+           {static_cast<unsigned>(base), true, static_cast<std::int32_t>(8 * index)});
+    put(0x860F, 2);
+    put(std::uint64_t{0}, 4);
+    return here();
+}
+
+void Assembler::jump_back(std::size_t place) {
+    put(0xE9);
+    put(static_cast<std::uint32_t>(place - (here() + 4)), 4);
 }
 
 void Assembler::land(std::size_t jump) {

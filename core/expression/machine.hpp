@@ -49,13 +49,25 @@ std::optional<Width> widest_code();
 // are kept in the others as long as there is room, besides being stored.
 class Assembler {
  public:
-    enum class Base : unsigned { rax = 0, rcx = 1, rdx = 2, rbx = 3, rsi = 6, rdi = 7, r8 = 8, r10 = 10, r11 = 11 };
+    enum class Base : unsigned {
+        rax = 0,
+        rcx = 1,
+        rdx = 2,
+        rbx = 3,
+        rsi = 6,
+        rdi = 7,
+        r8 = 8,
+        r9 = 9,
+        r10 = 10,
+        r11 = 11
+    };
     enum class Code : std::uint8_t {
         load = 0x10,
         store = 0x11,
         unpack = 0x14,     // the low halves of two
         load_high = 0x16,  // the low half, and a number from memory
         sqrt = 0x51,
+        both = 0x54,  // bitwise and
         exclusive_or = 0x57,
         add = 0x58,
         multiply = 0x59,
@@ -102,10 +114,16 @@ class Assembler {
 
     // to = from + so many doubles
     void address(Base to, Base from, std::ptrdiff_t doubles);
+    // to = the address that stands at (base, index), and the other way round.
+    void load_address(Base to, Base base, std::ptrdiff_t index) { integer(0x8B, to, base, index); }
+    void store_address(Base from, Base base, std::ptrdiff_t index) { integer(0x89, from, base, index); }
     // A jump forward to where land() is called with what this returns, if a >= b; a jump back to a place if a < b.
     std::size_t jump_if_not_below(Base a, Base b);
+    // The same if the number in a register is not above one in memory, or one of them is none.
+    std::size_t jump_if_not_above(unsigned reg, Base base, std::ptrdiff_t index);
     void land(std::size_t jump);
     void jump_back_if_below(Base a, Base b, std::size_t place);
+    void jump_back(std::size_t place);
     std::size_t here() const { return bytes_.size(); }
 
     // ---- functions ----
@@ -139,6 +157,8 @@ class Assembler {
     void put(unsigned byte) { bytes_.push_back(static_cast<std::uint8_t>(byte)); }
     void put(std::uint64_t value, unsigned count);
     void encode(const Prefix& prefix, Width width, unsigned opcode, unsigned reg, unsigned from, const Operand& other);
+    // A 64-bit instruction between a register and (base, index).
+    void integer(unsigned opcode, Base reg, Base base, std::ptrdiff_t index);
     void compare(Base a, Base b);
 
     Base numbers_;

@@ -33,8 +33,8 @@ class SeriesCompiler {
             forms_[reg] = translate(program_.instructions_[reg - first], reg);
         for (const std::uint32_t output : program_.outputs_) {
             const bool wanted = series_.outputs_.size() < series_.wanted_;
-            const Operand value = wanted ? apart_from_inputs(operand(output)) : Operand{output, 0, one};
-            series_.outputs_.push_back({output, value.series, value.scale});
+            series_.outputs_.push_back(output);
+            if (wanted) series_.plan_.outputs.push_back(written_apart(operand(output)));
         }
         series_.registers_ = next_register_;
         series_.plan_.series = next_series_;
@@ -143,12 +143,14 @@ class SeriesCompiler {
         return {reg, form[0].series, form[0].coefficient};
     }
 
-    // An output that is an input, copied: the inputs of the next order may be written while outputs are still read.
-    Operand apart_from_inputs(const Operand& output) {
-        if (output.series > program_.slots_.fixed_begin || output.series == 0) return output;
+    // The series of an output, scaled. One that is an input is copied: the inputs of the next order may be written
+    // while outputs are still read.
+    std::uint32_t written_apart(const Operand& output) {
+        const bool is_input = output.series != 0 && output.series <= program_.slots_.fixed_begin;
+        if (!is_input && output.scale == one) return output.series;
         const std::uint32_t copy = next_series_++;
         combine(copy, {output.series, 0, 0}, {output.scale, one, one});
-        return {output.value, copy, one};
+        return copy;
     }
 
     // ---- recurrences ----

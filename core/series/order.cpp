@@ -1,6 +1,6 @@
 #include "series/order.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace achilles {
 
@@ -55,6 +55,25 @@ void make_order(const SeriesPlan& plan, const SeriesTables& tables, int order) {
     for (std::size_t i = 0; i < plan.rules.size(); ++i)
         tables.now[plan.rules[i].result] = value_of(plan.rules[i], tables.factors[i], tables.now);
     for (std::size_t lane = 0; lane < plan.lanes; ++lane) keep_and_sum(plan, tables, k, lane, older[lane]);
+}
+
+int make_orders(const SeriesPlan& plan, const SeriesTables& tables, SeriesMotion& motion, int k, int last) {
+    const std::size_t n = plan.coordinates(), width = plan.states();
+    double* const now = tables.now;
+    for (;; ++k) {
+        const double* const below = motion.row;
+        double* const row = motion.row += width;
+        const double inverse = 1.0 / static_cast<double>(k);
+        for (std::size_t i = 0; i < n; ++i) {
+            now[1 + i] = row[i] = inverse * below[n + i];
+            now[1 + n + i] = row[n + i] = inverse * now[plan.outputs[i]];
+        }
+        make_order(plan, tables, k);
+        row[2 * n] = now[plan.outputs[n]];
+        motion.largest += width;
+        motion.power *= motion.target;
+        if (k >= last || !(motion.power * std::abs(*motion.largest) > 1.0)) return k;
+    }
 }
 
 }  // namespace achilles

@@ -1,10 +1,11 @@
 // One order of all series of a program: the inner loop of the Taylor method.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "expression/machine.hpp"
@@ -26,7 +27,12 @@ struct SeriesPlan {
     std::uint32_t lanes = 0;
     std::uint32_t weighted = 0;              // of these, the first are weighted
     std::vector<std::uint32_t> left, right;  // of each lane: the series that it multiplies
+    // Of a motion: the inputs are q and v, series 1 .. 2 n, and the outputs v' (n) and what is watched, none of which
+    // is an input.
+    std::vector<std::uint32_t> outputs;
 
+    std::size_t coordinates() const { return outputs.size() - 1; }
+    std::size_t states() const { return 2 * coordinates() + 1; }
     std::size_t numbers() const { return series + 2 * static_cast<std::size_t>(lanes); }
     std::size_t row() const { return 2 * static_cast<std::size_t>(lanes); }
 };
@@ -39,32 +45,56 @@ struct SeriesTables {
     double* rows = nullptr;
 };
 
+// A motion's coefficients, made order by order until they are small. Machine code knows the layout.
+struct SeriesMotion {
+    double* row = nullptr;            // of the order made last: q, v, what is watched; order k + 1 goes behind it
+    const double* largest = nullptr;  // in that row: the one that is compared
+    double power = 1.0;               // its unit times target^k
+    double target = 1.0;              // s, where the terms are compared
+    const double* last = nullptr;     // the tables' row of the last order that may be made
+    double one = 1.0;
+    double magnitude[2] = {std::bit_cast<double>(~std::uint64_t{0} >> 1), 0.0};  // a mask: all but the sign
+};
+
 // Makes order k >= 1 of all series, where order k of the inputs and the inner sums of order k stand in `now`, and then
 // the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or of j x_j y_{k+1-j}/(k+1) where it is weighted. All but
 // the two terms with row k are added up before the rules, so that the processor can do both at once. Every lane adds
 // its terms in the same order, and no product is fused into a sum, so that this and the code below give the same bits.
 void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k);
 
-// The same as machine code for one plan, with vectors of this width (four or eight).
+// Makes the orders from k >= 2 on, after order k - 1: q_k = v_{k-1}/k, v_k = v'_{k-1}/k, and what follows from them.
+// The last is `last`, or the first at which the compared coefficient times target^k is not above 1. Returns it.
+int make_orders(const SeriesPlan& plan, const SeriesTables& tables, SeriesMotion& motion, int k, int last);
+
+// Both as machine code for one plan, with vectors of this width (four or eight).
 class OrderCode {
  public:
     // Nothing where that is not to be had.
     static std::shared_ptr<const OrderCode> of(const SeriesPlan& plan, Width width);
     static constexpr int highest_order = 34;
 
-    void operator()(const SeriesTables& tables, int k) const {
+    void make_first(const SeriesTables& tables) const {
+        first_(tables.now, tables.factors, tables.rows + row_, tables.rows + row_, weights(1), nullptr);
+    }
+    // The plan is that of a motion.
+    int make_orders(const SeriesTables& tables, SeriesMotion& motion, int k, int last) const {
         double* const row = tables.rows + static_cast<std::size_t>(k) * row_;
-        const double* const weights = weights_.data() + static_cast<std::size_t>(k) * weights_per_order;
-        (k == 1 ? first_ : later_)(tables.now, tables.factors, tables.rows + row_, row, weights);
+        const double* const before = motion.row;
+        motion.last = tables.rows + static_cast<std::size_t>(last) * row_;
+        later_(tables.now, tables.factors, tables.rows + row_, row, weights(k), &motion);
+        return k - 1 + static_cast<int>((motion.row - before) / static_cast<std::ptrdiff_t>(states_));
     }
 
  private:
+    friend class OrderWriter;
     using Function = void(double* now, const SeriesFactors* factors, const double* first, double* row,
-                          const double* weights);
-    static constexpr std::size_t weights_per_order = 18;
+                          const double* weights, SeriesMotion* motion);
+    static constexpr std::ptrdiff_t weights_per_order = 18;
+    const double* weights(int k) const { return weights_.data() + k * weights_per_order; }
+
     std::shared_ptr<const MachineCode> code_;
     Function *first_ = nullptr, *later_ = nullptr;
-    std::size_t row_ = 0;
+    std::size_t row_ = 0, states_ = 0;
     // Per order k: k, 1/(k + 1), and both again as they are in the vector whose first lanes alone are weighted.
     std::vector<double> weights_;
 };

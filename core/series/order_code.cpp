@@ -13,7 +13,7 @@ using Code = Assembler::Code;
 
 // The function's arguments, by the calling convention, and the pointers of the loop over older rows.
 constexpr Base now = Base::rdi, factors = Base::rsi, first_row = Base::rdx, row = Base::rcx, weights = Base::r8,
-               left_row = Base::rax, right_row = Base::r10, last_pair = Base::r11;
+               motion = Base::r9, left_row = Base::rax, right_row = Base::r10, last_pair = Base::r11;
 constexpr unsigned scratch = 4;  // free vector registers
 
 using Index = std::ptrdiff_t;  // of doubles
@@ -24,6 +24,11 @@ struct Part {
     Width width;
     Index end() const { return begin + static_cast<Index>(width); }
 };
+
+// Where a member of SeriesMotion stands.
+#define ACHILLES_PLACE(member) (static_cast<Index>(offsetof(SeriesMotion, member) / sizeof(double)))
+
+}  // namespace
 
 class OrderWriter {
  public:
@@ -37,13 +42,27 @@ class OrderWriter {
             parts_.push_back({lane, lanes_ - lane < 8 ? Width::four : width});
     }
 
-    // Writes the function for order 1 or for all others; returns where it begins.
-    std::size_t write(bool first) {
+    // Write a function; return where it begins.
+    std::size_t write_first() {
         const std::size_t begin = code_.here();
         code_.forget_all();
-        if (!first) sum_older();
-        for (std::size_t i = 0; i < plan_.rules.size(); ++i) rule(plan_.rules[i], static_cast<Index>(3 * i));
-        for (const Part& part : parts_) keep_and_sum(part, first);
+        write_order(true);
+        code_.leave_at_once();
+        return begin;
+    }
+    std::size_t write_later() {
+        const std::size_t begin = code_.here();
+        code_.forget_all();
+        sum_older();
+        inputs();
+        write_order(false);
+        const std::size_t small = keep_and_compare();
+        const std::size_t last = code_.jump_if_not_below(row, last_pair);
+        code_.address(row, row, 2 * lanes_);
+        code_.address(weights, weights, OrderCode::weights_per_order);
+        code_.jump_back(begin);
+        code_.land(small);
+        code_.land(last);
         code_.leave_at_once();
         return begin;
     }
@@ -51,6 +70,11 @@ class OrderWriter {
 
  private:
     Index older() const { return sums_ + lanes_; }
+
+    void write_order(bool first) {
+        for (std::size_t i = 0; i < plan_.rules.size(); ++i) rule(plan_.rules[i], static_cast<Index>(3 * i));
+        for (const Part& part : parts_) keep_and_sum(part, first);
+    }
 
     // ---- terms of the inner sums that lie before this order ----
 
@@ -92,6 +116,50 @@ class OrderWriter {
             code_.memory(Code::multiply, part.width, reg, reg, right_row, right + part.begin + lanes_);
             code_.registers(Code::add, part.width, sum, sum, reg);
         }
+    }
+
+    // ---- the motion ----
+
+    void inputs() {
+        constexpr Base below = left_row;
+        constexpr unsigned inverse = 0;
+        const auto n = static_cast<std::uint32_t>(plan_.coordinates());
+        code_.load_address(below, motion, ACHILLES_PLACE(row));
+        code_.memory(Code::load, Width::one, inverse, weights, 1 - OrderCode::weights_per_order);  // 1/k
+        for (std::uint32_t i = 0; i < 2 * n; ++i) {
+            const unsigned result = code_.result(1 + i);
+            if (i < n) {
+                code_.memory(Code::multiply, Width::one, result, inverse, below, n + i);
+            } else {
+                code_.apply(Code::multiply, result, inverse, plan_.outputs[i - n]);
+            }
+            code_.store(result, 1 + i);
+            code_.memory(Code::store, Width::one, result, below, 2 * n + 1 + i);
+        }
+    }
+
+    // A jump if what is compared is not above 1 any more. Leaves the last row in last_pair.
+    std::size_t keep_and_compare() {
+        constexpr Base state = left_row, largest = right_row;
+        const auto width = static_cast<Index>(plan_.states());
+        const std::uint32_t watched = plan_.outputs.back();
+        code_.load_address(state, motion, ACHILLES_PLACE(row));
+        code_.address(state, state, width);
+        code_.store_address(state, motion, ACHILLES_PLACE(row));
+        auto held = code_.holder(watched);
+        if (!held) code_.get(0, watched);
+        code_.memory(Code::store, Width::one, held ? *held : 0, state, width - 1);
+        code_.load_address(largest, motion, ACHILLES_PLACE(largest));
+        code_.address(largest, largest, width);
+        code_.store_address(largest, motion, ACHILLES_PLACE(largest));
+        code_.load_address(last_pair, motion, ACHILLES_PLACE(last));
+        code_.memory(Code::load, Width::one, 0, motion, ACHILLES_PLACE(power));
+        code_.memory(Code::multiply, Width::one, 0, 0, motion, ACHILLES_PLACE(target));
+        code_.memory(Code::store, Width::one, 0, motion, ACHILLES_PLACE(power));
+        code_.memory(Code::load, Width::one, 1, largest, 0);
+        code_.memory(Code::both, Width::two, 1, 1, motion, ACHILLES_PLACE(magnitude));
+        code_.registers(Code::multiply, Width::one, 0, 0, 1);
+        return code_.jump_if_not_above(0, motion, ACHILLES_PLACE(one));
     }
 
     // ---- rules ----
@@ -215,20 +283,20 @@ class OrderWriter {
     std::vector<Part> parts_;
 };
 
-}  // namespace
-
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width width) {
     constexpr std::size_t most_rules = 10000;
     const auto widest = widest_code();
     if (!widest || width > *widest || plan.rules.empty() || plan.rules.size() > most_rules) return nullptr;
     OrderWriter writer(plan, width);
-    const std::size_t first = writer.write(true), later = writer.write(false);
+    const std::size_t first = writer.write_first();
+    const std::optional<std::size_t> later = plan.outputs.empty() ? std::nullopt : std::optional(writer.write_later());
     auto order = std::make_shared<OrderCode>();
     order->code_ = MachineCode::of(writer.bytes());
     if (!order->code_) return nullptr;
     order->first_ = order->code_->as<Function>(first);
-    order->later_ = order->code_->as<Function>(later);
+    if (later) order->later_ = order->code_->as<Function>(*later);
     order->row_ = plan.row();
+    order->states_ = later ? plan.states() : 0;
     const std::size_t mixed = plan.weighted % static_cast<std::size_t>(width);
     for (int k = 0; k <= highest_order; ++k) {
         const double weight = k, inverse = 1.0 / static_cast<double>(k + 1);

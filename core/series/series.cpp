@@ -65,7 +65,6 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
     }
     for (const SeriesProgram::Combination& c : program.combinations_)
         for (std::size_t i = 0; i < 3; ++i) factors_[c.rule][i] = coefficients_[c.coefficient[i]];
-    for (const SeriesProgram::Output& output : program.outputs_) scale_.push_back(coefficients_[output.coefficient]);
 }
 
 // The program itself gives order 0 of its registers; here follow the hidden ones, and the factors of the rules.
@@ -152,12 +151,13 @@ void SeriesEvaluator::begin(const double* inputs) {
 
 void SeriesEvaluator::extend(int k, const double* inputs) {
     std::copy_n(inputs, inputs_, now_.data() + 1);
-    extend(k);
+    if (k == 1 && program_->code_) return program_->code_->make_first(tables_);
+    make_order(program_->plan_, tables_, k);
 }
 
-void SeriesEvaluator::extend(int k) {
-    if (program_->code_) return (*program_->code_)(tables_, k);
-    make_order(program_->plan_, tables_, k);
+int SeriesEvaluator::extend(SeriesMotion& motion, int k, int last) {
+    if (program_->code_) return program_->code_->make_orders(tables_, motion, k, last);
+    return make_orders(program_->plan_, tables_, motion, k, last);
 }
 
 }  // namespace achilles

@@ -75,12 +75,6 @@ class SeriesProgram {
     struct InnerSum {
         std::uint32_t x, y;
     };
-    struct Output {
-        std::uint32_t value;        // register of order 0
-        std::uint32_t series;       // higher orders: scale * series
-        std::uint32_t coefficient;  // of the scale
-    };
-
     Program program_;
     std::size_t wanted_ = 0;
     bool partial_ = false;
@@ -88,9 +82,9 @@ class SeriesProgram {
     SeriesPlan plan_;                        // series 0 is zero, then the inputs that move, then results
     std::vector<Seed> seeds_;
     std::vector<Combination> combinations_;
-    std::vector<InnerSum> sums_;  // those of j x_j first
-    std::size_t registers_ = 0;   // of order 0: the program's, then hidden ones
-    std::vector<Output> outputs_;
+    std::vector<InnerSum> sums_;             // those of j x_j first
+    std::size_t registers_ = 0;              // of order 0: the program's, then hidden ones
+    std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
 };
 
@@ -105,23 +99,20 @@ class SeriesEvaluator {
     // Evaluates order 0 at these values of the moving inputs.
     void begin(const double* inputs);
     // Order 0 of an output, after begin().
-    double start(std::size_t index) const { return zero_.registers_[program_->outputs_[index].value]; }
+    double start(std::size_t index) const { return zero_.registers_[program_->outputs_[index]]; }
 
-    // Where order k of the moving inputs goes before extend(k). (Copied there as one, they would keep the next loads
-    // waiting until they are written.)
-    double* inputs() { return now_.data() + 1; }
-    // Evaluates order k, 1 <= k <= highest_order, from that order of the inputs, after all lower ones.
-    void extend(int k);
+    // Evaluates order k, 1 <= k <= highest_order, from that order of the moving inputs, after all lower ones.
     void extend(int k, const double* inputs);
-    // Order k of an output, after extend(k) until the next: it is never one of inputs().
-    double output(std::size_t index) const { return scale_[index] * now_[program_->outputs_[index].series]; }
+    // Order k of an output, after extend(k) until the next.
+    double output(std::size_t index) const { return now_[program_->plan_.outputs[index]]; }
+    // Of a motion, see make_orders(); after order 1.
+    int extend(SeriesMotion& motion, int k, int last);
 
  private:
     const SeriesProgram* program_ = nullptr;
     std::size_t inputs_ = 0;              // moving ones
     Evaluator<double> zero_;              // order 0, with room for hidden registers
     std::vector<double> coefficients_;    // of the program, by number
-    std::vector<double> scale_;           // of the outputs
     std::vector<SeriesFactors> factors_;  // of the rules
     std::vector<double> now_;             // order k: series, inner sums
     std::vector<double> rows_;            // with some room, to begin where a vector does

@@ -55,7 +55,7 @@ bool Execution::stay(double until) {
         for (double& c : force.c) c = -c;  // -hddot = W lambda
         if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(projected->state) - force(1.0);
         if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
-        const Descent descent = first_descent(force, 0, flow_.remainder());
+        const Descent descent = first_descent(force, 0, flow_.remainder(force));
         if (descent.kind == Descent::Kind::undecided) {
             stop(Outcome::Kind::undecided,
                  "the contact force comes closer to zero than the integration knows it just after " +

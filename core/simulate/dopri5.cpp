@@ -42,10 +42,10 @@ class Dopri5 : public Stepper {
     Obstacle do_step(double longest, double first, double least) override;
     Obstacle redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
-    const State& current_state() const override { return to_; }
+    const State& current_state() override { return to_; }
     Polynomial watched() const override { return component(2 * n_); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
-    double remainder() const override;
+    double remainder(const Polynomial& p) const override;
     bool is_expansion() const override { return false; }
     long evaluations() const override { return evaluations_; }
 
@@ -221,8 +221,7 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 
 // The local error that the error control allows, and as much for the dense output between the ends, which is of one
 // order less. In a flight that is short against such a step, less than the highest term that was kept.
-double Dopri5::remainder() const {
-    const Polynomial p = watched();
+double Dopri5::remainder(const Polynomial& p) const {
     double size = 0.0;
     for (const double c : p.c) size += std::abs(c);
     return std::min(4.0 * tolerance_ * (1.0 + size), std::abs(p.c[4])) + 8.0 * 0x1p-53 * size;

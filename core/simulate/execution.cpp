@@ -103,7 +103,7 @@ Polynomial Execution::gap_along() {
 bool Execution::find_impact() {
     if (!advance(run_.options.end_time - flow_.end_time())) return true;
     Polynomial h = gap_along();
-    Descent descent = first_descent(h, takeoff_.multiplicity, flow_.remainder());
+    Descent descent = first_descent(h, takeoff_.multiplicity, flow_.remainder(h));
     if (takeoff_.inside && descent.kind == Descent::Kind::none) descent.kind = Descent::Kind::undecided;
     if (descent.kind == Descent::Kind::undecided) return leave_undecided(descent.theta);
     if (descent.kind == Descent::Kind::root) {
@@ -126,7 +126,7 @@ bool Execution::leave_undecided(double theta) {
     stop(Outcome::Kind::undecided,
          fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot "
                      "be told just after {}",
-                     flow_.remainder(), where(t_, state_)));
+                     flow_.remainder(flow_.watched()), where(t_, state_)));
     return true;
 }
 

@@ -22,6 +22,7 @@ void Flow::start(Motion motion, double t, const State& state, const Gap& gap, do
     span_ = 0.0;
     first_ = first_step;
     to_ = state;
+    fetched_ = true;
     gap_ = gap;
     moved_ = true;
 }
@@ -32,13 +33,14 @@ double Flow::least() const { return 1e-16 * std::max(1e-3, std::abs(t_)); }
 Obstacle Flow::step(double longest) {
     t_ += span_;
     span_ = 0.0;
-    if (moved_) stepper_->initialize(motion_, to_, gap_);
+    const State& start = end();
+    if (moved_) stepper_->initialize(motion_, start, gap_);
     moved_ = false;
     const Obstacle obstacle = stepper_->do_step(longest, first_, least());
     first_ = 0.0;
     if (obstacle != Obstacle::none) return obstacle;
     span_ = stepper_->current_time();
-    to_ = stepper_->current_state();
+    fetched_ = false;
     return obstacle;
 }
 
@@ -47,12 +49,13 @@ Obstacle Flow::retake(double duration) {
     const Obstacle obstacle = stepper_->redo_step(duration, least());
     if (obstacle != Obstacle::none) return obstacle;
     span_ = stepper_->current_time();
-    to_ = stepper_->current_state();
+    fetched_ = false;
     return obstacle;
 }
 
 void Flow::move_end(const State& state) {
     to_ = state;
+    fetched_ = true;
     moved_ = true;
 }
 
@@ -63,7 +66,7 @@ void Flow::move_gap(const Gap& gap) {
 
 void Flow::shift_end(double dt) {
     Evaluator<double>& program = acceleration_[motion_ == Motion::flight ? 0 : 1];
-    put(program, to_);
+    put(program, end());
     program.run();
     for (Eigen::Index i = 0; i < to_.q.size(); ++i) {
         const double a = program.output(static_cast<std::size_t>(i));
@@ -83,11 +86,13 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;
     // An end that was moved onto the surface is met.
-    const Eigen::Index n = to_.q.size();
+    const State& moved = end();
+    const State& reached = stepper_->current_state();
+    const Eigen::Index n = moved.q.size();
     double* const linear = coefficients.data() + piece.first + 2 * n;
     for (Eigen::Index i = 0; i < n; ++i) {
-        linear[i] += to_.q[i] - stepper_->current_state().q[i];
-        linear[n + i] += to_.v[i] - stepper_->current_state().v[i];
+        linear[i] += moved.q[i] - reached.q[i];
+        linear[n + i] += moved.v[i] - reached.v[i];
     }
     return piece;
 }

@@ -34,11 +34,15 @@ class Flow {
     double begin_time() const { return t_; }
     double duration() const { return span_; }
     double end_time() const { return t_ + span_; }
-    const State& end() const { return to_; }
+    const State& end() const {
+        if (!fetched_) to_ = stepper_->current_state();
+        fetched_ = true;
+        return to_;
+    }
     // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
     Polynomial watched() const { return stepper_->watched(); }
     bool is_expansion() const { return stepper_->is_expansion(); }
-    double remainder() const { return stepper_->remainder(); }
+    double remainder(const Polynomial& watched) const { return stepper_->remainder(watched); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.
     Piece piece(std::vector<double>& coefficients) const;
 
@@ -52,10 +56,11 @@ class Flow {
     Evaluator<double> acceleration_[2];  // of a Motion, at the end of a step
     Motion motion_ = Motion::flight;
     double t_ = 0.0, span_ = 0.0;
-    double first_ = 0.0;  // bound on the next step; 0: none
-    State to_;
-    Gap gap_;             // in flight, at `to`
-    bool moved_ = false;  // the end is not where the stepper left it
+    double first_ = 0.0;           // bound on the next step; 0: none
+    mutable State to_;             // the end of the last step,
+    mutable bool fetched_ = true;  // once it has been asked for
+    Gap gap_;                      // in flight, at `to`
+    bool moved_ = false;           // the end is not where the stepper left it
 };
 
 }  // namespace achilles

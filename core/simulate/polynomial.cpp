@@ -166,17 +166,22 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
     Polynomial p;
     p.degree = polynomial.degree - known;
     std::copy_n(polynomial.c.begin() + known, p.degree + 1, p.c.begin());
-    double others = 0.0, slopes = 0.0, end = p.c[0];
+    // Powers of theta fall from one to the next, so a polynomial is a mean of the partial sums of its coefficients
+    // (Abel), and lies between the least and the largest of these. So does its slope.
+    double value = p.c[0], least = value, slope = p.c[1], least_slope = slope, largest_slope = slope;
     for (int k = 1; k <= p.degree; ++k) {
         const double c = p.c[static_cast<std::size_t>(k)];
-        others += std::abs(c);
-        if (k > 1) slopes += k * std::abs(c);
-        end += c;
+        value += c;
+        least = std::min(least, value);
+        if (k == 1) continue;
+        slope += k * c;
+        least_slope = std::min(least_slope, slope);
+        largest_slope = std::max(largest_slope, slope);
     }
-    if (p.c[0] - others > remainder) return {};
+    if (least > remainder || (largest_slope < 0.0 && value > remainder)) return {};
     // It only falls: most flights are nearly parabolas.
-    if (p.c[0] > remainder && p.c[1] + slopes < 0.0 && end < -remainder) {
-        const bool steady = p.c[1] + 2.0 * slopes < 0.0;  // the slope changes by a factor of three at most
+    if (p.c[0] > remainder && largest_slope < 0.0 && value < -remainder) {
+        const bool steady = least_slope > 3.0 * largest_slope;  // the slope changes by a factor of three at most
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * p.c[2]));
         return {Descent::Kind::root,
                 newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};

@@ -38,14 +38,14 @@ class Stepper {
 
     // The last step: [0, current_time], and what is reached there.
     virtual double current_time() const = 0;
-    virtual const State& current_state() const = 0;
+    virtual const State& current_state() = 0;
 
     // Along the last step, polynomials in theta = t/current_time: what is watched, and (q, v) as blocks of ascending
     // powers, appended to `coefficients`; their degree is returned.
     virtual Polynomial watched() const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
     // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
-    virtual double remainder() const = 0;
+    virtual double remainder(const Polynomial& watched) const = 0;
     // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the
     // state's own value, and no first guess is needed. False if it is integrated to its end: watched() then drifts from
     // its value at (q, v) within the tolerance, and between the ends it is interpolated.

@@ -23,14 +23,11 @@ constexpr auto reciprocals = [] {
 int best_order(const SeriesProgram& program, double tolerance) {
     const double step = 3000.0, order = 40.0 + 5.0 * static_cast<double>(program.rules()),
                  square = 0.25 * static_cast<double>(program.inner_sums());
-    int best = lowest;
-    double least = std::numeric_limits<double>::infinity();
-    for (int p = lowest; p < highest; ++p) {
-        const double cost = (step + order * p + square * p * p) * std::pow(tolerance, -1.0 / p);
-        if (cost < least) best = p;
-        least = std::min(least, cost);
-    }
-    return best;
+    // The logarithm of cost(p)/length(p) falls as long as its derivative, times p^2 cost(p), is below zero.
+    const double digits = -std::log(tolerance);
+    int p = lowest;
+    while (p < highest - 1 && p * p * (order + 2.0 * square * p) < digits * (step + order * p + square * p * p)) ++p;
+    return p;
 }
 
 }  // namespace
@@ -53,6 +50,7 @@ void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
     motion_ = motion;
     gap_ = gap;
     to_ = state;
+    evaluated_ = true;
 }
 
 // Where h_0 + h_1 t + h_2 t^2 comes down to zero, or `longest`: after a release, say, all three are nothing.
@@ -81,6 +79,7 @@ Obstacle Taylor::leave_out_infinite() {
     int finite = 0;
     while (finite + 1 < order_ && magnitude(row(finite + 1)) < std::numeric_limits<double>::infinity()) ++finite;
     order_ = finite;
+    power_ = std::pow(target_, order_);
     return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
 }
 
@@ -90,7 +89,8 @@ Obstacle Taylor::expand(double longest) {
     const bool flying = motion_ == Motion::flight;
     SeriesEvaluator& series = flying ? flight_ : contact_;
     const std::size_t w = 2 * n_;
-    double* c = row(0);
+    current_state();
+    double* const c = row(0);
     for (std::size_t i = 0; i < n_; ++i) {
         c[i] = to_.q[static_cast<Eigen::Index>(i)];
         c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
@@ -105,52 +105,69 @@ Obstacle Taylor::expand(double longest) {
     c[w] = flying ? gap_.h : series.start(n_);
     units_[w] = 1.0 / (tolerance_ * (1.0 + std::abs(c[w])));
 
-    double* const moving = series.inputs();
-    double target = longest, power = 1.0;
-    bool small = false;  // the last term was
-    int zeros = 0;
+    // Order 1: q' = v, v' = f; what is watched in flight moves at the gap's rate.
+    double* const first = row(1);
+    for (std::size_t i = 0; i < n_; ++i) {
+        first[i] = c[n_ + i];
+        first[n_ + i] = series.start(i);
+    }
+    series.extend(1, first);
+    first[w] = flying ? gap_.hdot : series.output(n_);
+    if (!(magnitude(first) < std::numeric_limits<double>::infinity())) return Obstacle::left_the_domain;
+
     const int most = flying ? flight_order_ : contact_order_;
-    for (order_ = 1;; ++order_) {
-        const int k = order_;
-        const double* const below = c;
-        c += width_;
-        const double inverse = reciprocals[static_cast<std::size_t>(k)];
-        for (std::size_t i = 0; i < n_; ++i) {
-            moving[i] = c[i] = below[n_ + i] * inverse;
-            moving[n_ + i] = c[n_ + i] = (k == 1 ? series.start(i) : series.output(i)) * inverse;
-        }
-        series.extend(k);
-        c[w] = flying && k == 1 ? gap_.hdot : series.output(n_);
-        if (k == 2 && flying) {
-            // A flight is short where its parabola is; what is watched must be known well against its height.
-            target = std::min(longest, 1.05 * parabola_root(longest));
-            const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target;
-            if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
-        }
-        power = k == 2 ? target * target : power * target;
-        // One large component is enough to go on, if it is not the end; which one, the last look told.
-        if (k < most && k > 2 && std::abs(c[largest_]) * units_[largest_] * power > 1.0) {
-            zeros = 0;
-            small = false;
-            continue;
-        }
-        const double m = magnitude(c);
+    SeriesMotion motion;
+    motion.row = first;
+    motion.largest = first + largest_;
+    order_ = series.extend(motion, 2, 2);
+    target_ = longest;
+    if (flying) {
+        // A flight is short where its parabola is; what is watched must be known well against its height.
+        target_ = std::min(longest, 1.05 * parabola_root(longest));
+        const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target_;
+        if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
+    }
+    double& power = power_ = target_ * target_;
+    bool small = false;  // the last term was
+    for (int zeros = 0;;) {
+        const double m = magnitude(row(order_));
         if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
         const bool now = m * power <= 1.0;
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
-        if (k >= most || (k >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
+        if (order_ >= most || (order_ >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
         small = now;
+        // One large component is enough to go on, if it is not the end; which one, the last look told.
+        const int before = order_;
+        motion.largest = row(order_) + largest_;
+        motion.power = units_[largest_] * power;
+        motion.target = target_;
+        order_ = series.extend(motion, before + 1, most);
+        power = motion.power / units_[largest_];
+        if (order_ > before + 1) {
+            small = false;
+            zeros = 0;
+        }
     }
 }
 
-// Where the last two terms reach 1. By symmetry they may be much smaller than the first ones left out; the two before
-// them tell: half of the step is within their reach. In a series that was cut early these are large by right.
+// As far as it is wanted, or to where the last two terms reach 1. By symmetry they may be much smaller than the first
+// ones left out; the two before them tell: half of the step is within their reach. In a series that was cut early these
+// are large by right.
 double Taylor::natural_step() {
+    const int counted = std::min(order_, order_ < guarded ? 2 : 4);
+    std::array<double, 4> terms{};
+    bool all = true;
+    double power = power_;
+    for (int i = 0; i < counted; ++i, power /= target_) {
+        const int k = order_ - i;
+        const double m = terms[static_cast<std::size_t>(i)] = magnitude(row(k));
+        all = all && m * power <= (i < 2 ? 1.0 : std::exp2(k));
+    }
+    if (all) return target_;
     double exponent = std::numeric_limits<double>::infinity();  // of 2
-    const int counted = order_ < guarded ? 2 : 4;
-    for (int k = order_; k > order_ - counted; --k) {
-        const double m = magnitude(row(k));
-        if (m > 0.0) exponent = std::min(exponent, (k > order_ - 2 ? 0.0 : 1.0) - std::log2(m) / k);
+    for (int i = 0; i < counted; ++i) {
+        const double m = terms[static_cast<std::size_t>(i)];
+        if (m > 0.0) exponent = std::min(exponent, (i < 2 ? 0.0 : 1.0) - std::log2(m) / (order_ - i));
     }
     return std::exp2(exponent);
 }
@@ -158,6 +175,7 @@ double Taylor::natural_step() {
 // The even and the odd terms by themselves: half as many sums wait for one another.
 void Taylor::evaluate(double duration) {
     span_ = duration;
+    evaluated_ = true;
     const double square = duration * duration;
     const int even = order_ & ~1, odd = (order_ - 1) | 1;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -176,16 +194,25 @@ Obstacle Taylor::do_step(double longest, double, double least) {
     if (const Obstacle obstacle = expand(longest); obstacle != Obstacle::none) return obstacle;
     const double step = std::min(longest, natural_step());
     if (!(step > least)) return Obstacle::step_too_small;
-    evaluate(step);
+    span_ = step;
+    evaluated_ = false;
     stay_in_domain(step);
     return Obstacle::none;
+}
+
+// An end that nobody asks for, since the step is made again, is not evaluated.
+const State& Taylor::current_state() {
+    if (!evaluated_) evaluate(span_);
+    return to_;
 }
 
 // A term that hardly matters may end the domain inside a step that its series allows: sqrt(x) with a small factor. Then
 // the step goes as far as its end is defined; what ends there is found by the next one.
 void Taylor::stay_in_domain(double step) {
     const SeriesProgram& program = motion_ == Motion::flight ? *flight_program_ : *contact_program_;
-    if (!program.is_partial() || is_defined()) return;
+    if (!program.is_partial()) return;
+    evaluate(step);
+    if (is_defined()) return;
     double inside = 0.0, outside = step;
     while (outside - inside > 1e-12 * step) {
         const double middle = 0.5 * (inside + outside);
@@ -242,14 +269,11 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 // The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
 // than the last two together. The steps before have made errors of the size of the tolerance as well, which is in units
 // of the flight's height: a dip within that can be neither claimed nor denied.
-double Taylor::remainder() const {
-    double terms = 0.0, size = 0.0, power = 1.0;
-    const double* c = row(0) + 2 * n_;
-    for (int k = 0; k <= order_; ++k, c += width_, power *= span_) {
-        const double term = std::abs(*c) * power;
-        size += term;
-        if (k >= order_ - 1) terms += term;
-    }
+double Taylor::remainder(const Polynomial& p) const {
+    double size = 0.0;
+    for (int k = 0; k <= p.degree; ++k) size += std::abs(p.c[static_cast<std::size_t>(k)]);
+    const auto last = static_cast<std::size_t>(p.degree);
+    const double terms = std::abs(p.c[last]) + std::abs(p.c[last - 1]);
     constexpr double earlier_steps = 4.0;
     return std::max(terms + 4.0 * 0x1p-53 * size, earlier_steps / units_[2 * n_]);
 }

@@ -21,10 +21,10 @@ class Taylor : public Stepper {
     Obstacle do_step(double longest, double first, double least) override;
     Obstacle redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
-    const State& current_state() const override { return to_; }
+    const State& current_state() override;
     Polynomial watched() const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
-    double remainder() const override;
+    double remainder(const Polynomial& p) const override;
     bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
 
@@ -48,11 +48,14 @@ class Taylor : public Stepper {
     Motion motion_ = Motion::flight;
     Gap gap_;
     State to_;
+    bool evaluated_ = true;      // to_ is the step's end, not its start
     std::vector<double> rows_;   // coefficients, order by order: q, v, watched
     std::vector<double> units_;  // 1/(tolerance of each component)
     std::vector<double> end_;    // of the step, as the series take it
     std::size_t largest_ = 0;    // the component of which a coefficient was largest last
     int order_ = 0;              // of the last expansion
+    double target_ = 0.0;        // the longest step that it is needed for, as far as is known
+    double power_ = 0.0;         // target^order
     double span_ = 0.0;
     long evaluations_ = 0;
 };

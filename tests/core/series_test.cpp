@@ -96,41 +96,55 @@ TEST(Series, SumTheirTermsToTheFunction) {
         expect_series(text);
 }
 
-// Random tables for any number of lanes: one input moves, every rule takes one inner sum, and there is one of each
-// kind.
+// A random plan for any number of lanes: one coordinate moves, every rule takes an inner sum or none.
 struct RandomSeries {
     explicit RandomSeries(std::uint32_t lanes) : factors(lanes), random(lanes) {
         const auto any = [&](std::size_t below) { return static_cast<std::uint32_t>(random() % below); };
         std::uniform_real_distribution<double> number(-0.5, 0.5);
-        plan.series = 2 + lanes;  // none, the input, one a rule
+        plan.series = 3 + lanes;  // none, the inputs, one a rule
         plan.lanes = lanes;
         plan.weighted = any(lanes + 1);
         for (std::uint32_t i = 0; i < lanes; ++i) {
-            SeriesRule rule{2 + i, any(2 + i), any(2 + i), any(8) == 0 ? 0 : plan.series + i, {}};
+            SeriesRule rule{3 + i, any(3 + i), any(3 + i), any(8) == 0 ? 0 : plan.series + i, {}};
             for (std::size_t f = 0; f < 3; ++f) {
                 factors[i][f] = number(random);
                 rule.known[f] = static_cast<std::int8_t>(any(4) == 0 ? 1 : any(4) == 0 ? -1 : 0);
             }
             plan.rules.push_back(rule);
-            plan.left.push_back(1 + any(1 + lanes));
-            plan.right.push_back(1 + any(1 + lanes));
+            plan.left.push_back(1 + any(2 + lanes));
+            plan.right.push_back(1 + any(2 + lanes));
         }
+        plan.outputs = {3 + any(lanes), 3 + any(lanes)};
         now.assign(plan.numbers(), 0.0);
         rows.assign(plan.row() * (orders + 1), 0.0);
+        states = {0.3, 0.7, 0.2, 0.7, -0.4, 0.5};
+        states.resize(3 * (orders + 1));
+        now[1] = states[3];
+        now[2] = states[4];
     }
-    void extend(const OrderCode* code, int k) {
-        now[1] = 0.7 / k;
+    // Orders k >= 2 from there on, until they are small or the last; the last made.
+    int extend(const OrderCode* code, int k, double target) {
+        const SeriesTables tables{factors.data(), now.data(), rows.data()};
+        SeriesMotion motion;
+        motion.row = states.data() + 3 * (k - 1);
+        motion.largest = motion.row;
+        motion.power = 1e9;
+        motion.target = target;
+        return code == nullptr ? make_orders(plan, tables, motion, k, orders)
+                               : code->make_orders(tables, motion, k, orders);
+    }
+    void begin(const OrderCode* code) {
         const SeriesTables tables{factors.data(), now.data(), rows.data()};
         if (code == nullptr) {
-            make_order(plan, tables, k);
+            make_order(plan, tables, 1);
         } else {
-            (*code)(tables, k);
+            code->make_first(tables);
         }
     }
     static constexpr int orders = 20;
     SeriesPlan plan;
     std::vector<SeriesFactors> factors;
-    std::vector<double> now, rows;
+    std::vector<double> now, rows, states;
     std::mt19937_64 random;
 };
 
@@ -145,8 +159,8 @@ TEST(Series, OrdersAreTheSameInEveryVersion) {
             if (width && code == nullptr) continue;
             std::vector<double> results;
             std::vector<std::vector<double>> orders{{}};  // of the series
-            for (int k = 1; k <= RandomSeries::orders; ++k) {
-                one.extend(code.get(), k);
+            one.begin(code.get());
+            for (int k = 1; k <= RandomSeries::orders;) {
                 const std::vector<double> now(one.now.begin(), one.now.begin() + one.plan.series + one.plan.lanes);
                 results.insert(results.end(), now.begin(), now.end());
                 orders.push_back(now);
@@ -158,7 +172,13 @@ TEST(Series, OrdersAreTheSameInEveryVersion) {
                                orders[static_cast<std::size_t>(k + 1 - j)][one.plan.right[l]];
                     EXPECT_NEAR(now[one.plan.series + l], sum, 1e-14 * (1.0 + std::abs(sum)));
                 }
+                if (k == RandomSeries::orders) break;
+                const int made = one.extend(code.get(), k + 1, 0.0);  // nothing is large: one order
+                ASSERT_EQ(made, ++k);
             }
+            // Many at once, which begin with the states and the sums that were left.
+            results.push_back(one.extend(code.get(), 2, 0.3));
+            results.insert(results.end(), one.states.begin(), one.states.end());
             if (!width) first = results;
             EXPECT_EQ(std::memcmp(results.data(), first.data(), first.size() * sizeof(double)), 0)
                 << (width ? static_cast<int>(*width) : 0) << " wide, " << lanes << " lanes";
@@ -166,20 +186,32 @@ TEST(Series, OrdersAreTheSameInEveryVersion) {
     }
 }
 
-// An output that is an input, and stays what it is while the next order's inputs are written.
+// x'' = x from (1, 1), where the outputs are inputs: they stay what they are while the next order's are written.
 TEST(Series, OutputsAreNeverInputs) {
     Graph graph;
     Scope scope;
-    scope.allowed = {{"x", graph.symbol(0)}};
-    const Expression expression = parse("3*x", scope, graph);
-    const SeriesProgram series(Program(std::span(&expression, 1), Slots{1, 1, 1}), 1);
+    scope.allowed = {{"x", graph.symbol(0)}, {"v", graph.symbol(1)}};
+    const std::vector<Expression> outputs{parse("x", scope, graph), parse("v", scope, graph)};
+    const SeriesProgram series(Program(outputs, Slots{2, 2, 2}), 2);
     SeriesEvaluator terms(series, {});
-    const double x = 1.0;
-    terms.begin(&x);
-    terms.inputs()[0] = 0.5;
-    terms.extend(1);
-    terms.inputs()[0] = 7.0;
-    EXPECT_EQ(terms.output(0), 1.5);
+    std::vector<double> states(3 * 11);
+    states[0] = states[1] = 1.0;
+    terms.begin(states.data());
+    states[3] = 1.0;
+    states[4] = terms.start(0);
+    terms.extend(1, states.data() + 3);
+    SeriesMotion motion;
+    motion.row = states.data() + 3;
+    motion.largest = motion.row;
+    motion.power = 1e9;
+    EXPECT_EQ(terms.extend(motion, 2, 10), 10);
+    double factorial = 1.0;
+    for (std::size_t k = 2; k <= 10; ++k) {
+        factorial *= static_cast<double>(k);
+        EXPECT_NEAR(states[3 * k], 1.0 / factorial, 1e-16) << k;
+        EXPECT_NEAR(states[3 * k + 1], 1.0 / factorial, 1e-16) << k;
+        EXPECT_EQ(states[3 * k + 2], states[3 * k + 1]) << k;
+    }
 }
 
 // A function that is not defined at the start gives no number, at order 0 or at the next.
