@@ -33,13 +33,13 @@ class PaperConditions : public TruncationConditions {
  public:
     PaperConditions(const Model& model, const Run& run);
 
+    bool hopeless(const Collision& collision) override;
     std::optional<Certificate> hold(const Collision& collision) override;
     // The same with tolerances that nothing exceeds.
     std::optional<Certificate> widest(const Collision& collision) override;
 
  private:
     struct Bounds;
-    bool hopeless(const Collision& collision);
     std::optional<Certificate> prove(const Collision& collision, const Truncation& tolerances);
     std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v);
     Certificate certificate_of(const Collision& collision, const Bounds& bounds);

@@ -31,6 +31,7 @@ namespace achilles {
 class SharpConditions : public TruncationConditions {
  public:
     SharpConditions(const Model& model, const Run& run);
+    bool hopeless(const Collision& collision) override;
     std::optional<Certificate> hold(const Collision& collision) override;
     std::optional<Certificate> widest(const Collision& collision) override;
 
@@ -38,7 +39,6 @@ class SharpConditions : public TruncationConditions {
     struct Box;
     struct Time;
     struct Shadow;
-    bool hopeless(const Collision& collision);
     std::optional<Certificate> prove(const Collision& collision);
     std::optional<Time> time_over(const Box& box);
     bool contain_motion(Box& box, const Time& time);

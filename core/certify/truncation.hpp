@@ -21,6 +21,8 @@ struct Collision {
 class TruncationConditions {
  public:
     virtual ~TruncationConditions() = default;
+    // Quick: true where they can be seen not to hold.
+    virtual bool hopeless(const Collision& collision) = 0;
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     virtual std::optional<Certificate> hold(const Collision& collision) = 0;
     // What can be proved here whatever the tolerances, for a collision after which no further flight can be resolved.

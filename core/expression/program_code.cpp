@@ -1,6 +1,10 @@
 #include "expression/program_code.hpp"
 
 #include <cmath>
+#include <map>
+#include <optional>
+
+#include "expression/sine.hpp"
 
 namespace achilles {
 
@@ -14,13 +18,20 @@ using Function = double (*)(double);
 constexpr std::size_t most_instructions = 20000;
 
 double whole_power(double x, int n) { return integer_power(x, n); }
+double sine(double x) { return sine_and_cosine(x).sine; }
+double cosine(double x) { return sine_and_cosine(x).cosine; }
+void both(double x, double* sine, double* cosine) {
+    const SineCosine value = sine_and_cosine(x);
+    *sine = value.sine;
+    *cosine = value.cosine;
+}
 
 Function function_of(Operation operation) {
     switch (operation) {
         case Operation::sin:
-            return std::sin;
+            return sine;
         case Operation::cos:
-            return std::cos;
+            return cosine;
         case Operation::tan:
             return std::tan;
         case Operation::asin:
@@ -101,14 +112,48 @@ bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
     return true;
 }
 
+// The results that are sine and cosine of one operand.
+struct Waves {
+    std::optional<std::uint32_t> sine, cosine;
+    bool written = false;
+};
+
+std::map<std::uint32_t, Waves> waves_of(std::span<const Instruction> instructions, std::uint32_t first) {
+    std::map<std::uint32_t, Waves> waves;
+    for (const Instruction& in : instructions) {
+        if (in.operation == Operation::sin) waves[in.a].sine = first;
+        if (in.operation == Operation::cos) waves[in.a].cosine = first;
+        ++first;
+    }
+    return waves;
+}
+
+// Where the first of the two stands.
+void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
+    if (waves.written) return;
+    waves.written = true;
+    code.get(0, operand);
+    code.address(Assembler::Base::rdi, Assembler::Base::rbx, *waves.sine);
+    code.address(Assembler::Base::rsi, Assembler::Base::rbx, *waves.cosine);
+    code.call(reinterpret_cast<const void*>(&both));
+}
+
 }  // namespace
 
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first) {
     if (!widest_code() || instructions.empty() || instructions.size() > most_instructions) return nullptr;
     Assembler code(Assembler::Base::rbx, 2);
     code.enter();
-    for (const Instruction& in : instructions)
-        if (!write(code, in, first++)) return nullptr;
+    std::map<std::uint32_t, Waves> waves = waves_of(instructions, first);
+    for (const Instruction& in : instructions) {
+        const std::uint32_t result = first++;
+        const bool is_wave = in.operation == Operation::sin || in.operation == Operation::cos;
+        if (is_wave && waves[in.a].sine && waves[in.a].cosine) {
+            call_both(code, in.a, waves[in.a]);
+        } else if (!write(code, in, result)) {
+            return nullptr;
+        }
+    }
     code.leave();
     return MachineCode::of(code.bytes());
 }

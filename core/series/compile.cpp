@@ -1,4 +1,5 @@
 // From a flat program to the recurrences of its series.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -348,7 +349,8 @@ class SeriesCompiler {
             }
             if (weighted) plan.weighted = static_cast<std::uint32_t>(series_.sums_.size());
         }
-        plan.lanes = static_cast<std::uint32_t>((series_.sums_.size() + 3) / 4 * 4);
+        // One vector at least: the rows tell the orders apart.
+        plan.lanes = static_cast<std::uint32_t>(std::max<std::size_t>(1, (series_.sums_.size() + 3) / 4) * 4);
         plan.left.assign(plan.lanes, 0);
         plan.right.assign(plan.lanes, 0);
         for (std::size_t i = 0; i < series_.sums_.size(); ++i) {

@@ -20,7 +20,8 @@ struct SeriesRule {
 };
 using SeriesFactors = std::array<double, 3>;
 
-// What is to be done, the same in every run. There are `lanes` inner sums, a multiple of 4; those of no use sum zeros.
+// What is to be done, the same in every run. There are `lanes` inner sums, a multiple of 4 and not none; those of no
+// use sum zeros.
 struct SeriesPlan {
     std::vector<SeriesRule> rules;
     std::uint32_t series = 0;  // how many there are; inner sums follow

@@ -6,6 +6,8 @@
 #include <limits>
 #include <memory>
 
+#include "expression/sine.hpp"
+
 namespace achilles {
 
 namespace {
@@ -119,8 +121,14 @@ void SeriesEvaluator::begin(const double* inputs) {
                 break;
             case Kind::sin_cos: {
                 double& c = z[seed.partner];
-                if (hidden) r = sign < 0.0 ? std::sin(a) : std::sinh(a);
-                if (seed.partner >= own) c = sign < 0.0 ? std::cos(a) : std::cosh(a);
+                if (sign < 0.0) {
+                    const SineCosine wave = sine_and_cosine(a);
+                    r = wave.sine;
+                    c = wave.cosine;
+                } else {
+                    if (hidden) r = std::sinh(a);
+                    if (seed.partner >= own) c = std::cosh(a);
+                }
                 set(0, by_a * c, 0.0, by_a);
                 set(1, sign * by_a * r, 0.0, sign * by_a);
                 break;

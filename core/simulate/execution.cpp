@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -173,7 +172,8 @@ void Execution::land() {
                         reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
     if (restitution_ == 0.0) {
         capture(collision);
-    } else if (auto certificate = prove(&TruncationConditions::hold, collision)) {
+    } else if (auto certificate =
+                   may_be_cut(collision) ? prove(&TruncationConditions::hold, collision) : std::nullopt) {
         complete(collision, *certificate);
     } else if (too_short_to_resolve(collision, restitution_)) {
         if (auto widest = prove(&TruncationConditions::widest, collision)) {
@@ -188,14 +188,17 @@ void Execution::land() {
     }
 }
 
-// Asks the truncation conditions, which stand ready from the first question on.
+// The truncation conditions stand ready from the first question on. Most impacts need no more than a look, which takes
+// less time than the clock.
+bool Execution::may_be_cut(const Collision& collision) {
+    if (!conditions_) conditions_ = timed([&] { return truncation_conditions(*model_, run_); });
+    return !conditions_->hopeless(collision);
+}
+
+// Asks for a proof, after may_be_cut().
 std::optional<Certificate> Execution::prove(
     std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
-    const auto clock = std::chrono::steady_clock::now();
-    if (!conditions_) conditions_ = truncation_conditions(*model_, run_);
-    auto certificate = ((*conditions_).*question)(collision);
-    proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
-    return certificate;
+    return timed([&] { return ((*conditions_).*question)(collision); });
 }
 
 // Newton's law, and the flight it starts.

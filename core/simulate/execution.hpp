@@ -1,6 +1,7 @@
 // The parts of the completed execution that simulate() calls in turn: flight, impact, completion, contact, release.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -46,6 +47,15 @@ class Execution {
     bool leave_undecided(double theta);
     bool locate_impact(double theta);
     void land();
+    // What some work gives; its time counts as that of proofs.
+    template <class Work>
+    auto timed(const Work& work) {
+        const auto clock = std::chrono::steady_clock::now();
+        auto result = work();
+        proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+        return result;
+    }
+    bool may_be_cut(const Collision& collision);
     std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
                                      const Collision& collision);
     void bounce(const Contact& contact, double e);

@@ -66,16 +66,35 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
     }
 }
 
+struct ValueAndSlope {
+    double value, slope;
+};
+
+// The even and the odd powers by themselves: p = a(s) + x b(s), p' = b + 2 x (a' + x b') at s = x^2. Half as many sums
+// wait for one another.
+ValueAndSlope value_and_slope(const Polynomial& p, double x) {
+    const double s = x * x;
+    double a = 0.0, a_slope = 0.0, b = 0.0, b_slope = 0.0;
+    int i = p.degree;
+    if (i % 2 == 0) {
+        a = p.c[static_cast<std::size_t>(i)];
+        --i;
+    }
+    for (; i > 0; i -= 2) {
+        a_slope = a_slope * s + a;
+        b_slope = b_slope * s + b;
+        b = b * s + p.c[static_cast<std::size_t>(i)];
+        a = a * s + p.c[static_cast<std::size_t>(i) - 1];
+    }
+    return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
+}
+
 // The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
 // After so many rounds a small step is taken to be near the root.
 double newton(const Polynomial& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
-        double value = 0.0, slope = 0.0;
-        for (int i = p.degree; i >= 0; --i) {
-            slope = slope * x + value;
-            value = value * x + p.c[static_cast<std::size_t>(i)];
-        }
+        const auto [value, slope] = value_and_slope(p, x);
         if (value == 0.0) return x;
         (value > 0.0 ? low : high) = x;
         const double newtons = x - value / slope;

@@ -1,0 +1,13 @@
+// Sine and cosine, which mechanical systems ask for more than for anything else.
+#pragma once
+
+namespace achilles {
+
+// Both at once; and those of an angle asked for a moment ago are at hand: the programs of one model look at the same
+// state one after the other. The values are those of std::sin and std::cos.
+struct SineCosine {
+    double sine = 0.0, cosine = 1.0;
+};
+SineCosine sine_and_cosine(double angle);
+
+}  // namespace achilles
