@@ -28,8 +28,10 @@ State Sampler::state(const Piece& piece, double t) const {
             state.v[i] = state.v[i] * theta + block[n + i];
         }
     }
-    if (piece.contact)
-        if (const auto projected = projection_->surface.project(state, false)) return projected->state;
+    if (piece.contact) {
+        State projected = state;
+        if (projection_->surface.project(projected, false)) return projected;
+    }
     return state;
 }
 

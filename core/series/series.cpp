@@ -13,6 +13,9 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t in_cache_line = 8;  // doubles
+std::size_t room_for_rows(const SeriesPlan& plan) {
+    return plan.row() * (SeriesEvaluator::highest_order + 1) + in_cache_line;
+}
 
 double function_value(Operation function, double a) {
     switch (function) {
@@ -52,7 +55,7 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
       zero_(program.program_),
       factors_(program.plan_.rules.size()),
       now_(program.plan_.numbers(), 0.0),
-      rows_(program.plan_.row() * (highest_order + 1) + in_cache_line, 0.0) {
+      rows_(std::make_unique_for_overwrite<double[]>(room_for_rows(program.plan_))) {
     for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
     zero_.fix();
     zero_.registers_.resize(program.registers_, 0.0);
@@ -74,8 +77,8 @@ void SeriesEvaluator::begin(const double* inputs) {
     using Kind = SeriesProgram::Kind;
     std::copy_n(inputs, inputs_, zero_.registers_.data());
     zero_.run();
-    void* rows = rows_.data();
-    std::size_t room = rows_.size() * sizeof(double);
+    void* rows = rows_.get();
+    std::size_t room = room_for_rows(program_->plan_) * sizeof(double);
     std::align(in_cache_line * sizeof(double), sizeof(double), rows, room);
     tables_ = {factors_.data(), now_.data(), static_cast<double*>(rows)};
     const SeriesPlan& plan = program_->plan_;

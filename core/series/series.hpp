@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -115,7 +116,7 @@ class SeriesEvaluator {
     std::vector<double> coefficients_;    // of the program, by number
     std::vector<SeriesFactors> factors_;  // of the rules
     std::vector<double> now_;             // order k: series, inner sums
-    std::vector<double> rows_;            // with some room, to begin where a vector does
+    std::unique_ptr<double[]> rows_;      // with some room, to begin where a vector does
     SeriesTables tables_;
 };
 

@@ -45,15 +45,14 @@ void Execution::stay_until_release() {
 bool Execution::stay(double until) {
     while (!outcome_ && until - t_ > 1e-15 * std::abs(t_)) {
         if (!advance(until - t_)) return false;
-        const auto projected = surface_.project(flow_.end(), false);
+        const auto projected = surface_.project(flow_.moved_end(), false);
         if (!projected) {
             leave_contact(flow_.end_time(), flow_.end());
             return false;
         }
-        flow_.move_end(projected->state);
         Polynomial force = flow_.watched();
         for (double& c : force.c) c = -c;  // -hddot = W lambda
-        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(projected->state) - force(1.0);
+        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(flow_.end()) - force(1.0);
         if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
         const Descent descent = first_descent(force, 0, flow_.remainder(force));
         if (descent.kind == Descent::Kind::undecided) {
@@ -66,7 +65,7 @@ bool Execution::stay(double until) {
             if (locate_release(descent.theta)) return !outcome_;
             take(surface_.at(flow_.end()));  // the step became shorter
         } else {
-            take(projected->contact);
+            take(*projected);
         }
     }
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
@@ -81,18 +80,14 @@ bool Execution::locate_release(double theta) {
             leave(obstacle);
             return true;
         }
-        const auto projected = surface_.project(flow_.end(), false);
-        if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) {
-            if (projected) flow_.move_end(projected->state);
-            return false;
-        }
-        const State& end = projected->state;
-        flow_.move_end(end);
+        const auto projected = surface_.project(flow_.moved_end(), false);
+        if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) return false;
+        const State& end = flow_.end();
         const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             flow_.shift_end(correction);
-            if (const auto again = surface_.project(flow_.end(), false)) flow_.move_end(again->state);
+            surface_.project(flow_.moved_end(), false);
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides

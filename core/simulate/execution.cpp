@@ -150,13 +150,12 @@ bool Execution::locate_impact(double theta) {
         }
         duration = std::max(duration + correction, 0.5 * duration);
     }
-    const auto landed = surface_.project(flow_.end(), true);
+    const auto landed = surface_.project(flow_.moved_end(), true);
     if (!landed) {
         leave_contact(flow_.end_time(), flow_.end());
         return true;
     }
-    flow_.move_end(landed->state);
-    take(landed->contact);
+    take(*landed);
     return true;
 }
 

@@ -53,10 +53,10 @@ Obstacle Flow::retake(double duration) {
     return obstacle;
 }
 
-void Flow::move_end(const State& state) {
-    to_ = state;
-    fetched_ = true;
+State& Flow::moved_end() {
+    end();
     moved_ = true;
+    return to_;
 }
 
 void Flow::move_gap(const Gap& gap) {

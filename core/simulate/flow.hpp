@@ -23,8 +23,8 @@ class Flow {
     Obstacle step(double longest);
     // Makes the last step again with this shorter duration, so that its end is as good as that of a step.
     Obstacle retake(double duration);
-    // Moves the end of the last step (onto the surface, say); the next step starts from there.
-    void move_end(const State& state);
+    // The end of the last step, to be moved (onto the surface, say); the next step starts from there.
+    State& moved_end();
     // In flight: the gap at the end of the last step, where the next one starts.
     void move_gap(const Gap& gap);
     // Moves the end of the last step along the motion by a time so short that a second-order Taylor step is exact.

@@ -34,14 +34,24 @@ Surface::Surface(const Model& model, const Run& run)
       release_enclosure_(model.evaluator<Interval>(model.release(), run.parameters)) {}
 
 Contact Surface::at(const State& state) {
+    Contact contact;
+    look(state, contact);
+    return contact;
+}
+
+void Surface::look(const State& state, Contact& contact) {
     put(surface_, state);
     surface_.run();
-    Contact contact{surface_.output(0), surface_.output(1), surface_.output(2 + 2 * n_), state.q, state.q};
+    contact.h = surface_.output(0);
+    contact.hdot = surface_.output(1);
+    contact.W = surface_.output(2 + 2 * n_);
+    const auto n = static_cast<Eigen::Index>(n_);
+    contact.n.resize(n);
+    contact.g.resize(n);
     for (std::size_t i = 0; i < n_; ++i) {
         contact.n[static_cast<Eigen::Index>(i)] = surface_.output(2 + i);
         contact.g[static_cast<Eigen::Index>(i)] = surface_.output(2 + n_ + i);
     }
-    return contact;
 }
 
 double Surface::gap_error(const State& state) {
@@ -62,23 +72,29 @@ double Surface::hdot_error(const State& state) {
     return rad(surface_enclosure_.output(1));
 }
 
-std::optional<Surface::Placed> Surface::project(State state, bool keep_velocity) {
+std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
-    for (int round = 0; round <= rounds; ++round) {
-        Contact contact = at(state);
-        if (!(contact.W > 0.0) || !std::isfinite(contact.h)) return std::nullopt;
-        // What is far off at first need not be compared with the bound, which costs more than a second look.
-        const bool far = round == 0 && std::abs(contact.h) > 64.0 * rounding_of_q(contact, state);
-        if (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state)) {
+    std::optional<Contact> result(std::in_place);
+    Contact& contact = *result;
+    for (int round = 0;; ++round) {
+        look(state, contact);
+        if (!(contact.W > 0.0) || !std::isfinite(contact.h)) break;
+        // The bound costs more than a second look, which takes what was not at rounding level at first to a few
+        // roundings of q: closer it will not come.
+        const double roundings = std::abs(contact.h) / rounding_of_q(contact, state);
+        const bool far = round == 0 && roundings > 0.5, near = round > 0 && roundings <= 4.0;
+        if (near || (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state))) {
             if (!keep_velocity) {
                 state.v -= contact.hdot * contact.n;
                 contact.hdot = 0.0;
             }
-            return Placed{state, contact};
+            return result;
         }
+        if (round == rounds) break;
         state.q -= contact.h * contact.n;
     }
-    return std::nullopt;
+    result.reset();
+    return result;
 }
 
 Surface::Normal Surface::normal(const State& state) {

@@ -35,13 +35,9 @@ class Surface {
     bool within_gap_error(double value, double times, const Contact& contact, const State& state);
     // The bound for hdot.
     double hdot_error(const State& state);
-    // Moves q along n until |h| is at rounding level, then v to s (kept = false) or not at all (kept = true).
-    // Returns nothing where that fails: dh = 0, or h cannot be brought to zero.
-    struct Placed {
-        State state;
-        Contact contact;  // there
-    };
-    std::optional<Placed> project(State state, bool keep_velocity);
+    // Moves q along n until |h| is at rounding level, then v to s (keep_velocity = false) or not at all. The contact
+    // there; nothing where that fails: dh = 0, or h cannot be brought to zero.
+    std::optional<Contact> project(State& state, bool keep_velocity);
     // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
     struct Normal {
         Interval hddot, jerk;
@@ -51,6 +47,7 @@ class Surface {
     double jerk(const State& state);
 
  private:
+    void look(const State& state, Contact& contact);
     std::size_t n_;
     Evaluator<double> surface_, normal_, release_;
     Evaluator<Interval> gap_, surface_enclosure_, release_enclosure_;

@@ -1,6 +1,7 @@
 #include "simulate/taylor.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,9 @@ constexpr auto reciprocals = [] {
     for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k);
     return table;
 }();
+
+// Within 0.09: exponent and mantissa as they stand in a positive double. A step made of it is known within 0.09/k.
+double rough_log2(double x) { return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - 1023.0; }
 
 // The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
 // radius of convergence. The weights are processor cycles, measured: a step on its own, a rule, a lane of inner sums.
@@ -62,16 +66,23 @@ double Taylor::parabola_root(double longest) const {
 }
 
 // m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
-double Taylor::magnitude(const double* c) {
+double Taylor::magnitude(const double* c) const {
     const double* const units = units_.data();
     double largest = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < width_; ++i) {
         const double size = std::abs(c[i]) * units[i];
-        if (size > largest) largest_ = i;
         largest = size > largest ? size : largest;
         sum += size;
     }
     return sum < std::numeric_limits<double>::infinity() ? largest : sum;
+}
+
+// The component that it is of.
+std::size_t Taylor::largest(const double* c) const {
+    std::size_t index = 0;
+    for (std::size_t i = 1; i < width_; ++i)
+        if (std::abs(c[i]) * units_[i] > std::abs(c[index]) * units_[index]) index = i;
+    return index;
 }
 
 // Where order_ is not finite: back to the last order before the first that is not.
@@ -118,7 +129,7 @@ Obstacle Taylor::expand(double longest) {
     const int most = flying ? flight_order_ : contact_order_;
     SeriesMotion motion;
     motion.row = first;
-    motion.largest = first + largest_;
+    motion.largest = first;
     order_ = series.extend(motion, 2, 2);
     target_ = longest;
     if (flying) {
@@ -136,13 +147,14 @@ Obstacle Taylor::expand(double longest) {
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
         if (order_ >= most || (order_ >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
         small = now;
-        // One large component is enough to go on, if it is not the end; which one, the last look told.
+        // One large component is enough to go on, if it is not the end.
         const int before = order_;
-        motion.largest = row(order_) + largest_;
-        motion.power = units_[largest_] * power;
+        const std::size_t one = largest(row(order_));
+        motion.largest = row(order_) + one;
+        motion.power = units_[one] * power;
         motion.target = target_;
         order_ = series.extend(motion, before + 1, most);
-        power = motion.power / units_[largest_];
+        power = motion.power / units_[one];
         if (order_ > before + 1) {
             small = false;
             zeros = 0;
@@ -167,7 +179,9 @@ double Taylor::natural_step() {
     double exponent = std::numeric_limits<double>::infinity();  // of 2
     for (int i = 0; i < counted; ++i) {
         const double m = terms[static_cast<std::size_t>(i)];
-        if (m > 0.0) exponent = std::min(exponent, (i < 2 ? 0.0 : 1.0) - std::log2(m) / (order_ - i));
+        if (m > 0.0)
+            exponent = std::min(
+                exponent, (i < 2 ? 0.0 : 1.0) - rough_log2(m) * reciprocals[static_cast<std::size_t>(order_ - i)]);
     }
     return std::exp2(exponent);
 }

@@ -33,7 +33,8 @@ class Taylor : public Stepper {
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     Obstacle expand(double longest);
     double parabola_root(double longest) const;
-    double magnitude(const double* c);
+    double magnitude(const double* c) const;
+    std::size_t largest(const double* c) const;
     Obstacle leave_out_infinite();
     double natural_step();
     void stay_in_domain(double step);
@@ -52,7 +53,6 @@ class Taylor : public Stepper {
     std::vector<double> rows_;   // coefficients, order by order: q, v, watched
     std::vector<double> units_;  // 1/(tolerance of each component)
     std::vector<double> end_;    // of the step, as the series take it
-    std::size_t largest_ = 0;    // the component of which a coefficient was largest last
     int order_ = 0;              // of the last expansion
     double target_ = 0.0;        // the longest step that it is needed for, as far as is known
     double power_ = 0.0;         // target^order

@@ -70,9 +70,8 @@ std::optional<State> Trials::zeno_equilibrium(const Run& run) {
         state.q[k] = uniform(coordinates[i].range[0], coordinates[i].range[1]);
         state.v[k] = uniform(coordinates[i].rate_range[0], coordinates[i].rate_range[1]);
     }
-    const auto projected = surface.project(state, false);
-    if (!projected || !(surface.normal_acceleration(projected->state) < 0.0)) return std::nullopt;
-    return projected->state;
+    if (!surface.project(state, false) || !(surface.normal_acceleration(state) < 0.0)) return std::nullopt;
+    return state;
 }
 
 void Trials::certify(Trial& trial, const State& before) {
