@@ -5,7 +5,7 @@
 namespace achilles {
 
 Range::Range(Evaluator<Interval> value, Evaluator<Interval> gradient, std::vector<std::uint32_t> slots)
-    : value_(std::move(value)), gradient_(std::move(gradient)), slots_(std::move(slots)) {}
+    : value_(std::move(value)), gradient_(std::move(gradient)), slots_(std::move(slots)), slopes_(slots_.size()) {}
 
 Interval Range::evaluate(const std::vector<Interval>& box) {
     for (std::size_t i = 0; i < slots_.size(); ++i) value_.input(slots_[i]) = box[i];
@@ -15,23 +15,23 @@ Interval Range::evaluate(const std::vector<Interval>& box) {
 
 // Encloses the least value (or the greatest). The slopes hold over the whole box, so a variable in which the expression
 // is monotone may be put at its end; what is left is a box with fewer variables.
-Interval Range::bound(const std::vector<Interval>& box, const std::vector<Interval>& slopes, bool upper) {
-    std::vector<Interval> rest = box, middle = box;
+Interval Range::bound(const std::vector<Interval>& box, bool upper) {
+    rest_ = middle_ = box;
     Interval spread(0.0);
     bool point = true;
     for (std::size_t i = 0; i < box.size(); ++i) {
-        const bool rises = slopes[i].lo() >= 0.0, falls = slopes[i].hi() <= 0.0;
+        const bool rises = slopes_[i].lo() >= 0.0, falls = slopes_[i].hi() <= 0.0;
         if (rises || falls) {
-            rest[i] = middle[i] = Interval(rises == upper ? box[i].hi() : box[i].lo());
+            rest_[i] = middle_[i] = Interval(rises == upper ? box[i].hi() : box[i].lo());
         } else {
             point = false;
-            middle[i] = Interval(mid(box[i]));
-            spread = spread + slopes[i] * (box[i] - middle[i]);
+            middle_[i] = Interval(mid(box[i]));
+            spread = spread + slopes_[i] * (box[i] - middle_[i]);
         }
     }
-    const Interval plain = evaluate(rest);
+    const Interval plain = evaluate(rest_);
     if (point || !plain.is_defined()) return plain;
-    const Interval mean_value = evaluate(middle) + spread;
+    const Interval mean_value = evaluate(middle_) + spread;
     if (!mean_value.is_defined()) return plain;
     return {std::max(plain.lo(), mean_value.lo()), std::min(plain.hi(), mean_value.hi())};
 }
@@ -41,12 +41,11 @@ Interval Range::over(const std::vector<Interval>& box) {
     if (!plain.is_defined()) return plain;
     for (std::size_t i = 0; i < slots_.size(); ++i) gradient_.input(slots_[i]) = box[i];
     gradient_.run();
-    std::vector<Interval> slopes(slots_.size());
     for (std::size_t i = 0; i < slots_.size(); ++i) {
-        slopes[i] = gradient_.output(i);
-        if (!slopes[i].is_defined()) return plain;
+        slopes_[i] = gradient_.output(i);
+        if (!slopes_[i].is_defined()) return plain;
     }
-    const Interval least = bound(box, slopes, false), greatest = bound(box, slopes, true);
+    const Interval least = bound(box, false), greatest = bound(box, true);
     return {std::max(plain.lo(), least.lo()), std::min(plain.hi(), greatest.hi())};
 }
 

@@ -22,10 +22,11 @@ class Range {
 
  private:
     Interval evaluate(const std::vector<Interval>& box);
-    Interval bound(const std::vector<Interval>& box, const std::vector<Interval>& slopes, bool upper);
+    Interval bound(const std::vector<Interval>& box, bool upper);
 
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
+    std::vector<Interval> slopes_, rest_, middle_;  // over the box that is looked at
 };
 
 // The inputs that the programs of model/bouncing.hpp vary with: q, s, sigma.

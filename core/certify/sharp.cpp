@@ -62,6 +62,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run)
       point_(model.evaluator(model.bouncing().hddot, run.parameters)),
       point_gradient_(model.evaluator(model.bouncing().gradient, run.parameters)),
       point_motion_(model.evaluator(model.bouncing().motion, run.parameters)),
+      variables_(2 * n_ + 1),
       need_q_(n_),
       need_s_(n_) {}
 
@@ -74,9 +75,15 @@ void SharpConditions::set(Evaluator<Interval>& program, const Box& box) const {
     program.run();
 }
 
-// A guess in double of what a proof would find, to first order: how far -hddot varies over the least X there can be.
-// Where even that is too much, trying is put off to the next impact. It never replaces a proof.
+// A guess of what a proof would find, in double. Where even that is too much, trying is put off to the next impact. It
+// never replaces a proof. The bounds fall with the cube of w at most, so what the last proof found tells; else, to
+// first order, how far -hddot varies over the least X there can be.
 bool SharpConditions::hopeless(const Collision& collision) {
+    constexpr double doubt = 1.5;                        // what the guess may be wrong by
+    if (collision.speed > last_speed_) too_wide_ = 0.0;  // another bouncing
+    last_speed_ = collision.speed;
+    const double slower = collision.speed / wide_speed_;
+    if (slower < 1.0 && too_wide_ * slower * slower * slower > doubt) return true;
     const State state{collision.before.q, collision.tangential};
     for (Evaluator<double>* program : {&point_, &point_gradient_, &point_motion_}) {
         put(*program, state);
@@ -92,17 +99,17 @@ bool SharpConditions::hopeless(const Collision& collision) {
     const double low = a - variation, high = a + variation, r = high / low;
     if (!(low > 0.0) || !(e * e * r < 1.0)) return true;
     const double half_width = e * (1.0 + e) * w * (1.0 / (low * (1.0 - e * e * r)) - 1.0 / (high * (1.0 - e * e / r)));
-    constexpr double doubt = 1.5;  // what the guess may be wrong by
     return half_width > doubt * truncation_.eps_t;
 }
 
 // The attained bound of section 4, if X allows it.
 std::optional<SharpConditions::Time> SharpConditions::time_over(const Box& box) {
-    std::vector<Interval> variables;
-    for (std::size_t i = 0; i < n_; ++i) variables.push_back(widened(box.q0[i], box.q_radius[i]));
-    for (std::size_t i = 0; i < n_; ++i) variables.push_back(widened(box.s0[i], box.s_radius[i]));
-    variables.push_back(box.sigma);
-    const Interval a = -hddot_.over(variables);
+    for (std::size_t i = 0; i < n_; ++i) {
+        variables_[i] = widened(box.q0[i], box.q_radius[i]);
+        variables_[n_ + i] = widened(box.s0[i], box.s_radius[i]);
+    }
+    variables_[2 * n_] = box.sigma;
+    const Interval a = -hddot_.over(variables_);
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
     if (!certainly_less(square(e_) * r, one)) return std::nullopt;
@@ -243,9 +250,13 @@ std::optional<Certificate> SharpConditions::hold(const Collision& collision) {
     if (hopeless(collision)) return std::nullopt;
     auto certificate = prove(collision);
     if (!certificate) return std::nullopt;
+    double widest = 0.0;  // against its tolerance
     for (std::size_t i = 0; i < 3; ++i)
-        if (!(certificate->inequalities[i].left <= certificate->inequalities[i].right)) return std::nullopt;
-    return certificate;
+        widest = std::max(widest, certificate->inequalities[i].left / certificate->inequalities[i].right);
+    if (widest <= 1.0) return certificate;
+    wide_speed_ = collision.speed;
+    too_wide_ = widest;
+    return std::nullopt;
 }
 
 std::optional<Certificate> SharpConditions::widest(const Collision& collision) {

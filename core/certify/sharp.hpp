@@ -55,6 +55,10 @@ class SharpConditions : public TruncationConditions {
     Range hddot_;
     Evaluator<Interval> motion_, shadow_, surface_;
     Evaluator<double> point_, point_gradient_, point_motion_;
+    // The last proof that was too wide: at this impact speed, by this factor.
+    double wide_speed_ = 0.0, too_wide_ = 0.0;
+    double last_speed_ = 0.0;              // of the last collision that was looked at
+    std::vector<Interval> variables_;      // q, s, sigma over the box that is looked at
     std::vector<double> need_q_, need_s_;  // radii that the last test of a box asked for
 };
 

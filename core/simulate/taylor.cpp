@@ -25,8 +25,8 @@ double rough_log2(double x) { return static_cast<double>(std::bit_cast<std::int6
 // The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
 // radius of convergence. The weights are processor cycles, measured: a step on its own, a rule, a lane of inner sums.
 int best_order(const SeriesProgram& program, double tolerance) {
-    const double step = 3000.0, order = 40.0 + 5.0 * static_cast<double>(program.rules()),
-                 square = 0.25 * static_cast<double>(program.inner_sums());
+    const double step = 1000.0, order = 40.0 + 2.0 * static_cast<double>(program.rules()),
+                 square = 0.125 * static_cast<double>(program.inner_sums());
     // The logarithm of cost(p)/length(p) falls as long as its derivative, times p^2 cost(p), is below zero.
     const double digits = -std::log(tolerance);
     int p = lowest;
