@@ -50,7 +50,8 @@ Coefficients to_bernstein(const Polynomial& p) {
     const auto d = static_cast<std::size_t>(p.degree);
     for (std::size_t j = 0; j <= d; ++j) {
         const double scaled = p.c[j] / binomials[j][d];
-        for (std::size_t i = j; i <= d; ++i) b[i] += binomials[j][i] * scaled;
+        for (std::size_t i = j / 4 * 4; i <= d; i += 4)  // C(i, j) = 0 for i < j
+            for (std::size_t k = 0; k < 4; ++k) b[i + k] += binomials[j][i + k] * scaled;
     }
     return b;
 }

@@ -129,21 +129,22 @@ Obstacle Taylor::expand(double longest) {
     const int most = flying ? flight_order_ : contact_order_;
     SeriesMotion motion;
     motion.row = first;
-    motion.largest = first;
-    order_ = series.extend(motion, 2, 2);
-    target_ = longest;
+    order_ = 1;
+    power_ = target_ = longest;
     if (flying) {
         // A flight is short where its parabola is; what is watched must be known well against its height.
+        motion.largest = first;
+        order_ = series.extend(motion, 2, 2);
         target_ = std::min(longest, 1.05 * parabola_root(longest));
+        power_ = target_ * target_;
         const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target_;
         if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
     }
-    double& power = power_ = target_ * target_;
     bool small = false;  // the last term was
     for (int zeros = 0;;) {
         const double m = magnitude(row(order_));
         if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
-        const bool now = m * power <= 1.0;
+        const bool now = m * power_ <= 1.0;
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
         if (order_ >= most || (order_ >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
         small = now;
@@ -151,10 +152,10 @@ Obstacle Taylor::expand(double longest) {
         const int before = order_;
         const std::size_t one = largest(row(order_));
         motion.largest = row(order_) + one;
-        motion.power = units_[one] * power;
+        motion.power = units_[one] * power_;
         motion.target = target_;
         order_ = series.extend(motion, before + 1, most);
-        power = motion.power / units_[one];
+        power_ = motion.power / units_[one];
         if (order_ > before + 1) {
             small = false;
             zeros = 0;
@@ -191,16 +192,22 @@ void Taylor::evaluate(double duration) {
     span_ = duration;
     evaluated_ = true;
     const double square = duration * duration;
-    const int even = order_ & ~1, odd = (order_ - 1) | 1;
     for (std::size_t i = 0; i < n_; ++i) {
-        double* const ends[2] = {&to_.q[static_cast<Eigen::Index>(i)], &to_.v[static_cast<Eigen::Index>(i)]};
-        double a[2] = {0.0, 0.0}, b[2] = {0.0, 0.0};
-        const double* const c = rows_.data() + i;
-        for (int k = even; k >= 0; k -= 2)
-            for (std::size_t j = 0; j < 2; ++j) a[j] = a[j] * square + c[static_cast<std::size_t>(k) * width_ + j * n_];
-        for (int k = odd; k >= 1; k -= 2)
-            for (std::size_t j = 0; j < 2; ++j) b[j] = b[j] * square + c[static_cast<std::size_t>(k) * width_ + j * n_];
-        for (std::size_t j = 0; j < 2; ++j) *ends[j] = a[j] + duration * b[j];
+        double even_q = 0.0, even_v = 0.0, odd_q = 0.0, odd_v = 0.0;
+        const double* c = row(order_) + i;
+        if (order_ % 2 == 0) {
+            even_q = c[0];
+            even_v = c[n_];
+            c -= width_;
+        }
+        for (; c > row(0); c -= 2 * width_) {
+            odd_q = odd_q * square + c[0];
+            odd_v = odd_v * square + c[n_];
+            even_q = even_q * square + *(c - width_);
+            even_v = even_v * square + *(c - width_ + n_);
+        }
+        to_.q[static_cast<Eigen::Index>(i)] = even_q + duration * odd_q;
+        to_.v[static_cast<Eigen::Index>(i)] = even_v + duration * odd_v;
     }
 }
 
@@ -259,10 +266,13 @@ Obstacle Taylor::redo_step(double duration, double least) {
 Polynomial Taylor::watched() const {
     Polynomial p;
     p.degree = order_;
-    const double* c = row(0) + 2 * n_;
-    double power = 1.0;
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); ++k, c += width_, power *= span_)
-        p.c[k] = *c * power;
+    const std::size_t w = 2 * n_;
+    double even = 1.0, odd = span_;
+    const double square = span_ * span_;
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); k += 2, even *= square, odd *= square) {
+        p.c[k] = row(static_cast<int>(k))[w] * even;
+        if (k < static_cast<std::size_t>(order_)) p.c[k + 1] = row(static_cast<int>(k) + 1)[w] * odd;
+    }
     return p;
 }
 
@@ -284,8 +294,10 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 // than the last two together. The steps before have made errors of the size of the tolerance as well, which is in units
 // of the flight's height: a dip within that can be neither claimed nor denied.
 double Taylor::remainder(const Polynomial& p) const {
-    double size = 0.0;
-    for (int k = 0; k <= p.degree; ++k) size += std::abs(p.c[static_cast<std::size_t>(k)]);
+    double sizes[4] = {};  // beyond the degree there are zeros
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(p.degree); k += 4)
+        for (std::size_t i = 0; i < 4; ++i) sizes[i] += std::abs(p.c[k + i]);
+    const double size = (sizes[0] + sizes[1]) + (sizes[2] + sizes[3]);
     const auto last = static_cast<std::size_t>(p.degree);
     const double terms = std::abs(p.c[last]) + std::abs(p.c[last - 1]);
     constexpr double earlier_steps = 4.0;
