@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 #include <tuple>
-#include <utility>
 
 #include "series/series.hpp"
 
@@ -123,18 +122,18 @@ class SeriesCompiler {
         return c.operation == Operation::negate && c.a == one ? -1 : 0;
     }
 
-    // The series of a form, as rules of up to three terms each. The latest series comes last: it is known last.
-    std::uint32_t written_out(Form form) {
-        std::sort(form.begin(), form.end(), [](const Term& a, const Term& b) { return a.series < b.series; });
-        constexpr Term none{0, one};
-        Term sum = form.size() % 2 == 1 ? form[0] : none;
-        for (std::size_t i = form.size() % 2; i < form.size(); i += 2) {
+    // The series of a form, as rules of up to three terms each.
+    std::uint32_t written_out(const Form& form) {
+        std::uint32_t series = form[0].series, scale = form[0].coefficient;
+        for (std::size_t i = 1; i < form.size(); i += 2) {
+            const bool third = i + 1 < form.size();
             const std::uint32_t result = next_series_++;
-            const Term &x = form[i + 1], &y = form[i];
-            combine(result, {x.series, y.series, sum.series}, {x.coefficient, y.coefficient, sum.coefficient});
-            sum = {result, one};
+            combine(result, {series, form[i].series, third ? form[i + 1].series : 0},
+                    {scale, form[i].coefficient, third ? form[i + 1].coefficient : one});
+            series = result;
+            scale = one;
         }
-        return sum.series;
+        return series;
     }
 
     // A register as a factor. A form of several terms is written out once.
@@ -166,9 +165,8 @@ class SeriesCompiler {
 
     // Adds the recurrence of a function and returns its result as a factor. The same function of the same operands is
     // made once: sine and cosine of one angle, chains of powers.
-    Operand make(Seed seed, Operand a, Operand b, std::uint32_t value,
+    Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
                  std::optional<std::uint32_t> partner_value = {}) {
-        if (seed.kind == Kind::multiply && a.series > b.series) std::swap(a, b);  // the later one is known last
         const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
         if (const auto found = made_.find(key); found != made_.end()) return found->second;
         seed.a = a.value;
