@@ -13,6 +13,12 @@
 
 namespace achilles {
 
+Command::Command(const Command& other) = default;
+Command::Command(Command&& other) noexcept = default;
+Command& Command::operator=(const Command& other) = default;
+Command& Command::operator=(Command&& other) noexcept = default;
+Command::~Command() = default;
+
 namespace {
 
 Command read_eps(const Line& line) {

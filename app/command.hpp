@@ -229,7 +229,7 @@ struct Replay {
 
 }  // namespace command
 
-using Command =
+using AnyCommand =
     std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
                  command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select,
                  command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
@@ -238,6 +238,16 @@ using Command =
                  command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset,
                  command::Done, command::UseMethod, command::MaxImpacts, command::Export, command::Copy, command::Range,
                  command::Say, command::Wait, command::Replay>;
+// A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
+// that holds one.
+struct Command : AnyCommand {
+    using AnyCommand::AnyCommand;
+    Command(const Command& other);
+    Command(Command&& other) noexcept;
+    Command& operator=(const Command& other);
+    Command& operator=(Command&& other) noexcept;
+    ~Command();
+};
 
 // One line, without its end; numbers in the shortest form that reads back the same.
 std::string to_text(const Command& command);

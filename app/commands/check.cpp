@@ -15,14 +15,14 @@ namespace achilles {
 
 namespace {
 
-struct Arguments {
+struct CheckArguments {
     std::string system;
     bool latex = false;
     std::vector<std::string> settings;
     OptionOverrides overrides;
 };
 
-int check(const Arguments& arguments) {
+int check(const CheckArguments& arguments) {
     SystemDescription description = open_system(find_system(arguments.system), arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
     const Model model(std::move(description));
@@ -44,7 +44,7 @@ int check(const Arguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& program, int& status) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<CheckArguments>();
     CLI::App* command =
         program.add_subcommand("check", "Validates a system; its equations of motion and Zeno condition");
     command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")

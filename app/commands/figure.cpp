@@ -17,7 +17,7 @@ namespace achilles {
 
 namespace {
 
-struct Arguments {
+struct FigureArguments {
     std::string system, out, format;
     std::vector<std::string> views, settings, steps;
     std::string journal;
@@ -27,7 +27,7 @@ struct Arguments {
 };
 
 // By --format, else by the ending of --out.
-bool wants_svg(const Arguments& arguments) {
+bool wants_svg(const FigureArguments& arguments) {
     if (!arguments.format.empty()) return arguments.format == "svg";
     const std::string ending = std::filesystem::path(arguments.out).extension().string();
     if (ending == ".svg" || ending == ".SVG") return true;
@@ -37,7 +37,8 @@ bool wants_svg(const Arguments& arguments) {
 }
 
 // Puts a figure of a finished run where it belongs.
-int put(const Arguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg, Studio& studio) {
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg,
+        Studio& studio) {
     PictureSize size = arguments.size;
     size.scale *= publication_scale;
     studio.put(arguments.out, "", {{arguments.system, &trajectory}},
@@ -49,7 +50,7 @@ int put(const Arguments& arguments, const Trajectory& trajectory, const Figure& 
 }
 
 // The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
-int draw_session(const Arguments& arguments, bool as_svg, Studio& studio) {
+int draw_session(const FigureArguments& arguments, bool as_svg, Studio& studio) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
@@ -71,7 +72,7 @@ int draw_session(const Arguments& arguments, bool as_svg, Studio& studio) {
     return put(arguments, session.trajectory(), figure_of(session, style), as_svg, studio);
 }
 
-int draw(const Arguments& arguments, Studio& studio) {
+int draw(const FigureArguments& arguments, Studio& studio) {
     const bool as_svg = wants_svg(arguments);
     if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, studio);
     const auto model = std::make_shared<const Model>(
@@ -95,7 +96,7 @@ void take_columns(const std::string& text, int& columns) {
 }  // namespace
 
 void add_figure(CLI::App& program, int& status, Studio& studio) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<FigureArguments>();
     CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG or SVG");
     add_system_argument(*command, arguments->system);
     command->add_option("--out", arguments->out, "the picture; - is standard output")

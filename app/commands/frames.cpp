@@ -20,7 +20,7 @@ namespace achilles {
 
 namespace {
 
-struct Arguments {
+struct FramesArguments {
     std::string system, out;
     std::vector<std::string> views, settings;
     OptionOverrides overrides;
@@ -71,7 +71,7 @@ class Painter {
 };
 
 // A folder that ffmpeg, a shell and a person can read.
-void tell(const Arguments& arguments, std::size_t count, std::size_t kept) {
+void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept) {
     const std::filesystem::path folder = std::filesystem::absolute(arguments.out);
     const StillSize& size = arguments.size;
     fmt::print("{} frames of {}x{} in {}{}\n", count, size.width, size.height, folder.string(),
@@ -84,7 +84,7 @@ void tell(const Arguments& arguments, std::size_t count, std::size_t kept) {
 }
 
 // Draws what is not there yet. Returns the exit status.
-int draw_into(const FrameFolder& folder, const Arguments& arguments, const Clock& clock, Animation& animation,
+int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const Clock& clock, Animation& animation,
               const std::function<Notes(const std::string&)>& notes_of) {
     const std::size_t count = clock.count();
     const std::vector<std::size_t> numbers = folder.missing(count, notes_of, arguments.overwrite);
@@ -112,7 +112,7 @@ int draw_into(const FrameFolder& folder, const Arguments& arguments, const Clock
     return reached_end;
 }
 
-int draw_frames(const Arguments& arguments, Studio& studio) {
+int draw_frames(const FramesArguments& arguments, Studio& studio) {
     const auto model = std::make_shared<const Model>(
         adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
     const std::vector<ViewDescription> views = views_for(model->description(), arguments.views);
@@ -158,7 +158,7 @@ double within(const std::string& option, const std::string& text, double low, do
 }  // namespace
 
 void add_frames(CLI::App& program, int& status, Studio& studio) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<FramesArguments>();
     arguments->jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
     CLI::App* command = program.add_subcommand("frames", "Numbered PNGs of the mechanism in motion beside its plots");
     add_system_argument(*command, arguments->system);

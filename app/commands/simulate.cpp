@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
     std::string system, json, csv;
     std::vector<std::string> settings;
     OptionOverrides overrides;
@@ -23,7 +23,7 @@ struct Arguments {
     double scale = 1.0;
 };
 
-int run(const Arguments& arguments) {
+int run(const SimulateArguments& arguments) {
     const auto model = std::make_shared<const Model>(
         open_system(find_system(arguments.system), arguments.settings, arguments.overrides));
     const Run run = model->default_run();
@@ -49,7 +49,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_simulate(CLI::App& program, int& status) {
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<SimulateArguments>();
     CLI::App* command = program.add_subcommand("simulate", "One completed execution, as a summary, JSON or CSV");
     command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
         ->required()

@@ -13,7 +13,7 @@ namespace {
 // The shortest form that reads back the same double; empty where it is not finite.
 void append(std::string& row, double x) {
     row += ',';
-    if (std::isfinite(x)) fmt::format_to(std::back_inserter(row), "{}", x + 0.0);
+    if (std::isfinite(x)) row += fmt::format("{}", x + 0.0);
 }
 
 }  // namespace
@@ -36,14 +36,14 @@ std::string to_csv(const Trajectory& trajectory) {
             put(*program, sample.state);
             program->run();
         }
-        fmt::format_to(std::back_inserter(text), "{},{}", sample.t + 0.0, to_text(sample.phase));
+        text += fmt::format("{},{}", sample.t + 0.0, to_text(sample.phase));
         for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.q[i]);
         for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.v[i]);
         append(text, surface.output(0));
         append(text, surface.output(1));
         append(text, sample.contact ? force.output(0) : 0.0);
         append(text, energy.output(0));
-        fmt::format_to(std::back_inserter(text), ",{}\n", sample.j);
+        text += fmt::format(",{}\n", sample.j);
     }
     return text;
 }
