@@ -113,7 +113,7 @@ struct Statistics {
     double least_gap = 0.0;     // at step ends
     // Wall clock: the only values that may differ between two runs.
     double seconds = 0.0;
-    double certificate_seconds = 0.0;  // of these, for the truncation conditions and their proofs
+    double certificate_seconds = 0.0;  // of these, for the truncation conditions' proofs
 };
 
 struct Trajectory {

@@ -3,10 +3,12 @@
 #include <bit>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "expression/parse.hpp"
 #include "expression/program.hpp"
+#include "expression/sine.hpp"
 
 namespace achilles {
 namespace {
@@ -222,6 +224,29 @@ TEST_F(Expressions, AProgramEvaluatesTheParametersOnceAndIntervalsEnclose) {
     EXPECT_LE(run.output(0).lo(), std::sin(0.5) * 0.1 + std::exp(0.5));
     EXPECT_GE(run.output(0).hi(), std::sin(0.5) * 0.2 + std::exp(0.5));
     EXPECT_LT(run.output(0).hi() - run.output(0).lo(), 0.0480);
+}
+
+// The same bits as from the library, asked for the first time and again.
+TEST(SineCosine, AreThoseOfTheLibrary) {
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> exponent(-330.0, 300.0), angle(-10.0, 10.0);
+    std::vector<double> angles{0.0, -0.0, 1e308, std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::quiet_NaN()};
+    for (int i = 0; i < 20000; ++i)
+        angles.push_back(i % 2 == 0 ? angle(random) : angle(random) * std::pow(10.0, exponent(random)));
+    const auto expect_bits = [](double a, double b, double at) {
+        EXPECT_TRUE((std::isnan(a) && std::isnan(b)) ||
+                    std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b))
+            << a << ", " << b << " at " << at;
+    };
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+        for (const double x : {angles[i], angles[i - i % 3], angles[i]}) {
+            const SineCosine value = sine_and_cosine(x);
+            volatile double alone = x;  // so that the compiler does not ask for both at once
+            expect_bits(value.sine, std::sin(alone), x);
+            expect_bits(value.cosine, std::cos(alone), x);
+        }
+    }
 }
 
 // Machine code gives the bits of the loop: more operations than there are registers, every function, odd powers.
