@@ -6,8 +6,16 @@ namespace achilles {
 
 namespace {
 
+// Plain loops: an expression over vectors whose length is known to the program alone costs more than its sum.
 double rounding_of_q(const Contact& contact, const State& state) {
-    return 0x1p-53 * contact.g.cwiseProduct(state.q).cwiseAbs().sum();
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) sum += std::abs(contact.g.data()[i] * state.q.data()[i]);
+    return 0x1p-53 * sum;
+}
+
+// x -= a n
+void move_along(Vector& x, double a, const Vector& n) {
+    for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] -= a * n.data()[i];
 }
 
 // A computed number stands for every number within this relative distance.
@@ -16,11 +24,13 @@ Interval rounded(double x, double relative) { return {x - relative * std::abs(x)
 }  // namespace
 
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
-    return v_before - (1.0 + e) * contact.hdot * contact.n;
+    Vector v = v_before;
+    move_along(v, (1.0 + e) * contact.hdot, contact.n);
+    return v;
 }
 
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind) {
-    if (kind == Reinitialization::kinetic) return v_before - contact.hdot * contact.n;
+    if (kind == Reinitialization::kinetic) return impact(contact, v_before, 0.0);
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
 }
 
@@ -49,8 +59,8 @@ void Surface::look(const State& state, Contact& contact) {
     contact.n.resize(n);
     contact.g.resize(n);
     for (std::size_t i = 0; i < n_; ++i) {
-        contact.n[static_cast<Eigen::Index>(i)] = surface_.output(2 + i);
-        contact.g[static_cast<Eigen::Index>(i)] = surface_.output(2 + n_ + i);
+        contact.n.data()[i] = surface_.output(2 + i);
+        contact.g.data()[i] = surface_.output(2 + n_ + i);
     }
 }
 
@@ -85,13 +95,13 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
         const bool far = round == 0 && roundings > 0.5, near = round > 0 && roundings <= 4.0;
         if (near || (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state))) {
             if (!keep_velocity) {
-                state.v -= contact.hdot * contact.n;
+                move_along(state.v, contact.hdot, contact.n);
                 contact.hdot = 0.0;
             }
             return result;
         }
         if (round == rounds) break;
-        state.q -= contact.h * contact.n;
+        move_along(state.q, contact.h, contact.n);
     }
     result.reset();
     return result;

@@ -66,31 +66,27 @@ double Taylor::parabola_root(double longest) const {
 }
 
 // m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
-double Taylor::magnitude(const double* c) const {
+Taylor::Magnitude Taylor::magnitude(const double* c) const {
     const double* const units = units_.data();
     double largest = 0.0, sum = 0.0;
+    std::size_t component = 0;
     for (std::size_t i = 0; i < width_; ++i) {
         const double size = std::abs(c[i]) * units[i];
-        largest = size > largest ? size : largest;
+        const bool larger = size > largest;
+        largest = larger ? size : largest;
+        component = larger ? i : component;
         sum += size;
     }
-    return sum < std::numeric_limits<double>::infinity() ? largest : sum;
-}
-
-// The component that it is of.
-std::size_t Taylor::largest(const double* c) const {
-    std::size_t index = 0;
-    for (std::size_t i = 1; i < width_; ++i)
-        if (std::abs(c[i]) * units_[i] > std::abs(c[index]) * units_[index]) index = i;
-    return index;
+    return {sum < std::numeric_limits<double>::infinity() ? largest : sum, component};
 }
 
 // Where order_ is not finite: back to the last order before the first that is not.
 Obstacle Taylor::leave_out_infinite() {
     int finite = 0;
-    while (finite + 1 < order_ && magnitude(row(finite + 1)) < std::numeric_limits<double>::infinity()) ++finite;
+    while (finite + 1 < order_ && magnitude(row(finite + 1)).m < std::numeric_limits<double>::infinity()) ++finite;
     order_ = finite;
     power_ = std::pow(target_, order_);
+    reached_ = false;
     return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
 }
 
@@ -124,7 +120,7 @@ Obstacle Taylor::expand(double longest) {
     }
     series.extend(1, first);
     first[w] = flying ? gap_.hdot : series.output(n_);
-    if (!(magnitude(first) < std::numeric_limits<double>::infinity())) return Obstacle::left_the_domain;
+    if (!(magnitude(first).m < std::numeric_limits<double>::infinity())) return Obstacle::left_the_domain;
 
     const int most = flying ? flight_order_ : contact_order_;
     SeriesMotion motion;
@@ -142,20 +138,20 @@ Obstacle Taylor::expand(double longest) {
     }
     bool small = false;  // the last term was
     for (int zeros = 0;;) {
-        const double m = magnitude(row(order_));
+        const auto [m, largest] = magnitude(row(order_));
         if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
         const bool now = m * power_ <= 1.0;
         zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
-        if (order_ >= most || (order_ >= lowest && small && now && (zeros == 0 || zeros > 3))) return Obstacle::none;
+        reached_ = small && now;
+        if (order_ >= most || (order_ >= lowest && reached_ && (zeros == 0 || zeros > 3))) return Obstacle::none;
         small = now;
         // One large component is enough to go on, if it is not the end.
         const int before = order_;
-        const std::size_t one = largest(row(order_));
-        motion.largest = row(order_) + one;
-        motion.power = units_[one] * power_;
+        motion.largest = row(order_) + largest;
+        motion.power = units_[largest] * power_;
         motion.target = target_;
         order_ = series.extend(motion, before + 1, most);
-        power_ = motion.power / units_[one];
+        power_ = motion.power / units_[largest];
         if (order_ > before + 1) {
             small = false;
             zeros = 0;
@@ -167,14 +163,15 @@ Obstacle Taylor::expand(double longest) {
 // ones left out; the two before them tell: half of the step is within their reach. In a series that was cut early these
 // are large by right.
 double Taylor::natural_step() {
+    if (reached_ && order_ < guarded) return target_;
     const int counted = std::min(order_, order_ < guarded ? 2 : 4);
     std::array<double, 4> terms{};
     bool all = true;
     double power = power_;
     for (int i = 0; i < counted; ++i, power /= target_) {
         const int k = order_ - i;
-        const double m = terms[static_cast<std::size_t>(i)] = magnitude(row(k));
-        all = all && m * power <= (i < 2 ? 1.0 : std::exp2(k));
+        const double m = terms[static_cast<std::size_t>(i)] = magnitude(row(k)).m;
+        all = all && m * power <= (i < 2 ? 1.0 : static_cast<double>(std::int64_t{1} << k));
     }
     if (all) return target_;
     double exponent = std::numeric_limits<double>::infinity();  // of 2

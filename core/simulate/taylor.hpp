@@ -33,8 +33,11 @@ class Taylor : public Stepper {
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     Obstacle expand(double longest);
     double parabola_root(double longest) const;
-    double magnitude(const double* c) const;
-    std::size_t largest(const double* c) const;
+    struct Magnitude {
+        double m;
+        std::size_t component;  // that it is of
+    };
+    Magnitude magnitude(const double* c) const;
     Obstacle leave_out_infinite();
     double natural_step();
     void stay_in_domain(double step);
@@ -56,6 +59,7 @@ class Taylor : public Stepper {
     int order_ = 0;              // of the last expansion
     double target_ = 0.0;        // the longest step that it is needed for, as far as is known
     double power_ = 0.0;         // target^order
+    bool reached_ = false;       // the last two terms are small there
     double span_ = 0.0;
     long evaluations_ = 0;
 };

@@ -33,13 +33,13 @@
 //   vectors of eight instead of four doubles                               none on a Zen 4
 //   other weights in the order's cost                                      within 3 percent
 //   accelerations carried in registers from one order to the next, code
-//   that begins with a cache line, x86-64-v3, no errno                     none
+//   that begins with a cache line, no errno                                none
 //   operands of a rule by when they are known                              +10 percent with cold caches
 //   four components in one vector when an end is evaluated                 +5 percent
 // What is left of the ball's time at 1e-9: a third is series, where every order waits for the one before (some 65
-// cycles); the rest is what each of 45 steps takes besides (two looks at the surface, the root, the step's length), some
-// 2000 cycles. In the ensemble two thirds of the steps are in contact, and their series alone take longer than the bar of
-// five allows for a run: it needs several trajectories in one register, from the series to the surface.
+// cycles); the rest is what each of 45 steps takes besides (two looks at the surface, the root, the step's length),
+// some 2000 cycles. In the ensemble two thirds of the steps are in contact, and their series alone take longer than the
+// bar of five allows for a run: it needs several trajectories in one register, from the series to the surface.
 #include <fmt/format.h>
 
 #include <cstdlib>
