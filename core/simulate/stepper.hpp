@@ -22,6 +22,7 @@ enum class Obstacle { none, left_the_domain, not_a_number, step_too_small };
 // The gap and its rate.
 struct Gap {
     double h = 0.0, hdot = 0.0;
+    double error = 0.0;  // what earlier steps of the flight may have made it wrong by
 };
 
 class Stepper {

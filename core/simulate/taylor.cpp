@@ -288,8 +288,8 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 }
 
 // The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
-// than the last two together. The steps before have made errors of the size of the tolerance as well, which is in units
-// of the flight's height: a dip within that can be neither claimed nor denied.
+// than the last two together, and about the tolerance, which is in units of the flight's height. A dip within that, and
+// within what the steps before have made, can be neither claimed nor denied.
 double Taylor::remainder(const Polynomial& p) const {
     double sizes[4] = {};  // beyond the degree there are zeros
     for (std::size_t k = 0; k <= static_cast<std::size_t>(p.degree); k += 4)
@@ -297,8 +297,8 @@ double Taylor::remainder(const Polynomial& p) const {
     const double size = (sizes[0] + sizes[1]) + (sizes[2] + sizes[3]);
     const auto last = static_cast<std::size_t>(p.degree);
     const double terms = std::abs(p.c[last]) + std::abs(p.c[last - 1]);
-    constexpr double earlier_steps = 4.0;
-    return std::max(terms + 4.0 * 0x1p-53 * size, earlier_steps / units_[2 * n_]);
+    const double earlier = motion_ == Motion::flight ? gap_.error : 0.0;
+    return std::max(terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * n_]) + earlier;
 }
 
 std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {

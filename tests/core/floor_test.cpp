@@ -119,5 +119,52 @@ TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
     EXPECT_GT(seen, 20);
 }
 
+// Dips that later steps of a flight once decided as if the earlier ones had made no error.
+TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
+    struct Known {
+        const char* system;
+        double q[2], v[2], t, gap, tolerance;
+    };
+    for (const Known& dip : {Known{"cart_pendulum",
+                                   {-3.191048979976677, 2.2773008319458494},
+                                   {2.5817853791625947, -4.869985999051176},
+                                   0.570540648,
+                                   1e-10,
+                                   1e-10},
+                             Known{"cart_pendulum",
+                                   {-0.9648433464781354, 0.9525713463017114},
+                                   {1.9053621296297845, 7.076267582465217},
+                                   0.828864869,
+                                   -1e-10,
+                                   1e-10},
+                             Known{"bead_in_ring",
+                                   {0.21661540591617764, 1.7879083218657499},
+                                   {-0.5069320739607583, 14.223896048396128},
+                                   0.342827484,
+                                   1e-13,
+                                   1e-10},
+                             Known{"ball_on_sine",
+                                   {9.892436125524446, 3.3504934840822407},
+                                   {4.7934857386210155, -1.9906615167365507},
+                                   1.02761306,
+                                   1e-13,
+                                   1e-14}}) {
+        const auto model = test::load(dip.system);
+        auto run = model->default_run();
+        run.options.method = Method::taylor;
+        run.options.tolerance = dip.tolerance;
+        run.options.end_time = dip.t + 0.01;
+        run.q << dip.q[0], dip.q[1];
+        run.v << dip.v[0], dip.v[1];
+        const Trajectory trajectory = simulate(model, run);
+        if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+            EXPECT_NE(dip.tolerance, 1e-14) << dip.system;
+            continue;
+        }
+        const bool met = !trajectory.events.empty() && trajectory.events[0].t < dip.t + 0.005;
+        EXPECT_EQ(met, dip.gap < 0.0) << dip.system << " at t = " << dip.t;
+    }
+}
+
 }  // namespace
 }  // namespace achilles::test
