@@ -159,7 +159,7 @@ class SeriesCompiler {
     std::uint32_t inner(std::uint32_t x, std::uint32_t y, bool weighted) {
         const auto [found, fresh] =
             sum_ids_.emplace(std::tuple(x, y, weighted), static_cast<std::uint32_t>(sums_.size()));
-        if (fresh) sums_.push_back({{x, y}, weighted});
+        if (fresh) sums_.push_back({x, y, weighted});
         return sum_mark | found->second;
     }
 
@@ -344,26 +344,25 @@ class SeriesCompiler {
         for (const bool weighted : {true, false}) {
             for (std::size_t i = 0; i < sums_.size(); ++i) {
                 if (sums_[i].weighted != weighted) continue;
-                position[i] = next_series_ + static_cast<std::uint32_t>(series_.sums_.size());
-                series_.sums_.push_back(sums_[i].sum);
+                position[i] = next_series_ + static_cast<std::uint32_t>(plan.left.size());
+                plan.left.push_back(sums_[i].x);
+                plan.right.push_back(sums_[i].y);
             }
-            if (weighted) plan.weighted = static_cast<std::uint32_t>(series_.sums_.size());
+            if (weighted) plan.weighted = static_cast<std::uint32_t>(plan.left.size());
         }
+        series_.inner_sums_ = sums_.size();
         // One vector at least: the rows tell the orders apart.
-        plan.lanes = static_cast<std::uint32_t>(std::max<std::size_t>(1, (series_.sums_.size() + 3) / 4) * 4);
-        plan.left.assign(plan.lanes, 0);
-        plan.right.assign(plan.lanes, 0);
-        for (std::size_t i = 0; i < series_.sums_.size(); ++i) {
-            plan.left[i] = series_.sums_[i].x;
-            plan.right[i] = series_.sums_[i].y;
-        }
+        plan.lanes = static_cast<std::uint32_t>(std::max<std::size_t>(1, (sums_.size() + 3) / 4) * 4);
+        plan.left.resize(plan.lanes, 0);
+        plan.right.resize(plan.lanes, 0);
         for (SeriesRule& rule : plan.rules)
             for (std::uint32_t* operand : {&rule.x, &rule.y, &rule.w})
                 if (*operand & sum_mark) *operand = position[*operand & ~sum_mark];
     }
 
+    // sum_{0<j<k} x_j y_{k-j}, or of j x_j y_{k-j}/k
     struct Pending {
-        SeriesProgram::InnerSum sum;
+        std::uint32_t x, y;
         bool weighted;
     };
     SeriesProgram& series_;

@@ -31,9 +31,8 @@ class SeriesProgram {
     // Of the outputs, the first `wanted` are wanted as series, the others at order 0.
     SeriesProgram(const Program& program, std::size_t wanted);
 
-    std::size_t inner_sums() const { return sums_.size(); }
+    std::size_t inner_sums() const { return inner_sums_; }
     std::size_t rules() const { return plan_.rules.size(); }
-    const SeriesPlan& plan() const { return plan_; }
     // Whether a function in it has an edge, past which it is no number: a root, a logarithm.
     bool is_partial() const { return partial_; }
 
@@ -72,10 +71,7 @@ class SeriesProgram {
         std::uint32_t rule;
         std::array<std::uint32_t, 3> coefficient;
     };
-    // sum_{0<j<k} x_j y_{k-j}, or of j x_j y_{k-j}, divided by k
-    struct InnerSum {
-        std::uint32_t x, y;
-    };
+
     Program program_;
     std::size_t wanted_ = 0;
     bool partial_ = false;
@@ -83,7 +79,7 @@ class SeriesProgram {
     SeriesPlan plan_;                        // series 0 is zero, then the inputs that move, then results
     std::vector<Seed> seeds_;
     std::vector<Combination> combinations_;
-    std::vector<InnerSum> sums_;             // those of j x_j first
+    std::size_t inner_sums_ = 0;
     std::size_t registers_ = 0;              // of order 0: the program's, then hidden ones
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
