@@ -30,7 +30,7 @@ void lay_bands(const Panel& panel, Sheet& sheet, Rectangle plot) {
     for (const Band& band : panel.bands) {
         const auto from = static_cast<float>(std::round(std::clamp(map.x(band.low), left, right)));
         const auto to = static_cast<float>(std::round(std::clamp(map.x(band.high), left, right)));
-        if (to > from) sheet.push_back(Fill{{from, plot.y, to - from, plot.height}, band.color});
+        if (to > from) sheet.emplace_back(Fill{{from, plot.y, to - from, plot.height}, band.color});
     }
 }
 
@@ -39,7 +39,7 @@ void lay_bars(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelM
         const double x = map.x(point.x);
         if (!(x >= plot.x && x <= plot.x + plot.width)) continue;
         const float at = static_cast<float>(std::round(x - m.line / 2.0));
-        sheet.push_back(Fill{{at, plot.y, m.line, plot.height}, markers.fill});
+        sheet.emplace_back(Fill{{at, plot.y, m.line, plot.height}, markers.fill});
     }
 }
 
@@ -56,7 +56,7 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
             continue;
         // Impacts crowd before a Zeno point; what would cover the last one exactly is not drawn again.
         if (std::hypot(at.x - last.x, at.y - last.y) < 0.05) continue;
-        sheet.push_back(mark(markers, at, m));
+        sheet.emplace_back(mark(markers, at, m));
         last = at;
     }
 }
@@ -75,7 +75,7 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
         Path path{{}, scaled(curve.stroke, m.scale), plot};
         path.points.reserve(curve.points.size());
         for (const Point& point : curve.points) path.points.push_back(map(point));
-        sheet.push_back(std::move(path));
+        sheet.emplace_back(std::move(path));
     }
     for (const Markers& markers : panel.markers)
         if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
@@ -94,15 +94,15 @@ std::vector<Key> keys_of(const Panel& panel) {
 void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, const Metrics& m) {
     if (const auto* stroke = std::get_if<Stroke>(&key.sign)) {
         const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
-        sheet.push_back(Path{{{x, y}, {x + length, y}}, scaled(*stroke, m.scale), around});
+        sheet.emplace_back(Path{{{x, y}, {x + length, y}}, scaled(*stroke, m.scale), around});
         return;
     }
     const Markers& markers = std::get<Markers>(key.sign);
     if (markers.shape == Markers::Shape::bar)
-        sheet.push_back(
+        sheet.emplace_back(
             Fill{{std::round(x + (length - m.line) / 2.0F), y - m.text * 0.45F, m.line, m.text * 0.9F}, markers.fill});
     else
-        sheet.push_back(mark(markers, {x + length / 2.0F, y}, m));
+        sheet.emplace_back(mark(markers, {x + length / 2.0F, y}, m));
 }
 
 // A legend in the corner that the panel names.
@@ -126,13 +126,13 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
         on_pixels({plot.x + inset + static_cast<float>(panel.legend_at[0]) * (room_x - wanted_x * zoom),
                    plot.y + inset + static_cast<float>(1.0 - panel.legend_at[1]) * (room_y - wanted_y * zoom),
                    wanted_x * zoom, wanted_y * zoom});
-    sheet.push_back(Fill{box, style.grid});
-    sheet.push_back(Fill{{box.x + m.line, box.y + m.line, box.width - 2.0F * m.line, box.height - 2.0F * m.line},
-                         style.background});
+    sheet.emplace_back(Fill{box, style.grid});
+    sheet.emplace_back(Fill{{box.x + m.line, box.y + m.line, box.width - 2.0F * m.line, box.height - 2.0F * m.line},
+                            style.background});
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const float y = box.y + pad * zoom + (static_cast<float>(i) + 0.5F) * row;
         lay_sign(keys[i], sheet, box.x + pad * zoom, std::round(y), sample, m);
-        sheet.push_back(
+        sheet.emplace_back(
             Words{box.x + 2.0F * pad * zoom + sample, y - text / 2.0F, 0.0F, keys[i].label, style.ink, text});
     }
 }
@@ -159,8 +159,8 @@ struct KeyLines {
             float at = std::round(x - anchor * line.length);
             for (std::size_t i = 0; i < line.count; ++i, ++next) {
                 lay_sign(keys[next], sheet, at, std::round(y + row(m) / 2.0F), sign(keys[next], m), m);
-                sheet.push_back(Words{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F, keys[next].label,
-                                      style.ink, m.text});
+                sheet.emplace_back(Words{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F,
+                                         keys[next].label, style.ink, m.text});
                 at += sample(keys[next], m) + m.width(keys[next].label, m.text) + between(m);
             }
             y += row(m);
@@ -212,7 +212,7 @@ float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
 Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
                  const Metrics& m) {
     const Rectangle inner = with_equal_units(panel, plot);
-    if (style.background.a > 0) sheet.push_back(Fill{inner, style.background});
+    if (style.background.a > 0) sheet.emplace_back(Fill{inner, style.background});
     lay_bands(panel, sheet, inner);
     lay_grid(panel, style, sheet, inner, m);
     lay_data(panel, sheet, inner, m);
@@ -271,7 +271,7 @@ struct Grid {
 
 Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double scale) {
     Sheet sheet;
-    if (figure.background.a > 0) sheet.push_back(Fill{area, figure.background});
+    if (figure.background.a > 0) sheet.emplace_back(Fill{area, figure.background});
     if (figure.panels.empty()) return sheet;
     const Metrics m(figure, width, scale);
     const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
