@@ -171,10 +171,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     return certificate;
 }
 
-std::optional<Certificate> PaperConditions::hold(const Collision& collision) {
-    if (hopeless(collision)) return std::nullopt;
-    return prove(collision, truncation_);
-}
+std::optional<Certificate> PaperConditions::hold(const Collision& collision) { return prove(collision, truncation_); }
 
 std::optional<Certificate> PaperConditions::widest(const Collision& collision) {
     constexpr double any = 1e6;

@@ -8,6 +8,8 @@ namespace achilles {
 
 namespace {
 
+constexpr double doubt = 1.5;  // what a guess may be wrong by
+
 // A number computed from terms of this size stands for every number that rounding could have made it from; the
 // certificate holds for all of them. The size is that of the terms: s = v - n hdot may cancel.
 Interval rounded(double x, double size) {
@@ -76,14 +78,17 @@ void SharpConditions::set(Evaluator<Interval>& program, const Box& box) const {
 }
 
 // A guess of what a proof would find, in double. Where even that is too much, trying is put off to the next impact. It
-// never replaces a proof. The bounds fall with the cube of w at most, so what the last proof found tells; else, to
-// first order, how far -hddot varies over the least X there can be.
+// never replaces a proof. The bounds fall with the cube of w at most, so what the last proof or guess found tells.
+bool SharpConditions::hopeless_at(double speed) {
+    if (speed > last_speed_) too_wide_ = 0.0;  // another bouncing
+    last_speed_ = speed;
+    const double slower = speed / wide_speed_;
+    return slower < 1.0 && too_wide_ * slower * slower * slower > doubt;
+}
+
+// Else, to first order, how far -hddot varies over the least X there can be.
 bool SharpConditions::hopeless(const Collision& collision) {
-    constexpr double doubt = 1.5;                        // what the guess may be wrong by
-    if (collision.speed > last_speed_) too_wide_ = 0.0;  // another bouncing
-    last_speed_ = collision.speed;
-    const double slower = collision.speed / wide_speed_;
-    if (slower < 1.0 && too_wide_ * slower * slower * slower > doubt) return true;
+    if (hopeless_at(collision.speed)) return true;
     const State state{collision.before.q, collision.tangential};
     for (Evaluator<double>* program : {&point_, &point_gradient_, &point_motion_}) {
         put(*program, state);
@@ -96,10 +101,17 @@ bool SharpConditions::hopeless(const Collision& collision) {
     double variation = std::abs(point_gradient_.output(2 * n_)) * w;
     for (std::size_t i = 0; i < 2 * n_; ++i)
         variation += std::abs(point_gradient_.output(i) * point_motion_.output(i)) * T;
-    const double low = a - variation, high = a + variation, r = high / low;
-    if (!(low > 0.0) || !(e * e * r < 1.0)) return true;
-    const double half_width = e * (1.0 + e) * w * (1.0 / (low * (1.0 - e * e * r)) - 1.0 / (high * (1.0 - e * e / r)));
-    return half_width > doubt * truncation_.eps_t;
+    // Half of the time bound's width, with a_min and a_max = a (1 -+ x): to first order in x, then as it is.
+    const double x = variation / a, scaled = x * (1.0 + e * e) / (1.0 - e * e);
+    const double first = 2.0 * e * w * scaled / (a * (1.0 - e)), allowed = doubt * truncation_.eps_t;
+    if (scaled < 1.0 && first <= allowed * (1.0 - scaled * scaled)) return false;
+    if (x < 0.5) remember(w, first / truncation_.eps_t);  // the next impacts lie where a is about the same
+    return true;
+}
+
+void SharpConditions::remember(double speed, double too_wide) {
+    wide_speed_ = speed;
+    too_wide_ = too_wide;
 }
 
 // The attained bound of section 4, if X allows it.
@@ -247,15 +259,13 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Bo
 }
 
 std::optional<Certificate> SharpConditions::hold(const Collision& collision) {
-    if (hopeless(collision)) return std::nullopt;
     auto certificate = prove(collision);
     if (!certificate) return std::nullopt;
     double widest = 0.0;  // against its tolerance
     for (std::size_t i = 0; i < 3; ++i)
         widest = std::max(widest, certificate->inequalities[i].left / certificate->inequalities[i].right);
     if (widest <= 1.0) return certificate;
-    wide_speed_ = collision.speed;
-    too_wide_ = widest;
+    remember(collision.speed, widest);
     return std::nullopt;
 }
 

@@ -32,6 +32,7 @@ class SharpConditions : public TruncationConditions {
  public:
     SharpConditions(const Model& model, const Run& run);
     bool hopeless(const Collision& collision) override;
+    bool hopeless_at(double speed) override;
     std::optional<Certificate> hold(const Collision& collision) override;
     std::optional<Certificate> widest(const Collision& collision) override;
 
@@ -47,6 +48,7 @@ class SharpConditions : public TruncationConditions {
     Certificate certificate_of(const Collision& collision, const Box& box, const Time& time,
                                const Shadow& shadow) const;
     void set(Evaluator<Interval>& program, const Box& box) const;
+    void remember(double speed, double too_wide);
 
     std::size_t n_;
     std::uint32_t sigma_;
@@ -55,7 +57,7 @@ class SharpConditions : public TruncationConditions {
     Range hddot_;
     Evaluator<Interval> motion_, shadow_, surface_;
     Evaluator<double> point_, point_gradient_, point_motion_;
-    // The last proof that was too wide: at this impact speed, by this factor.
+    // The last proof or guess that was too wide: at this impact speed, by this factor.
     double wide_speed_ = 0.0, too_wide_ = 0.0;
     double last_speed_ = 0.0;              // of the last collision that was looked at
     std::vector<Interval> variables_;      // q, s, sigma over the box that is looked at

@@ -21,9 +21,11 @@ struct Collision {
 class TruncationConditions {
  public:
     virtual ~TruncationConditions() = default;
-    // Quick: true where they can be seen not to hold.
+    // Quick: true where they can be seen not to hold; quicker: by the impact speed w and the collisions before.
     virtual bool hopeless(const Collision& collision) = 0;
+    virtual bool hopeless_at(double) { return false; }
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
+    // Takes long: ask hopeless() first.
     virtual std::optional<Certificate> hold(const Collision& collision) = 0;
     // What can be proved here whatever the tolerances, for a collision after which no further flight can be resolved.
     virtual std::optional<Certificate> widest(const Collision& collision) = 0;

@@ -50,11 +50,8 @@ bool Execution::stay(double until) {
             leave_contact(flow_.end_time(), flow_.end());
             return false;
         }
-        Polynomial force = flow_.watched();
-        for (double& c : force.c) c = -c;  // -hddot = W lambda
-        if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(flow_.end()) - force(1.0);
-        if (!(force.c[0] > 0.0)) return true;  // it vanished at the step's start, to within rounding
-        const Descent descent = first_descent(force, 0, flow_.remainder(force));
+        const auto descent = flow_.stays_negative() ? Descent{} : force_descent();
+        if (descent.kind == Descent::Kind::root && descent.theta == 0.0) return true;
         if (descent.kind == Descent::Kind::undecided) {
             stop(Outcome::Kind::undecided,
                  "the contact force comes closer to zero than the integration knows it just after " +
@@ -70,6 +67,16 @@ bool Execution::stay(double until) {
     }
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
     return false;
+}
+
+// Where the contact force vanishes along the last step: -hddot = W lambda. At theta = 0 if it did before, to within
+// rounding.
+Descent Execution::force_descent() {
+    Polynomial force = flow_.watched();
+    for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
+    if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(flow_.end()) - force(1.0);
+    if (!(force.c[0] > 0.0)) return {Descent::Kind::root, 0.0};
+    return first_descent(force, 0, flow_.remainder(force));
 }
 
 // The same as locate_impact, for hddot = 0 along the constrained motion.

@@ -223,7 +223,7 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 // order less. In a flight that is short against such a step, less than the highest term that was kept.
 double Dopri5::remainder(const Polynomial& p) const {
     double size = 0.0;
-    for (const double c : p.c) size += std::abs(c);
+    for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
     return std::min(4.0 * tolerance_ * (1.0 + size), std::abs(p.c[4])) + 8.0 * 0x1p-53 * size;
 }
 

@@ -170,16 +170,19 @@ void Execution::land() {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
     }
+    // Most impacts need no more than this look.
+    if (restitution_ > 0.0 && conditions_ && conditions_->hopeless_at(-contact.hdot) && is_well_resolved(-contact.hdot))
+        return bounce(contact, restitution_);
     Collision collision{t_, state_, -contact.hdot, reinitialize(contact, state_.v, Reinitialization::kinetic),
                         reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
     if (restitution_ == 0.0) {
         capture(collision);
     } else if (auto certificate =
                    may_be_cut(collision) ? prove(&TruncationConditions::hold, collision) : std::nullopt) {
-        complete(collision, *certificate);
+        complete(collision, std::move(*certificate));
     } else if (too_short_to_resolve(collision, restitution_)) {
         if (auto widest = prove(&TruncationConditions::widest, collision)) {
-            complete(collision, *widest);
+            complete(collision, std::move(*widest));
         } else {
             stop(Outcome::Kind::undecided,
                  "flights became shorter than floating point resolves, and no truncation is certified at " +
@@ -223,11 +226,15 @@ void Execution::bounce(const Contact& contact, double e) {
     first_step_ = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
+// Far from what follows: the last step was neither short nor low.
+bool Execution::is_well_resolved(double speed) const {
+    const double last = flow_.duration(), q = state_.q.cwiseAbs().maxCoeff();
+    return last > 1e-6 * (1.0 + t_) && last * speed > 1e-8 * (1.0 + q);
+}
+
 // THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
-    // Far from it where the last step was neither short nor low.
-    const double last = flow_.duration(), q = collision.before.q.cwiseAbs().maxCoeff();
-    if (last > 1e-6 * (1.0 + collision.t) && last * collision.speed > 1e-8 * (1.0 + q)) return false;
+    if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;
     const double a = -surface_.normal_acceleration({collision.before.q, collision.tangential});
     if (!(a > 0.0)) return false;
@@ -250,7 +257,7 @@ void Execution::capture(const Collision& before) {
         certificate.a_max = -hddot.lo();
         certificate.decisive = "exact: restitution 0";
         certificate.inequalities = {{"normal acceleration", hddot.hi(), 0.0}};
-        complete(collision, certificate);
+        complete(collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
         bounce(contact_, 0.0);
         takeoff_ = {{0.0, 0.0}, 2};
@@ -297,7 +304,7 @@ bool Execution::advance(double longest) {
 void Execution::take(const Contact& contact) {
     contact_ = contact;
     record_.step(flow_, contact.h);
-    stalled_ = flow_.end_time() - t_ > 2.0 * ulp(t_) ? 0 : stalled_ + 1;
+    stalled_ = flow_.end_time() - t_ > 0x1p-51 * std::abs(t_) ? 0 : stalled_ + 1;
     t_ = flow_.end_time();
     state_ = flow_.end();
 }

@@ -59,10 +59,12 @@ class Execution {
     std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
                                      const Collision& collision);
     void bounce(const Contact& contact, double e);
+    bool is_well_resolved(double speed) const;
     bool too_short_to_resolve(const Collision& collision, double e);
     void complete(const Collision& collision, Certificate certificate);
     void capture(const Collision& collision);
     bool stay(double until);
+    Descent force_descent();
     bool locate_release(double theta);
     void release();
 

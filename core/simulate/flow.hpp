@@ -41,6 +41,7 @@ class Flow {
     }
     // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
     Polynomial watched() const { return stepper_->watched(); }
+    bool stays_negative() const { return stepper_->stays_negative(); }
     bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder(const Polynomial& watched) const { return stepper_->remainder(watched); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.

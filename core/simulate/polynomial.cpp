@@ -34,6 +34,12 @@ namespace {
 
 using Coefficients = std::array<double, Polynomial::capacity>;
 
+// What a polynomial consists of, or the rest where low powers are divided out.
+struct Terms {
+    const double* c;
+    int degree;
+};
+
 // C(i, j), stored by j: column j is contiguous in i.
 constexpr auto binomials = [] {
     std::array<Coefficients, Polynomial::capacity> table{};
@@ -45,7 +51,7 @@ constexpr auto binomials = [] {
 }();
 
 // b_i = sum_j C(i,j)/C(d,j) c_j: the coefficients over [0, 1].
-Coefficients to_bernstein(const Polynomial& p) {
+Coefficients to_bernstein(const Terms& p) {
     Coefficients b{};
     const auto d = static_cast<std::size_t>(p.degree);
     for (std::size_t j = 0; j <= d; ++j) {
@@ -73,26 +79,26 @@ struct ValueAndSlope {
 
 // The even and the odd powers by themselves: p = a(s) + x b(s), p' = b + 2 x (a' + x b') at s = x^2. Half as many sums
 // wait for one another.
-ValueAndSlope value_and_slope(const Polynomial& p, double x) {
+ValueAndSlope value_and_slope(const Terms& p, double x) {
     const double s = x * x;
     double a = 0.0, a_slope = 0.0, b = 0.0, b_slope = 0.0;
     int i = p.degree;
     if (i % 2 == 0) {
-        a = p.c[static_cast<std::size_t>(i)];
+        a = p.c[i];
         --i;
     }
     for (; i > 0; i -= 2) {
         a_slope = a_slope * s + a;
         b_slope = b_slope * s + b;
-        b = b * s + p.c[static_cast<std::size_t>(i)];
-        a = a * s + p.c[static_cast<std::size_t>(i) - 1];
+        b = b * s + p.c[i];
+        a = a * s + p.c[i - 1];
     }
     return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
 }
 
 // The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
 // After so many rounds a small step is taken to be near the root.
-double newton(const Polynomial& p, double low, double high, double x, int rounds) {
+double newton(const Terms& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
         const auto [value, slope] = value_and_slope(p, x);
@@ -108,8 +114,8 @@ double newton(const Polynomial& p, double low, double high, double x, int rounds
     return x;
 }
 
-double polish(const Polynomial& p, double low, double high) {
-    const double at_low = p(low), at_high = p(high);
+double polish(const Terms& p, double low, double high) {
+    const double at_low = value_and_slope(p, low).value, at_high = value_and_slope(p, high).value;
     if (!(at_low > 0.0)) return low;
     if (!(at_high < 0.0)) return high;
     return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
@@ -118,7 +124,7 @@ double polish(const Polynomial& p, double low, double high) {
 // Looks through the step from left to right, in pieces that are halved until each says one thing.
 class Search {
  public:
-    Search(const Polynomial& p, double remainder) : p_(p), remainder_(remainder) {}
+    Search(const Terms& p, double remainder) : p_(p), remainder_(remainder) {}
 
     Descent run() {
         const Coefficients b = to_bernstein(p_);
@@ -173,7 +179,7 @@ class Search {
         return visit(left, low, middle, depth - 1) || visit(right, middle, high, depth - 1);
     }
 
-    const Polynomial& p_;
+    const Terms& p_;
     const double remainder_;
     bool inside_ = false, starts_inside_ = false;
     double since_ = 0.0;
@@ -183,14 +189,12 @@ class Search {
 }  // namespace
 
 Descent first_descent(const Polynomial& polynomial, int known, double remainder) {
-    Polynomial p;
-    p.degree = polynomial.degree - known;
-    std::copy_n(polynomial.c.begin() + known, p.degree + 1, p.c.begin());
+    const Terms p{polynomial.c.data() + known, polynomial.degree - known};
     // Powers of theta fall from one to the next, so a polynomial is a mean of the partial sums of its coefficients
     // (Abel), and lies between the least and the largest of these. So does its slope.
     double value = p.c[0], least = value, slope = p.c[1], least_slope = slope, largest_slope = slope;
     for (int k = 1; k <= p.degree; ++k) {
-        const double c = p.c[static_cast<std::size_t>(k)];
+        const double c = p.c[k];
         value += c;
         least = std::min(least, value);
         if (k == 1) continue;

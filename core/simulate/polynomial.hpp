@@ -7,8 +7,10 @@ namespace achilles {
 
 struct Polynomial {
     static constexpr int capacity = 40;
-    std::array<double, capacity> c{};  // ascending powers
+    std::array<double, capacity> c;  // ascending powers; what is above the degree has no meaning
     int degree = 0;
+
+    Polynomial() {}  // what is filled in at once need not be zero before
 
     double operator()(double theta) const;
     double slope(double theta) const;

@@ -45,6 +45,9 @@ class Stepper {
     // powers, appended to `coefficients`; their degree is returned.
     virtual Polynomial watched() const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
+    // Whether watched() is known to stay below zero along the last step, by more than its remainder. False says
+    // nothing.
+    virtual bool stays_negative() const { return false; }
     // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
     virtual double remainder(const Polynomial& watched) const = 0;
     // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the

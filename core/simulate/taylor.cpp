@@ -65,7 +65,14 @@ double Taylor::parabola_root(double longest) const {
     return std::min(longest, h1 > 0.0 ? (h1 + root) / (-2.0 * h2) : 2.0 * h0 / (root - h1));
 }
 
-// m_k: the largest coefficient of order k in units of its tolerance. NaN or infinity if one of them is.
+// m_k: the largest coefficient of order k in units of its tolerance.
+double Taylor::size(const double* c) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < width_; ++i) largest = std::max(largest, std::abs(c[i]) * units_[i]);
+    return largest;
+}
+
+// The same, and which it is. NaN or infinity if one of them is.
 Taylor::Magnitude Taylor::magnitude(const double* c) const {
     const double* const units = units_.data();
     double largest = 0.0, sum = 0.0;
@@ -120,31 +127,39 @@ Obstacle Taylor::expand(double longest) {
     }
     series.extend(1, first);
     first[w] = flying ? gap_.hdot : series.output(n_);
-    if (!(magnitude(first).m < std::numeric_limits<double>::infinity())) return Obstacle::left_the_domain;
 
-    const int most = flying ? flight_order_ : contact_order_;
+    return extend(series, longest);
+}
+
+// A flight is short where its parabola is; what is watched must be known well against its height. No order below
+// `lowest` is the last, so these are not looked at.
+void Taylor::extend_flight(SeriesMotion& motion, double longest) {
+    constexpr double never_small = 1e300;
+    motion.largest = row(1) + n_;
+    motion.power = never_small;
+    order_ = flight_.extend(motion, 2, lowest - 1);
+    target_ = std::min(longest, 1.05 * parabola_root(longest));
+    power_ = target_;
+    for (int k = 1; k < order_; ++k) power_ *= target_;
+    const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target_;
+    if (height > 0.0 && height < 1.0) units_[2 * n_] = 1.0 / (tolerance_ * height);
+}
+
+// Orders from 2 on, until two in a row are small, or as many as pay.
+Obstacle Taylor::extend(SeriesEvaluator& series, double longest) {
+    const int most = motion_ == Motion::flight ? flight_order_ : contact_order_;
     SeriesMotion motion;
-    motion.row = first;
+    motion.row = row(1);
     order_ = 1;
     power_ = target_ = longest;
-    if (flying) {
-        // A flight is short where its parabola is; what is watched must be known well against its height.
-        motion.largest = first;
-        order_ = series.extend(motion, 2, 2);
-        target_ = std::min(longest, 1.05 * parabola_root(longest));
-        power_ = target_ * target_;
-        const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target_;
-        if (height > 0.0 && height < 1.0) units_[w] = 1.0 / (tolerance_ * height);
-    }
-    bool small = false;  // the last term was
-    for (int zeros = 0;;) {
+    if (motion_ == Motion::flight) extend_flight(motion, longest);
+    for (bool small = false;;) {  // the last term was
         const auto [m, largest] = magnitude(row(order_));
         if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
         const bool now = m * power_ <= 1.0;
-        zeros = m == 0.0 ? zeros + 1 : 0;  // symmetry may hide three terms in a row
         reached_ = small && now;
-        if (order_ >= most || (order_ >= lowest && reached_ && (zeros == 0 || zeros > 3))) return Obstacle::none;
-        small = now;
+        if (order_ >= most || (order_ >= lowest && reached_ && (m > 0.0 || three_before_vanish())))
+            return Obstacle::none;
         // One large component is enough to go on, if it is not the end.
         const int before = order_;
         motion.largest = row(order_) + largest;
@@ -152,11 +167,13 @@ Obstacle Taylor::expand(double longest) {
         motion.target = target_;
         order_ = series.extend(motion, before + 1, most);
         power_ = motion.power / units_[largest];
-        if (order_ > before + 1) {
-            small = false;
-            zeros = 0;
-        }
+        small = now && order_ == before + 1;
     }
+}
+
+// Symmetry may hide three terms in a row, not four.
+bool Taylor::three_before_vanish() const {
+    return size(row(order_ - 1)) + size(row(order_ - 2)) + size(row(order_ - 3)) == 0.0;
 }
 
 // As far as it is wanted, or to where the last two terms reach 1. By symmetry they may be much smaller than the first
@@ -170,7 +187,7 @@ double Taylor::natural_step() {
     double power = power_;
     for (int i = 0; i < counted; ++i, power /= target_) {
         const int k = order_ - i;
-        const double m = terms[static_cast<std::size_t>(i)] = magnitude(row(k)).m;
+        const double m = terms[static_cast<std::size_t>(i)] = size(row(k));
         all = all && m * power <= (i < 2 ? 1.0 : static_cast<double>(std::int64_t{1} << k));
     }
     if (all) return target_;
@@ -290,15 +307,36 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 // The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
 // than the last two together, and about the tolerance, which is in units of the flight's height. A dip within that, and
 // within what the steps before have made, can be neither claimed nor denied.
-double Taylor::remainder(const Polynomial& p) const {
-    double sizes[4] = {};  // beyond the degree there are zeros
-    for (std::size_t k = 0; k <= static_cast<std::size_t>(p.degree); k += 4)
-        for (std::size_t i = 0; i < 4; ++i) sizes[i] += std::abs(p.c[k + i]);
-    const double size = (sizes[0] + sizes[1]) + (sizes[2] + sizes[3]);
-    const auto last = static_cast<std::size_t>(p.degree);
-    const double terms = std::abs(p.c[last]) + std::abs(p.c[last - 1]);
+double Taylor::remainder(double size, double last_terms) const {
     const double earlier = motion_ == Motion::flight ? gap_.error : 0.0;
-    return std::max(terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * n_]) + earlier;
+    return std::max(last_terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * n_]) + earlier;
+}
+
+double Taylor::remainder(const Polynomial& p) const {
+    double even = 0.0, odd = 0.0;
+    const auto last = static_cast<std::size_t>(p.degree);
+    for (std::size_t k = 1; k <= last; k += 2) {
+        even += std::abs(p.c[k - 1]);
+        odd += std::abs(p.c[k]);
+    }
+    if (last % 2 == 0) even += std::abs(p.c[last]);
+    return remainder(even + odd, std::abs(p.c[last]) + std::abs(p.c[last - 1]));
+}
+
+// By Abel's sums, as first_descent() would find, without the polynomial.
+bool Taylor::stays_negative() const {
+    const double* c = row(0) + 2 * n_;
+    double term = *c, before = 0.0, sum = term, highest_sum = term, size = std::abs(term), power = 1.0;
+    for (int k = 1; k <= order_; ++k) {
+        c += width_;
+        power *= span_;
+        before = term;
+        term = *c * power;
+        sum += term;
+        highest_sum = std::max(highest_sum, sum);
+        size += std::abs(term);
+    }
+    return highest_sum < -remainder(size, std::abs(term) + std::abs(before));
 }
 
 std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {

@@ -24,6 +24,7 @@ class Taylor : public Stepper {
     const State& current_state() override;
     Polynomial watched() const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
+    bool stays_negative() const override;
     double remainder(const Polynomial& p) const override;
     bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
@@ -32,17 +33,22 @@ class Taylor : public Stepper {
     double* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     Obstacle expand(double longest);
+    void extend_flight(SeriesMotion& motion, double longest);
+    Obstacle extend(SeriesEvaluator& series, double longest);
+    bool three_before_vanish() const;
     double parabola_root(double longest) const;
     struct Magnitude {
         double m;
         std::size_t component;  // that it is of
     };
+    double size(const double* c) const;
     Magnitude magnitude(const double* c) const;
     Obstacle leave_out_infinite();
     double natural_step();
     void stay_in_domain(double step);
     bool is_defined();
     void evaluate(double duration);
+    double remainder(double size, double last_terms) const;
 
     std::size_t n_, width_;  // width: q, v, what is watched
     double tolerance_;

@@ -27,11 +27,16 @@ inline std::vector<Collision> collisions(const Trajectory& trajectory) {
     return result;
 }
 
+// Asks as a run does.
+inline void ask(TruncationConditions& conditions, const std::vector<Collision>& collisions) {
+    for (const Collision& collision : collisions)
+        if (!conditions.hopeless(collision)) conditions.hold(collision);
+}
+
 // Asks as the run did, with conditions built anew. Nothing else is in it, and what it reads is in the cache, so it is
 // at most what the certificates cost inside the run.
 inline void ask_again(const Model& model, const Run& run, const std::vector<Collision>& asked) {
-    const auto conditions = truncation_conditions(model, run);
-    for (const Collision& collision : asked) conditions->hold(collision);
+    ask(*truncation_conditions(model, run), asked);
 }
 
 }  // namespace achilles::bench

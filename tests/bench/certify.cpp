@@ -24,9 +24,7 @@ void measure(const std::string& file, Conditions kind) {
     const Collision& last = all.back();
     for (int repetition = 0; repetition < 201; ++repetition) {
         whole.push_back(seconds([&] { simulate(model, run); }));
-        asked.push_back(seconds([&] {
-            for (const Collision& collision : all) conditions->hold(collision);
-        }));
+        asked.push_back(seconds([&] { ask(*conditions, all); }));
         one.push_back(seconds([&] { conditions->widest(last); }));
     }
     fmt::print(

@@ -15,7 +15,7 @@ Polynomial from_roots(std::initializer_list<double> roots, double lead) {
         ++p.degree;
         for (int i = p.degree; i >= 0; --i) {
             const auto k = static_cast<std::size_t>(i);
-            p.c[k] = (i > 0 ? p.c[k - 1] : 0.0) - root * p.c[k];
+            p.c[k] = (i > 0 ? p.c[k - 1] : 0.0) - (i < p.degree ? root * p.c[k] : 0.0);
         }
     }
     return p;
