@@ -38,7 +38,7 @@ class SeriesCompiler {
             if (wanted) series_.plan_.outputs.push_back(written_apart(operand(output)));
         }
         series_.registers_ = next_register_;
-        series_.plan_.series = next_series_;
+        series_.plan_.series = (next_series_ + SeriesPlan::aligned - 1) / SeriesPlan::aligned * SeriesPlan::aligned;
         place_sums();
     }
 
@@ -344,7 +344,7 @@ class SeriesCompiler {
         for (const bool weighted : {true, false}) {
             for (std::size_t i = 0; i < sums_.size(); ++i) {
                 if (sums_[i].weighted != weighted) continue;
-                position[i] = next_series_ + static_cast<std::uint32_t>(plan.left.size());
+                position[i] = plan.series + static_cast<std::uint32_t>(plan.left.size());
                 plan.left.push_back(sums_[i].x);
                 plan.right.push_back(sums_[i].y);
             }

@@ -23,8 +23,12 @@ using SeriesFactors = std::array<double, 3>;
 // What is to be done, the same in every run. There are `lanes` inner sums, a multiple of 4 and not none; those of no
 // use sum zeros.
 struct SeriesPlan {
+    // What a vector is stored over must not lie in two cache lines: a number could not be read back before the whole
+    // store is through. So inner sums begin at a multiple of this, and so do the tables.
+    static constexpr std::uint32_t aligned = 8;
+
     std::vector<SeriesRule> rules;
-    std::uint32_t series = 0;  // how many there are; inner sums follow
+    std::uint32_t series = 0;  // room for so many, a multiple of `aligned`; inner sums follow
     std::uint32_t lanes = 0;
     std::uint32_t weighted = 0;              // of these, the first are weighted
     std::vector<std::uint32_t> left, right;  // of each lane: the series that it multiplies

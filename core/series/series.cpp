@@ -12,9 +12,14 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t in_cache_line = 8;  // doubles
-std::size_t room_for_rows(const SeriesPlan& plan) {
-    return plan.row() * (SeriesEvaluator::highest_order + 1) + in_cache_line;
+// Doubles from the start of a cache line on, in a block with some room before.
+double* aligned(double* block) {
+    constexpr std::size_t line = SeriesPlan::aligned * sizeof(double);
+    const auto address = reinterpret_cast<std::uintptr_t>(block);
+    return block + ((line - address % line) % line) / sizeof(double);
+}
+std::size_t room(const SeriesPlan& plan) {
+    return plan.numbers() + plan.row() * (SeriesEvaluator::highest_order + 1) + SeriesPlan::aligned;
 }
 
 double function_value(Operation function, double a) {
@@ -54,11 +59,14 @@ SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const d
       inputs_(program.program_.slots_.fixed_begin),
       zero_(program.program_),
       factors_(program.plan_.rules.size()),
-      now_(program.plan_.numbers(), 0.0),
-      rows_(std::make_unique_for_overwrite<double[]>(room_for_rows(program.plan_))) {
+      tables_block_(std::make_unique_for_overwrite<double[]>(room(program.plan_))) {
+    double* const now = aligned(tables_block_.get());
+    tables_ = {factors_.data(), now, now + program.plan_.numbers()};
+    std::fill_n(now, program.plan_.numbers(), 0.0);
     for (std::size_t i = 0; i < parameters.size(); ++i) zero_.input(inputs_ + i) = parameters[i];
     zero_.fix();
     zero_.registers_.resize(program.registers_, 0.0);
+    coefficients_.reserve(program.coefficients_.size());
     for (const SeriesProgram::Coefficient& c : program.coefficients_) {
         if (coefficients_.empty()) {
             coefficients_.push_back(1.0);
@@ -77,12 +85,7 @@ void SeriesEvaluator::begin(const double* inputs) {
     using Kind = SeriesProgram::Kind;
     std::copy_n(inputs, inputs_, zero_.registers_.data());
     zero_.run();
-    void* rows = rows_.get();
-    std::size_t room = room_for_rows(program_->plan_) * sizeof(double);
-    std::align(in_cache_line * sizeof(double), sizeof(double), rows, room);
-    tables_ = {factors_.data(), now_.data(), static_cast<double*>(rows)};
-    const SeriesPlan& plan = program_->plan_;
-    std::fill_n(now_.begin() + plan.series, plan.lanes, 0.0);  // sums of order 1
+    std::fill_n(tables_.now + program_->plan_.series, program_->plan_.lanes, 0.0);  // sums of order 1
     double* const z = zero_.registers_.data();
     const std::size_t own = zero_.program_->slots_.count + zero_.program_->constants_.size() + zero_.program_->size();
     for (const SeriesProgram::Seed& seed : program_->seeds_) {
@@ -161,7 +164,7 @@ void SeriesEvaluator::begin(const double* inputs) {
 }
 
 void SeriesEvaluator::extend(int k, const double* inputs) {
-    std::copy_n(inputs, inputs_, now_.data() + 1);
+    std::copy_n(inputs, inputs_, tables_.now + 1);
     if (k == 1 && program_->code_) return program_->code_->make_first(tables_);
     make_order(program_->plan_, tables_, k);
 }

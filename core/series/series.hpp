@@ -101,7 +101,7 @@ class SeriesEvaluator {
     // Evaluates order k, 1 <= k <= highest_order, from that order of the moving inputs, after all lower ones.
     void extend(int k, const double* inputs);
     // Order k of an output, after extend(k) until the next.
-    double output(std::size_t index) const { return now_[program_->plan_.outputs[index]]; }
+    double output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
     // Of a motion, see make_orders(); after order 1.
     int extend(SeriesMotion& motion, int k, int last);
 
@@ -111,8 +111,7 @@ class SeriesEvaluator {
     Evaluator<double> zero_;              // order 0, with room for hidden registers
     std::vector<double> coefficients_;    // of the program, by number
     std::vector<SeriesFactors> factors_;  // of the rules
-    std::vector<double> now_;             // order k: series, inner sums
-    std::unique_ptr<double[]> rows_;      // with some room, to begin where a vector does
+    std::unique_ptr<double[]> tables_block_;
     SeriesTables tables_;
 };
 
