@@ -11,10 +11,11 @@
 #include <vector>
 
 #include "expression/expression.hpp"
-#include "expression/machine.hpp"
 #include "expression/scalar.hpp"
 
 namespace achilles {
+
+class MachineCode;
 
 struct Slots {
     std::uint32_t count = 0;        // all inputs
@@ -48,8 +49,10 @@ class Program {
     std::size_t fixed_ = 0;                  // instructions that depend on parameters alone come first
     std::vector<std::size_t> runs_;          // ends of runs of instructions of one operation
     std::size_t fixed_runs_ = 0;
-    std::vector<std::uint32_t> outputs_;       // registers
-    std::shared_ptr<const MachineCode> code_;  // of the instructions that move, over double; may be none
+    std::vector<std::uint32_t> outputs_;  // registers
+    // The instructions that move, over double, as a function of the registers; may be none.
+    std::shared_ptr<const MachineCode> code_;
+    void (*run_code_)(double* registers) = nullptr;
 };
 
 // A program with its registers. One per thread; copying copies the registers.
@@ -72,7 +75,7 @@ class Evaluator {
     // Evaluates the rest. Inputs must be set.
     void run() {
         if constexpr (std::is_same_v<Scalar, double>)
-            if (program_->code_) return program_->code_->template as<void(double*)>()(registers_.data());
+            if (program_->run_code_ != nullptr) return program_->run_code_(registers_.data());
         run_by_loop();
     }
     // The same without machine code.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <tuple>
 
+#include "expression/machine.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -15,7 +16,8 @@ class SeriesCompiler {
  public:
     explicit SeriesCompiler(SeriesProgram& series) : series_(series), program_(series.program_) {}
 
-    void compile() {
+    // Of the outputs, the first `wanted` as series.
+    void compile(std::size_t wanted) {
         const Slots& slots = program_.slots_;
         const auto first = slots.count + static_cast<std::uint32_t>(program_.constants_.size());
         const auto count = first + static_cast<std::uint32_t>(program_.instructions_.size());
@@ -33,9 +35,9 @@ class SeriesCompiler {
         for (std::uint32_t reg = first_moving_; reg < count; ++reg)
             forms_[reg] = translate(program_.instructions_[reg - first], reg);
         for (const std::uint32_t output : program_.outputs_) {
-            const bool wanted = series_.outputs_.size() < series_.wanted_;
+            const bool as_series = series_.outputs_.size() < wanted;
             series_.outputs_.push_back(output);
-            if (wanted) series_.plan_.outputs.push_back(written_apart(operand(output)));
+            if (as_series) series_.plan_.outputs.push_back(written_apart(operand(output)));
         }
         series_.registers_ = next_register_;
         series_.plan_.series = (next_series_ + SeriesPlan::aligned - 1) / SeriesPlan::aligned * SeriesPlan::aligned;
@@ -378,8 +380,8 @@ class SeriesCompiler {
     std::vector<Pending> sums_;
 };
 
-SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program), wanted_(wanted) {
-    SeriesCompiler(*this).compile();
+SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program) {
+    SeriesCompiler(*this).compile(wanted);
     if (const auto widest = widest_code()) code_ = OrderCode::of(plan_, *widest);
 }
 

@@ -8,9 +8,10 @@
 #include <memory>
 #include <vector>
 
-#include "expression/machine.hpp"
-
 namespace achilles {
+
+class MachineCode;
+enum class Width : unsigned;
 
 // Order k of series `result` is (f[2] w_k + f[1] y_k) + f[0] x_k: what is known last comes last. An operand is a series
 // or an inner sum; 0 is none. A factor that is always 1 or -1 is known, the others are looked up.

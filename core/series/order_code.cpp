@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <span>
 
+#include "expression/machine.hpp"
 #include "series/order.hpp"
 
 namespace achilles {

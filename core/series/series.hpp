@@ -18,7 +18,6 @@
 #include <span>
 #include <vector>
 
-#include "expression/machine.hpp"
 #include "expression/program.hpp"
 #include "series/order.hpp"
 
@@ -73,7 +72,6 @@ class SeriesProgram {
     };
 
     Program program_;
-    std::size_t wanted_ = 0;
     bool partial_ = false;
     std::vector<Coefficient> coefficients_;  // the first is 1
     SeriesPlan plan_;                        // series 0 is zero, then the inputs that move, then results

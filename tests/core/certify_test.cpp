@@ -6,6 +6,7 @@
 
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
+#include "floor/floor.hpp"
 #include "simulate/impact.hpp"
 #include "systems.hpp"
 
@@ -93,7 +94,23 @@ TEST(Restarts, KineticIsOfThirdOrderEuclideanOfFirst) {
     EXPECT_NEAR(order("double_pendulum", Reinitialization::euclidean, 5.0, 1e-6), 1.0, 0.05);
 }
 
-// The quick look never puts off what could be proved: at the impact before a cut, new conditions have no proof.
+// Cuts of a trajectory, and those that could have been proved at the impact before: the quick look put them off.
+struct Cuts {
+    int all = 0, late = 0;
+    void count(const Trajectory& trajectory) {
+        Surface surface(*trajectory.model, trajectory.run);
+        for (std::size_t i = 1; i < trajectory.events.size(); ++i) {
+            const Event& last = trajectory.events[i - 1];
+            if (trajectory.events[i].kind != Event::Kind::zeno || last.kind != Event::Kind::impact) continue;
+            ++all;
+            const Contact contact = surface.at({last.q, last.v_before});
+            const Vector s = reinitialize(contact, last.v_before, Reinitialization::kinetic);
+            const Collision collision{last.t, {last.q, last.v_before}, -contact.hdot, s, s};
+            if (truncation_conditions(*trajectory.model, trajectory.run)->hold(collision)) ++late;
+        }
+    }
+};
+
 TEST(SharpCertificates, AreNotPutOff) {
     for (const auto& problem : test::problems) {
         const auto model = test::load(problem.asset);
@@ -101,21 +118,31 @@ TEST(SharpCertificates, AreNotPutOff) {
         run.options.end_time = 20.0;
         for (const double eps : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
             run.options.truncation.eps_q = run.options.truncation.eps_v = eps;
-            const Trajectory trajectory = simulate(model, run);
-            Surface surface(*model, run);
-            int cuts = 0;
-            for (std::size_t i = 1; i < trajectory.events.size(); ++i) {
-                const Event& last = trajectory.events[i - 1];
-                if (trajectory.events[i].kind != Event::Kind::zeno || last.kind != Event::Kind::impact) continue;
-                ++cuts;
-                const Contact contact = surface.at({last.q, last.v_before});
-                const Vector s = reinitialize(contact, last.v_before, Reinitialization::kinetic);
-                const Collision collision{last.t, {last.q, last.v_before}, -contact.hdot, s, s};
-                EXPECT_FALSE(truncation_conditions(*model, run)->hold(collision)) << problem.key << ", " << eps;
-            }
-            EXPECT_GE(cuts, 1);
+            Cuts cuts;
+            cuts.count(simulate(model, run));
+            EXPECT_GE(cuts.all, 1);
+            EXPECT_EQ(cuts.late, 0) << problem.key << ", " << eps;
         }
     }
+}
+
+// It is a guess: of 192 000 cuts of random runs through the gallery, 8 came an impact late. Of these few, none may.
+TEST(SharpCertificates, AreNotPutOffInTheGallery) {
+    Cuts cuts;
+    for (const std::string& system : test::all_systems()) {
+        const auto model = test::load(system);
+        test::Starts starts(model, 7);
+        auto run = model->default_run();
+        run.options.max_impacts = 3000;
+        for (int i = 0; i < 100; ++i) {
+            const State start = starts.next();
+            run.q = start.q;
+            run.v = start.v;
+            cuts.count(simulate(model, run));
+        }
+    }
+    EXPECT_GE(cuts.all, 1000);
+    EXPECT_EQ(cuts.late, 0);
 }
 
 // THEORY section 3: w < min(c1, c2, c3) is what held, and what the certificate says follows from its own numbers.

@@ -9,14 +9,6 @@
 namespace achilles::test {
 namespace {
 
-std::vector<std::string> all_systems() {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
-        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
-    std::sort(names.begin(), names.end());
-    return names;
-}
-
 Run started(const Model& model, const State& start) {
     Run run = model.default_run();
     run.q = start.q;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 
+#include "expression/machine.hpp"
 #include "expression/parse.hpp"
 
 namespace achilles {

@@ -1,11 +1,13 @@
 // Systems and reference results for the tests.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "model/model.hpp"
 #include "simulate/simulate.hpp"
@@ -14,6 +16,15 @@ namespace achilles::test {
 
 inline std::filesystem::path source_file(const std::string& relative) {
     return std::filesystem::path(ACHILLES_SOURCE_DIR) / relative;
+}
+
+// The gallery's, by name.
+inline std::vector<std::string> all_systems() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 inline std::shared_ptr<const Model> load(const std::string& name) {
