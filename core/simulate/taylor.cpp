@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace achilles {
@@ -201,28 +202,32 @@ double Taylor::natural_step() {
     return std::exp2(exponent);
 }
 
-// The even and the odd terms by themselves: half as many sums wait for one another.
+// The even and the odd terms by themselves: half as many sums wait for one another. Two components at a time; q and v
+// stand side by side, so there is no odd one.
 void Taylor::evaluate(double duration) {
     span_ = duration;
     evaluated_ = true;
+    using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
     const double square = duration * duration;
-    for (std::size_t i = 0; i < n_; ++i) {
-        double even_q = 0.0, even_v = 0.0, odd_q = 0.0, odd_v = 0.0;
-        const double* c = row(order_) + i;
-        if (order_ % 2 == 0) {
-            even_q = c[0];
-            even_v = c[n_];
-            c -= width_;
+    std::array<double, 2 * max_coordinates> reached;
+    for (std::size_t i = 0; i < 2 * n_; i += 2) {
+        const auto of_order = [&](int k) {
+            Pair pair;
+            std::memcpy(&pair, row(k) + i, sizeof pair);
+            return pair;
+        };
+        Pair even{}, odd{};
+        int k = order_;
+        if (k % 2 == 0) even = of_order(k--);
+        for (; k > 0; k -= 2) {
+            odd = odd * square + of_order(k);
+            even = even * square + of_order(k - 1);
         }
-        for (; c > row(0); c -= 2 * width_) {
-            odd_q = odd_q * square + c[0];
-            odd_v = odd_v * square + c[n_];
-            even_q = even_q * square + *(c - width_);
-            even_v = even_v * square + *(c - width_ + n_);
-        }
-        to_.q[static_cast<Eigen::Index>(i)] = even_q + duration * odd_q;
-        to_.v[static_cast<Eigen::Index>(i)] = even_v + duration * odd_v;
+        const Pair both = even + duration * odd;
+        std::memcpy(reached.data() + i, &both, sizeof both);
     }
+    std::copy_n(reached.data(), n_, to_.q.data());
+    std::copy_n(reached.data() + n_, n_, to_.v.data());
 }
 
 Obstacle Taylor::do_step(double longest, double, double least) {
