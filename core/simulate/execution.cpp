@@ -110,12 +110,10 @@ bool Execution::find_impact() {
         if (locate_impact(descent.theta)) return true;
         h = gap_along();  // no impact after all, or the step became shorter
     }
-    // What a step adds: its end is better known than its remainder says of all of it. (Measured: bench_floor's dips.)
-    const double before = takeoff_.gap.error, error = before + 0.125 * (flow_.remainder(h) - before);
-    Gap gap{h(1.0), h.slope(1.0) / flow_.duration(), error};
+    Gap gap{h(1.0), h.slope(1.0) / flow_.duration()};
     const Contact contact = surface_.at(flow_.end());
-    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow_.end()))
-        gap = {contact.h, contact.hdot, error};
+    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow_.end())) gap = {contact.h, contact.hdot};
+    flow_.add_error(h, gap);
     flow_.move_gap(gap);
     takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
     take(contact);

@@ -44,6 +44,7 @@ class Flow {
     bool stays_negative() const { return stepper_->stays_negative(); }
     bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder(const Polynomial& watched) const { return stepper_->remainder(watched); }
+    void add_error(const Polynomial& watched, Gap& end) const { stepper_->add_error(watched, end); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.
     Piece piece(std::vector<double>& coefficients) const;
 

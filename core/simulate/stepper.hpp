@@ -22,7 +22,7 @@ enum class Obstacle { none, left_the_domain, not_a_number, step_too_small };
 // The gap and its rate.
 struct Gap {
     double h = 0.0, hdot = 0.0;
-    double error = 0.0;  // what earlier steps of the flight may have made it wrong by
+    double error = 0.0, rate_error = 0.0;  // what earlier steps of the flight may have made them wrong by
 };
 
 class Stepper {
@@ -50,6 +50,8 @@ class Stepper {
     virtual bool stays_negative() const { return false; }
     // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
     virtual double remainder(const Polynomial& watched) const = 0;
+    // Adds to the gap at the end of the last step what later steps must take it to be wrong by.
+    virtual void add_error(const Polynomial& watched, Gap& end) const = 0;
     // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the
     // state's own value, and no first guess is needed. False if it is integrated to its end: watched() then drifts from
     // its value at (q, v) within the tolerance, and between the ends it is interpolated.

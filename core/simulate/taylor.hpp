@@ -26,6 +26,7 @@ class Taylor : public Stepper {
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     bool stays_negative() const override;
     double remainder(const Polynomial& p) const override;
+    void add_error(const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
 
@@ -48,7 +49,8 @@ class Taylor : public Stepper {
     void stay_in_domain(double step);
     bool is_defined();
     void evaluate(double duration);
-    double remainder(double size, double last_terms) const;
+    double earlier_error() const { return motion_ == Motion::flight ? gap_.error + gap_.rate_error * span_ : 0.0; }
+    double own_remainder(double size, double last_terms) const;
 
     std::size_t n_, width_;  // width: q, v, what is watched
     double tolerance_;

@@ -111,7 +111,7 @@ TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
     EXPECT_GT(seen, 20);
 }
 
-// Dips that later steps of a flight once decided as if the earlier ones had made no error.
+// Dips that later steps of a flight once decided as if the earlier ones had made no error, or none in the rate.
 TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
     struct Known {
         const char* system;
@@ -134,6 +134,12 @@ TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
                                    {-0.5069320739607583, 14.223896048396128},
                                    0.342827484,
                                    1e-13,
+                                   1e-10},
+                             Known{"double_pendulum",
+                                   {1.339918853161482, 0.055544840292523615},
+                                   {1.6533073264742093, -0.3729483604294108},
+                                   0.26692792,
+                                   9.999e-14,
                                    1e-10},
                              Known{"ball_on_sine",
                                    {9.892436125524446, 3.3504934840822407},
