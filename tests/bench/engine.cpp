@@ -31,20 +31,21 @@
 //   sine and cosine at once, and those of the last angles remembered       -5 percent
 //   certificates put off by what the last proof found                      theirs, at 1e-12: -45 percent
 //   contact forces told from the series alone, polynomials not filled with
-//   zeros first, orders below the least not looked at, hopeless cuts told by
-//   the speed                                                          -7, -2, -7, -2 percent
-//   inner sums from a cache line on, so that none is read back late     -2 percent
-//   -O2 instead of -O3 (not for the programs, which it makes slower)    -2 percent of the ball's
+//   zeros first, orders below the least not looked at, inner sums from a
+//   cache line on (else none can be read back before all are stored), -O2
+//   instead of -O3 (not for the programs, which it makes slower)        -8, -4, -8, -4 percent
 // What gave nothing, or less:
 //   vectors of eight instead of four doubles                            none on a Zen 4
 //   other weights in the order's cost                                   within 3 percent
 //   accelerations carried in registers from one order to the next, code
 //   that begins with a cache line, no errno, AVX2 for all of the core   none
-//   older rows laid out without a loop, with a jump to where they begin -6 percent of 26 orders in a loop, none of a
-//   run the last terms of inner sums one by one, from registers             +10 percent from order 14 on operands of a
-//   rule by when they are known                           +10 percent with cold caches four components in one vector
-//   when an end is evaluated              +5 percent eight runs side by side, every number a vector of eight (C++, not
-//   machine code): 25 orders of the ball's contact                      1.3 times as fast as one run after the other
+//   older rows laid out without a loop, with a jump to where they begin none of a run (26 orders in a loop: -6 percent)
+//   the last terms of inner sums one by one, from registers             +10 percent from order 14 on
+//   the newest of the older rows last                                   within 2 percent of 26 orders
+//   operands of a rule by when they are known                           +10 percent with cold caches
+//   four components in one vector when an end is evaluated              +5 percent
+//   eight runs side by side, a vector each number (C++, no machine
+//   code): 25 orders of the ball's contact                              1.3 times as fast as one after the other
 // What is left of the ball's time at 1e-9: two fifths is series, where every order waits for the one before (some 62
 // cycles; inner sums that take 2 loads a term come on top of it); the rest is what each of 45 steps takes besides (two
 // looks at the surface, the root, the step's length). In the ensemble a run has 28 steps in contact of 25 orders each:
