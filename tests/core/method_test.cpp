@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "simulate/stepper.hpp"
 #include "systems.hpp"
 
 namespace achilles {
@@ -162,6 +163,22 @@ TEST(Grazing, IsRightOrUndecidedAtAnyTolerance) {
                 }
             }
         }
+    }
+}
+
+// A contact force that is constant, and so small that its remainder covers it, is not known to stay: hddot = -g.
+TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
+    const auto model = test::typed(
+        "title = \"drop\"\n[[coordinate]]\nname = \"x\"\nstart = 0\n[[parameter]]\nname = \"g\"\nvalue = 1\n"
+        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"g*x\"\n"
+        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
+    auto run = model->default_run();
+    for (const double g : {1.0, 1e-11, -1.0}) {
+        run.parameters[0] = g;
+        const auto stepper = make_taylor(*model, run);
+        stepper->initialize(Motion::contact, {run.q, run.v}, {});
+        ASSERT_EQ(stepper->do_step(1.0, 0.0, 1e-15), Obstacle::none);
+        EXPECT_EQ(stepper->stays_negative(), g == 1.0) << g;
     }
 }
 
