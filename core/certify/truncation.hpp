@@ -21,9 +21,10 @@ struct Collision {
 class TruncationConditions {
  public:
     virtual ~TruncationConditions() = default;
-    // Quick: true where they can be seen not to hold; quicker: by the impact speed w and the collisions before.
+    // Quick: true where they can be seen not to hold.
     virtual bool hopeless(const Collision& collision) = 0;
-    virtual bool hopeless_at(double) { return false; }
+    // Quicker: the same by the impact speed w alone, and what the collisions before have shown.
+    virtual bool hopeless_at(double /*speed*/) { return false; }
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     // Takes long: ask hopeless() first.
     virtual std::optional<Certificate> hold(const Collision& collision) = 0;

@@ -168,7 +168,7 @@ void Execution::land() {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
     }
-    // Most impacts need no more than this look.
+    // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (restitution_ > 0.0 && conditions_ && conditions_->hopeless_at(-contact.hdot) && is_well_resolved(-contact.hdot))
         return bounce(contact, restitution_);
     Collision collision{t_, state_, -contact.hdot, reinitialize(contact, state_.v, Reinitialization::kinetic),
@@ -191,8 +191,7 @@ void Execution::land() {
     }
 }
 
-// The truncation conditions stand ready from the first question on. Most impacts need no more than a look, which takes
-// less time than the clock.
+// The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
 bool Execution::may_be_cut(const Collision& collision) {
     if (!conditions_) conditions_ = timed([&] { return truncation_conditions(*model_, run_); });
     return !conditions_->hopeless(collision);

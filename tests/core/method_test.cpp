@@ -166,6 +166,23 @@ TEST(Grazing, IsRightOrUndecidedAtAnyTolerance) {
     }
 }
 
+// x'' = -4 x^3 from x = 0: of the series' terms only every fourth is not nothing, and the first ones that are nothing
+// must not be taken for its end.
+TEST(Methods, SymmetryDoesNotHideTerms) {
+    const auto model = test::typed(
+        "title = \"spring\"\n[[coordinate]]\nname = \"x\"\nstart = 0\nrate = 1\n"
+        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x^4\"\n"
+        "[[constraint]]\ngap = \"x + 10\"\nrestitution = 0.5\n");
+    auto run = model->default_run();
+    run.options.end_time = 2.0;
+    run.options.tolerance = 1e-12;
+    const State end = simulate(model, run).end;
+    run.options.method = Method::dopri5;
+    const State other = simulate(model, run).end;
+    EXPECT_NEAR(end.q[0], other.q[0], 1e-10);
+    EXPECT_NEAR(end.v[0], other.v[0], 1e-10);
+}
+
 // A contact force that is constant, and so small that its remainder covers it, is not known to stay: hddot = -g.
 TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
     const auto model = test::typed(

@@ -98,6 +98,19 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
     }
 }
 
+// Bounds that nothing meets: what puts proofs off does not keep the bouncing from ending where it must.
+TEST(PaperProblems, BoundsThatNothingMeetsEndBelowRounding) {
+    const auto model = test::load("ball_on_sine");
+    auto run = model->default_run();
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-100;
+    const Trajectory trajectory = simulate(model, run);
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    EXPECT_LT(trajectory.statistics.impacts, 150);
+    const auto points = test::events_of(trajectory, Event::Kind::zeno);
+    EXPECT_FALSE(points.empty());
+    for (const Event& event : points) EXPECT_TRUE(event.certificate->below_rounding);
+}
+
 TEST(PaperProblems, SharpConditionsCutEarlierAndAreRight) {
     for (const Problem& problem : test::problems) {
         SCOPED_TRACE(problem.key);
