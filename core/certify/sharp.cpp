@@ -61,9 +61,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run)
       motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)),
       shadow_(model.evaluator<Interval>(model.bouncing().shadow, run.parameters)),
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
-      point_(model.evaluator(model.bouncing().hddot, run.parameters)),
-      point_gradient_(model.evaluator(model.bouncing().gradient, run.parameters)),
-      point_motion_(model.evaluator(model.bouncing().motion, run.parameters)),
+      trend_(model.evaluator(model.bouncing().trend, run.parameters)),
       variables_(2 * n_ + 1),
       need_q_(n_),
       need_s_(n_) {}
@@ -89,18 +87,16 @@ bool SharpConditions::hopeless_at(double speed) {
 // Else, to first order, how far -hddot varies over the least X there can be.
 bool SharpConditions::hopeless(const Collision& collision) {
     if (hopeless_at(collision.speed)) return true;
-    const State state{collision.before.q, collision.tangential};
-    for (Evaluator<double>* program : {&point_, &point_gradient_, &point_motion_}) {
-        put(*program, state);
-        program->input(sigma_) = 0.0;
-        program->run();
+    for (std::size_t i = 0; i < n_; ++i) {
+        trend_.input(i) = collision.before.q[static_cast<Eigen::Index>(i)];
+        trend_.input(n_ + i) = collision.tangential[static_cast<Eigen::Index>(i)];
     }
-    const double a = -point_.output(0), e = mid(e_), w = collision.speed;
+    trend_.run();
+    const double a = -trend_.output(0), e = mid(e_), w = collision.speed;
     if (!(a > 0.0) || (collision.restart - collision.tangential).norm() > truncation_.eps_v) return true;
     const double T = 2.0 * e * w / (a * (1.0 - e));
-    double variation = std::abs(point_gradient_.output(2 * n_)) * w;
-    for (std::size_t i = 0; i < 2 * n_; ++i)
-        variation += std::abs(point_gradient_.output(i) * point_motion_.output(i)) * T;
+    double variation = std::abs(trend_.output(1 + 2 * n_)) * w;
+    for (std::size_t i = 1; i <= 2 * n_; ++i) variation += std::abs(trend_.output(i)) * T;
     // Half of the time bound's width, with a_min and a_max = a (1 -+ x): to first order in x, then as it is.
     const double x = variation / a, scaled = x * (1.0 + e * e) / (1.0 - e * e);
     const double first = 2.0 * e * w * scaled / (a * (1.0 - e)), allowed = doubt * truncation_.eps_t;

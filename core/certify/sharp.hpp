@@ -33,6 +33,7 @@ class SharpConditions : public TruncationConditions {
     SharpConditions(const Model& model, const Run& run);
     bool hopeless(const Collision& collision) override;
     bool hopeless_at(double speed) override;
+    void forget() override { wide_speed_ = too_wide_ = last_speed_ = 0.0; }
     std::optional<Certificate> hold(const Collision& collision) override;
     std::optional<Certificate> widest(const Collision& collision) override;
 
@@ -56,7 +57,7 @@ class SharpConditions : public TruncationConditions {
     Interval e_;
     Range hddot_;
     Evaluator<Interval> motion_, shadow_, surface_;
-    Evaluator<double> point_, point_gradient_, point_motion_;
+    Evaluator<double> trend_;
     // The last proof or guess that was too wide: at this impact speed, by this factor.
     double wide_speed_ = 0.0, too_wide_ = 0.0;
     double last_speed_ = 0.0;              // of the last collision that was looked at

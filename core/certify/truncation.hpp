@@ -25,6 +25,8 @@ class TruncationConditions {
     virtual bool hopeless(const Collision& collision) = 0;
     // Quicker: the same by the impact speed w alone, and what the collisions before have shown.
     virtual bool hopeless_at(double /*speed*/) { return false; }
+    // Another run begins: what its collisions have shown is none of the next one's business.
+    virtual void forget() {}
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     // Takes long: ask hopeless() first.
     virtual std::optional<Certificate> hold(const Collision& collision) = 0;

@@ -54,7 +54,16 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     const Row ndot = along(n, q, velocity), Bdot = sum(along(B, q, velocity), along(B, v, rate));
     for (const auto& slots : {q, v})
         for (const Row& row : jacobian(A, slots)) slopes.insert(slopes.end(), row.begin(), row.end());
-    const Expression hddot = substitute(graph.adopt(equations.hddot), v, velocity);
+    const Expression hddot_of_v = graph.adopt(equations.hddot), hddot = substitute(hddot_of_v, v, velocity);
+    Row trend = {hddot_of_v};
+    const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
+    Expression by_sigma = graph.number(0);
+    for (std::size_t i = 0; i < count; ++i) {
+        trend.push_back(by_q[i] * s[i]);
+        by_sigma = by_sigma + by_v[i] * n[i];
+    }
+    for (std::size_t i = 0; i < count; ++i) trend.push_back(by_v[i] * A[i]);
+    trend.push_back(by_sigma);
     std::vector<std::uint32_t> variables = q;
     variables.insert(variables.end(), v.begin(), v.end());
     variables.push_back(layout.sigma());
@@ -65,7 +74,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         for (const Row& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());
         return Program(outputs, slots);
     };
-    return {program({{hddot}}), program({gradient(hddot, variables)}), program({velocity, rate}),
+    return {program({{hddot}}), program({gradient(hddot, variables)}), program({velocity, rate}), program({trend}),
             program({A, n, B, D, ndot, Bdot, slopes})};
 }
 

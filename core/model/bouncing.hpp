@@ -17,7 +17,9 @@ struct Bouncing {
     Program hddot;     // hddot(q, s + n sigma)
     Program gradient;  // its derivatives with respect to q (n), s (n), sigma
     Program motion;    // v = s + n sigma (n), s' (n)
-    Program shadow;    // A (n), n (n), B (n), D (n), ndot (n), Bdot (n), dA/dq (n x n), dA/ds (n x n), row by row
+    // At sigma = 0: hddot, its rate of change with time along the motion by each of q (n) and s (n), that with sigma.
+    Program trend;
+    Program shadow;  // A (n), n (n), B (n), D (n), ndot (n), Bdot (n), dA/dq (n x n), dA/ds (n x n), row by row
 };
 
 // Derives and compiles the programs, in a copy of the equations' graph.

@@ -10,6 +10,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -62,6 +63,14 @@ class Model {
         for (std::size_t i = 0; i < parameters.size(); ++i) result.input(layout_.parameter(i)) = Scalar(parameters[i]);
         result.fix();
         return result;
+    }
+
+    // The same, made where it is first asked for: a run needs few of those that it may need.
+    template <class Scalar>
+    Evaluator<Scalar>& made(std::optional<Evaluator<Scalar>>& evaluator, const Program& program,
+                            std::span<const double> parameters) const {
+        if (!evaluator) evaluator = this->evaluator<Scalar>(program, parameters);
+        return *evaluator;
     }
 
     // The run that the description asks for.

@@ -1,4 +1,5 @@
 // The part of an execution on the surface: completion of a bouncing, contact, release.
+#include <algorithm>
 #include <cmath>
 
 #include "simulate/execution.hpp"
@@ -13,20 +14,29 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     const double zeno_time = 0.5 * (certificate.zeno_low + certificate.zeno_high);
     state_ = {collision.before.q, collision.restart};
     record_.stretch(state_);
-    flow_.stay(t_, state_);
-    if (stay(std::min(zeno_time, run_.options.end_time))) {
-        stop(Outcome::Kind::undecided, "the contact force vanishes before the Zeno time at " + where(t_, state_));
-        return;
-    }
-    if (outcome_ || zeno_time > run_.options.end_time) return;
-    Event event;
+    Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
-    event.t = t_ = zeno_time;
-    event.q = state_.q;
-    event.v_before = event.v_after = state_.v;
+    event.t = zeno_time;
     event.truncation =
         Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
     event.certificate = std::move(certificate);
+}
+
+double Execution::contact_until() const {
+    return completion_ ? std::min(completion_->t, run_.options.end_time) : run_.options.end_time;
+}
+
+void Execution::wait_for_zeno_point() {
+    flow_.stay(t_, state_);
+    const bool vanished = stay(contact_until());
+    Event event = std::move(*completion_);
+    completion_.reset();
+    if (vanished)
+        stop(Outcome::Kind::undecided, "the contact force vanishes before the Zeno time at " + where(t_, state_));
+    if (outcome_ || event.t > run_.options.end_time) return;
+    t_ = event.t;
+    event.q = state_.q;
+    event.v_before = event.v_after = state_.v;
     record_.event(std::move(event));
     record_.close(t_);
     record_.open(Phase::Kind::constrained, t_);
@@ -43,29 +53,34 @@ void Execution::stay_until_release() {
 
 // Moves on the surface until a time (false) or until the contact force vanishes (true).
 bool Execution::stay(double until) {
-    while (!outcome_ && until - t_ > 1e-15 * std::abs(t_)) {
-        if (!advance(until - t_)) return false;
-        const auto projected = surface_.project(flow_.moved_end(), false);
-        if (!projected) {
-            leave_contact(flow_.end_time(), flow_.end());
-            return false;
-        }
-        const auto descent = flow_.stays_negative() ? Descent{} : force_descent();
-        if (descent.kind == Descent::Kind::root && descent.theta == 0.0) return true;
-        if (descent.kind == Descent::Kind::undecided) {
-            stop(Outcome::Kind::undecided,
-                 "the contact force comes closer to zero than the integration knows it just after " +
-                     where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
-            return false;
-        }
-        if (descent.kind == Descent::Kind::root) {
-            if (locate_release(descent.theta)) return !outcome_;
-            take(surface_.at(flow_.end()));  // the step became shorter
-        } else {
-            take(*projected);
-        }
-    }
+    while (!outcome_ && until - t_ > 1e-15 * std::abs(t_))
+        if (stay_step(until)) return true;
     if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
+    return false;
+}
+
+// One step of it. True if the contact force vanishes where it ends.
+bool Execution::stay_step(double until) {
+    if (!advance(until - t_)) return false;
+    const auto projected = surface_.project(flow_.moved_end(), false);
+    if (!projected) {
+        leave_contact(flow_.end_time(), flow_.end());
+        return false;
+    }
+    const auto descent = flow_.stays_negative() ? Descent{} : force_descent();
+    if (descent.kind == Descent::Kind::root && descent.theta == 0.0) return true;
+    if (descent.kind == Descent::Kind::undecided) {
+        stop(Outcome::Kind::undecided,
+             "the contact force comes closer to zero than the integration knows it just after " +
+                 where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
+        return false;
+    }
+    if (descent.kind == Descent::Kind::root) {
+        if (locate_release(descent.theta)) return !outcome_;
+        take(surface_.at(flow_.end()));  // the step became shorter
+    } else {
+        take(*projected);
+    }
     return false;
 }
 

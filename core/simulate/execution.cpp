@@ -35,6 +35,26 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* 
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
       state_{run.q, run.v} {}
 
+bool Execution::restart(const Run& run) {
+    const Options &now = run_.options, &next = run.options;
+    if (next.tolerance != now.tolerance || next.method != now.method || next.truncation != now.truncation ||
+        run.parameters != run_.parameters)
+        return false;
+    run_ = run;
+    if (conditions_) conditions_->forget();
+    record_.restart(model_, run_);
+    t_ = last_step_ = first_step_ = proving_ = 0.0;
+    stalled_ = 0;
+    other_evaluations_ = -flow_.evaluations();
+    state_ = {run.q, run.v};
+    contact_ = {};
+    takeoff_ = {};
+    constrained_ = at_impact_ = false;
+    completion_.reset();
+    outcome_.reset();
+    return true;
+}
+
 // ---- the start ----
 
 void Execution::begin() {
@@ -171,8 +191,11 @@ void Execution::land() {
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (restitution_ > 0.0 && conditions_ && conditions_->hopeless_at(-contact.hdot) && is_well_resolved(-contact.hdot))
         return bounce(contact, restitution_);
-    Collision collision{t_, state_, -contact.hdot, reinitialize(contact, state_.v, Reinitialization::kinetic),
-                        reinitialize(contact, state_.v, run_.options.truncation.reinitialization)};
+    const Vector tangential = reinitialize(contact, state_.v, Reinitialization::kinetic);
+    const Reinitialization kind = run_.options.truncation.reinitialization;
+    const bool kinetic = kind == Reinitialization::kinetic;
+    Collision collision{t_, state_, -contact.hdot, tangential,
+                        kinetic ? tangential : reinitialize(contact, state_.v, kind)};
     if (restitution_ == 0.0) {
         capture(collision);
     } else if (auto certificate =
@@ -225,8 +248,8 @@ void Execution::bounce(const Contact& contact, double e) {
 
 // Far from what follows: the last step was neither short nor low.
 bool Execution::is_well_resolved(double speed) const {
-    const double last = flow_.duration(), q = state_.q.cwiseAbs().maxCoeff();
-    return last > 1e-6 * (1.0 + t_) && last * speed > 1e-8 * (1.0 + q);
+    const double q = state_.q.cwiseAbs().maxCoeff();
+    return last_step_ > 1e-6 * (1.0 + t_) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
 
 // THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
@@ -301,9 +324,15 @@ bool Execution::advance(double longest) {
 void Execution::take(const Contact& contact) {
     contact_ = contact;
     record_.step(flow_, contact.h);
-    stalled_ = flow_.end_time() - t_ > 0x1p-51 * std::abs(t_) ? 0 : stalled_ + 1;
-    t_ = flow_.end_time();
+    pass(flow_.duration(), flow_.end_time());
     state_ = flow_.end();
+}
+
+// Time goes on to t, by a last step of this duration.
+void Execution::pass(double duration, double t) {
+    stalled_ = t - t_ > 0x1p-51 * std::abs(t_) ? 0 : stalled_ + 1;
+    t_ = t;
+    last_step_ = duration;
 }
 
 void Execution::leave(Obstacle obstacle) {
@@ -328,7 +357,7 @@ void Execution::leave_contact(double t, const State& state) {
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
 Trajectory Execution::finish() {
-    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations());
+    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations() + other_evaluations_);
     trajectory.statistics.certificate_seconds = proving_;
     return trajectory;
 }

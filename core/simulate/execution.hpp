@@ -21,6 +21,10 @@ class Execution {
     // `watch` may be null; otherwise it lives as long as this.
     Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep);
 
+    // As if it were made anew, for another run of the same parameters, tolerance, method and truncation. False, and
+    // nothing is done, where these differ.
+    bool restart(const Run& run);
+
     // Decides how the run starts: in flight, in contact, or at an impact.
     void begin();
     bool running() const { return !outcome_; }
@@ -28,12 +32,17 @@ class Execution {
 
     // Free motion to the next impact (or the end time), and that impact: Newton's law, or completion.
     void fly_to_impact();
+    // After an impact whose bouncing is cut: motion on the surface to the Zeno point (or the end time).
+    bool completing() const { return completion_.has_value(); }
+    void wait_for_zeno_point();
     // Motion on the surface until the contact force vanishes (or the end time), and the release.
     void stay_until_release();
 
     Trajectory finish();
 
  private:
+    friend class SideBySide;
+
     // How the gap leaves zero at the start of a flight: h, hdot, and how many of h, hdot, hddot are zero there.
     struct Takeoff {
         Gap gap;
@@ -63,7 +72,9 @@ class Execution {
     bool too_short_to_resolve(const Collision& collision, double e);
     void complete(const Collision& collision, Certificate certificate);
     void capture(const Collision& collision);
+    double contact_until() const;
     bool stay(double until);
+    bool stay_step(double until);
     Descent force_descent();
     bool locate_release(double theta);
     void release();
@@ -71,6 +82,7 @@ class Execution {
     bool is_cancelled();
     bool advance(double longest);
     void take(const Contact& contact);
+    void pass(double duration, double t);
     void leave(Obstacle obstacle);
     void leave_contact(double t, const State& state);
     void stop(Outcome::Kind kind, std::string message);
@@ -84,15 +96,18 @@ class Execution {
     Recorder record_;
     double restitution_;
     double t_ = 0.0;
-    int stalled_ = 0;  // steps in a row that were as short as the resolution of t
+    double last_step_ = 0.0;      // s
+    double first_step_ = 0.0;     // of the next flight: the predicted flight; 0: not known
+    double proving_ = 0.0;        // s, the clock's
+    long other_evaluations_ = 0;  // than those of the flow since it was made
     State state_;
     Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;
-    double first_step_ = 0.0;  // of the next flight: the predicted flight; 0: not known
+    std::optional<Event> completion_;  // the Zeno event that the run is on its way to
+    std::optional<Outcome> outcome_;
+    int stalled_ = 0;  // steps in a row that were as short as the resolution of t
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
-    double proving_ = 0.0;    // s, the clock's
-    std::optional<Outcome> outcome_;
 };
 
 }  // namespace achilles

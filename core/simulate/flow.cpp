@@ -7,8 +7,8 @@ namespace achilles {
 
 Flow::Flow(const Model& model, const Run& run)
     : stepper_(run.options.method == Method::taylor ? make_taylor(model, run) : make_dopri5(model, run)),
-      acceleration_{model.evaluator(model.flight(), run.parameters), model.evaluator(model.contact(), run.parameters)} {
-}
+      model_(&model),
+      parameters_(run.parameters) {}
 
 void Flow::fly(double t, const State& state, const Gap& gap, double first_step) {
     start(Motion::flight, t, state, gap, first_step);
@@ -65,7 +65,9 @@ void Flow::move_gap(const Gap& gap) {
 }
 
 void Flow::shift_end(double dt) {
-    Evaluator<double>& program = acceleration_[motion_ == Motion::flight ? 0 : 1];
+    const bool flying = motion_ == Motion::flight;
+    auto& program =
+        model_->made(acceleration_[flying ? 0 : 1], flying ? model_->flight() : model_->contact(), parameters_);
     put(program, end());
     program.run();
     for (Eigen::Index i = 0; i < to_.q.size(); ++i) {

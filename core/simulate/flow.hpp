@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "model/model.hpp"
@@ -55,7 +56,9 @@ class Flow {
     double least() const;
 
     std::unique_ptr<Stepper> stepper_;
-    Evaluator<double> acceleration_[2];  // of a Motion, at the end of a step
+    const Model* model_;
+    std::vector<double> parameters_;
+    std::optional<Evaluator<double>> acceleration_[2];  // of a Motion, at the end of a step
     Motion motion_ = Motion::flight;
     double t_ = 0.0, span_ = 0.0;
     double first_ = 0.0;           // bound on the next step; 0: none

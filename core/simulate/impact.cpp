@@ -35,13 +35,11 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
 }
 
 Surface::Surface(const Model& model, const Run& run)
-    : n_(static_cast<std::size_t>(model.n())),
+    : model_(&model),
+      parameters_(run.parameters),
+      n_(static_cast<std::size_t>(model.n())),
       surface_(model.evaluator(model.surface(), run.parameters)),
-      normal_(model.evaluator(model.normal(), run.parameters)),
-      release_(model.evaluator(model.release(), run.parameters)),
-      gap_(model.evaluator<Interval>(model.gap(), run.parameters)),
-      surface_enclosure_(model.evaluator<Interval>(model.surface(), run.parameters)),
-      release_enclosure_(model.evaluator<Interval>(model.release(), run.parameters)) {}
+      gap_(model.evaluator<Interval>(model.gap(), run.parameters)) {}
 
 Contact Surface::at(const State& state) {
     Contact contact;
@@ -77,9 +75,10 @@ bool Surface::within_gap_error(double value, double times, const Contact& contac
 }
 
 double Surface::hdot_error(const State& state) {
-    put(surface_enclosure_, state);
-    surface_enclosure_.run();
-    return rad(surface_enclosure_.output(1));
+    auto& enclosure = model_->made(surface_enclosure_, model_->surface(), parameters_);
+    put(enclosure, state);
+    enclosure.run();
+    return rad(enclosure.output(1));
 }
 
 std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
@@ -109,24 +108,27 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
 
 Surface::Normal Surface::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
+    auto& enclosure = model_->made(release_enclosure_, model_->release(), parameters_);
     for (std::size_t i = 0; i < n_; ++i) {
-        release_enclosure_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
-        release_enclosure_.input(n_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
+        enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
+        enclosure.input(n_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
     }
-    release_enclosure_.run();
-    return {release_enclosure_.output(0), release_enclosure_.output(1)};
+    enclosure.run();
+    return {enclosure.output(0), enclosure.output(1)};
 }
 
 double Surface::normal_acceleration(const State& state) {
-    put(normal_, state);
-    normal_.run();
-    return normal_.output(0);
+    auto& normal = model_->made(normal_, model_->normal(), parameters_);
+    put(normal, state);
+    normal.run();
+    return normal.output(0);
 }
 
 double Surface::jerk(const State& state) {
-    put(release_, state);
-    release_.run();
-    return release_.output(1);
+    auto& release = model_->made(release_, model_->release(), parameters_);
+    put(release, state);
+    release.run();
+    return release.output(1);
 }
 
 }  // namespace achilles

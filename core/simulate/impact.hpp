@@ -48,9 +48,13 @@ class Surface {
 
  private:
     void look(const State& state, Contact& contact);
+    const Model* model_;
+    std::vector<double> parameters_;
     std::size_t n_;
-    Evaluator<double> surface_, normal_, release_;
-    Evaluator<Interval> gap_, surface_enclosure_, release_enclosure_;
+    Evaluator<double> surface_;
+    Evaluator<Interval> gap_;
+    std::optional<Evaluator<double>> normal_, release_;
+    std::optional<Evaluator<Interval>> surface_enclosure_, release_enclosure_;
 };
 
 }  // namespace achilles

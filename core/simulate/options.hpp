@@ -28,6 +28,8 @@ struct Truncation {
     double eps_t = 1e-6;  // time, s
     Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
+
+    friend bool operator==(const Truncation&, const Truncation&) = default;
 };
 
 struct Options {

@@ -7,8 +7,14 @@ namespace achilles {
 
 Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep) : keep_(keep) {
     if (keep_ == Keep::everything) energy_ = model->evaluator(model->energy(), run.parameters);
+    restart(std::move(model), run);
+}
+
+void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
+    trajectory_ = {};
     trajectory_.model = std::move(model);
     trajectory_.run = run;
+    any_gap_ = false;
     if (keep_ == Keep::end) return;
     // A usual run grows no further than this.
     trajectory_.events.reserve(64);
@@ -37,12 +43,17 @@ void Recorder::stretch(const State& state) {
     scale_ = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
 }
 
-void Recorder::step(const Flow& flow, double gap) {
+void Recorder::steps(long count, double least_gap) {
     Statistics& statistics = trajectory_.statistics;
-    ++statistics.steps;
-    statistics.least_gap = any_gap_ ? std::min(statistics.least_gap, gap) : gap;
+    statistics.steps += count;
+    statistics.least_gap = any_gap_ ? std::min(statistics.least_gap, least_gap) : least_gap;
     any_gap_ = true;
+}
+
+void Recorder::step(const Flow& flow, double gap) {
+    steps(1, gap);
     if (keep_ == Keep::end) return;
+    Statistics& statistics = trajectory_.statistics;
     trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
     put(energy_, flow.end());
     energy_.run();

@@ -12,6 +12,9 @@ class Recorder {
  public:
     Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep);
 
+    // For another run of the same parameters.
+    void restart(std::shared_ptr<const Model> model, const Run& run);
+
     void open(Phase::Kind kind, double t);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
@@ -20,6 +23,8 @@ class Recorder {
     void stretch(const State& state);
     // The flow's last step, as it stands; `gap` is h at its end.
     void step(const Flow& flow, double gap);
+    // Steps of which the end alone is kept.
+    void steps(long count, double least_gap);
     // An impact at this state before it.
     void impact(double t, const State& before, const Vector& v_after, double speed);
     // Any other event.

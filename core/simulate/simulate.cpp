@@ -14,7 +14,9 @@ Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* w
     Execution execution(std::move(model), run, watch, keep);
     execution.begin();
     while (execution.running()) {
-        if (execution.constrained()) {
+        if (execution.completing()) {
+            execution.wait_for_zeno_point();
+        } else if (execution.constrained()) {
             execution.stay_until_release();
         } else {
             execution.fly_to_impact();
