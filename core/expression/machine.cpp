@@ -57,10 +57,11 @@ void Assembler::encode(const Prefix& prefix, Width width, unsigned opcode, unsig
     const unsigned high = (reg > 7 ? 0u : 0x80u) | 0x40u | (other.reg > 7 ? 0u : 0x20u), source = (~from & 15u) << 3;
     std::int32_t unit = 1;
     if (width == Width::eight) {
+        const auto low = [](unsigned number, unsigned bit) { return number & bit ? 0u : 1u; };  // bits are inverted
         put(0x62);
-        put(high | 0x10u | prefix.map);
+        put(low(reg, 8) << 7 | low(other.reg, 16) << 6 | low(other.reg, 8) << 5 | low(reg, 16) << 4 | prefix.map);
         put((prefix.wide ? 0x80u : 0u) | source | 4u | prefix.pp);
-        put(0x48);
+        put(0x40u | low(from, 16) << 3);
         unit = prefix.map == 2 ? 8 : 64;  // map 2: the broadcast
     } else {
         const unsigned rest = source | (width == Width::four ? 4u : 0u) | prefix.pp;
@@ -85,13 +86,14 @@ void Assembler::registers(Code code, Width width, unsigned to, unsigned from, un
     const bool one = width == Width::one;
     if (code == Code::load)  // vmovapd: vmovsd would wait for the other half of a register
         return encode({.pp = packed, .wide = width == Width::eight}, one ? Width::two : width, 0x28, to, 0, {other});
-    encode({.pp = one ? scalar : packed, .wide = width == Width::eight}, width, static_cast<unsigned>(code), to, from,
-           {other});
+    encode({.pp = one ? scalar : packed, .wide = width == Width::eight}, width, static_cast<unsigned>(code), to,
+           code == Code::sqrt && !one ? 0 : from, {other});
 }
 
 void Assembler::memory(Code code, Width width, unsigned to, unsigned from, Base base, std::ptrdiff_t index) {
     const unsigned pp = width == Width::one && code != Code::load_high ? scalar : packed;
-    encode({.pp = pp, .wide = width == Width::eight}, width, static_cast<unsigned>(code), to, from,
+    encode({.pp = pp, .wide = width == Width::eight}, width, static_cast<unsigned>(code), to,
+           code == Code::sqrt && width != Width::one ? 0 : from,
            {static_cast<unsigned>(base), true, static_cast<std::int32_t>(8 * index)});
 }
 
@@ -124,6 +126,12 @@ std::optional<unsigned> Assembler::holder(std::uint32_t index) const {
 void Assembler::forget_all() {
     held_.fill(std::nullopt);
     holding_.clear();
+    results_ = 0;
+}
+
+void Assembler::hold(std::uint32_t index, unsigned reg) {
+    if (reg < held_.size()) held_[reg] = index;
+    holding_[index] = reg;
 }
 
 void Assembler::get(unsigned to, std::uint32_t index) {
@@ -142,11 +150,13 @@ void Assembler::combine(Code code, unsigned to, std::uint32_t a, std::uint32_t b
     apply(code, to, from ? *from : to, b);
 }
 
-// mov rax, imm64; vmovq xmm, rax
+// mov rax, imm64; vmovq xmm, rax; vbroadcastsd
 void Assembler::negative_zero(unsigned reg) {
     put(0xB848, 2);
     put(std::uint64_t{1} << 63, 8);
     encode({.pp = packed, .wide = true}, Width::two, 0x6E, reg, 0, {0});
+    if (width_ == Width::one) return;
+    encode({.map = 2, .pp = packed, .wide = width_ == Width::eight}, width_, 0x19, reg, 0, {reg});
 }
 
 void Assembler::integer(unsigned opcode, Base reg, Base base, std::ptrdiff_t index) {
@@ -198,21 +208,37 @@ void Assembler::jump_back_if_below(Base a, Base b, std::size_t place) {
     put(static_cast<std::uint32_t>(place - (here() + 4)), 4);
 }
 
+void Assembler::jump_back_if_not_above(Base a, Base b, std::size_t place) {
+    compare(a, b);
+    put(0x860F, 2);
+    put(static_cast<std::uint32_t>(place - (here() + 4)), 4);
+}
+
 // push rbx; mov rbx, rdi: the stack is then where a call wants it.
 void Assembler::enter() { put(0xFB894853, 4); }
 // pop rbx; ret
-void Assembler::leave() { put(0xC35B, 2); }
-// vzeroupper; ret
-void Assembler::leave_at_once() { put(0xC377F8C5, 4); }
+void Assembler::leave() {
+    if (width_ != Width::one) clear_upper_halves();
+    put(0xC35B, 2);
+}
+// ret
+void Assembler::leave_at_once() {
+    clear_upper_halves();
+    put(0xC3);
+}
 
-// mov edi, imm32
-void Assembler::integer_argument(std::int32_t value) {
-    put(0xBF);
+// vzeroupper
+void Assembler::clear_upper_halves() { put(0x77F8C5, 3); }
+
+// mov r32, imm32
+void Assembler::integer_argument(Base to, std::int32_t value) {
+    put(0xB8 + static_cast<unsigned>(to));  // one of the first eight
     put(static_cast<std::uint32_t>(value), 4);
 }
 
 // mov rax, imm64; call rax
 void Assembler::call(const void* function) {
+    if (width_ != Width::one) clear_upper_halves();
     put(0xB848, 2);
     put(reinterpret_cast<std::uintptr_t>(function), 8);
     put(0xD0FF, 2);

@@ -92,6 +92,10 @@ class Assembler {
     // The register that holds a number.
     std::optional<unsigned> holder(std::uint32_t index) const;
     void forget_all();
+    // From here on this register is known to hold a number; one past those of results holds it for good.
+    void hold(std::uint32_t index, unsigned reg);
+    // How many results are held at once.
+    unsigned room() const { return 16 - free_; }
 
     // ---- vectors ----
 
@@ -107,7 +111,7 @@ class Assembler {
     // to = the first half of `low`, then `high`; `width` of the result.
     void join(Width width, unsigned to, unsigned low, unsigned high);
     void zero(unsigned reg) { registers(Code::exclusive_or, Width::two, reg, reg, reg); }
-    // reg = -0.0
+    // -0.0 in all places of a register
     void negative_zero(unsigned reg);
 
     // ---- addresses and jumps ----
@@ -123,6 +127,7 @@ class Assembler {
     std::size_t jump_if_not_above(unsigned reg, Base base, std::ptrdiff_t index);
     void land(std::size_t jump);
     void jump_back_if_below(Base a, Base b, std::size_t place);
+    void jump_back_if_not_above(Base a, Base b, std::size_t place);
     void jump_back(std::size_t place);
     std::size_t here() const { return bytes_.size(); }
 
@@ -133,10 +138,16 @@ class Assembler {
     void leave();
     // End of one that calls none, after work on vectors.
     void leave_at_once();
-    void integer_argument(std::int32_t value);
-    // Calls a function with arguments in registers 0 and 1, and edi: its result is in 0, all others are lost.
+    void integer_argument(Base to, std::int32_t value);
+    // Calls a function with arguments in vector registers 0 and 1, rdi, rsi and rdx: its result is in 0, all others are
+    // lost.
     void call(const void* function);
 
+    Width width() const { return width_; }
+    // Where a number of the function stands, in doubles.
+    std::ptrdiff_t place(std::uint32_t index) const {
+        return static_cast<std::ptrdiff_t>(index) * static_cast<std::ptrdiff_t>(width_);
+    }
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
 
  private:
@@ -151,15 +162,14 @@ class Assembler {
         bool wide = false;
     };
 
-    std::ptrdiff_t place(std::uint32_t index) const {
-        return static_cast<std::ptrdiff_t>(index) * static_cast<std::ptrdiff_t>(width_);
-    }
     void put(unsigned byte) { bytes_.push_back(static_cast<std::uint8_t>(byte)); }
     void put(std::uint64_t value, unsigned count);
     void encode(const Prefix& prefix, Width width, unsigned opcode, unsigned reg, unsigned from, const Operand& other);
     // A 64-bit instruction between a register and (base, index).
     void integer(unsigned opcode, Base reg, Base base, std::ptrdiff_t index);
     void compare(Base a, Base b);
+    // Else code that knows of no wider vectors is slow.
+    void clear_upper_halves();
 
     Base numbers_;
     unsigned free_;

@@ -43,6 +43,7 @@ class Program {
     friend class Evaluator;
     friend class SeriesCompiler;
     friend class SeriesEvaluator;
+    friend class LaneAccess;
     Slots slots_;
     std::vector<Constant> constants_;        // registers count .. count + constants - 1
     std::vector<Instruction> instructions_;  // results follow in order, one register each
@@ -83,6 +84,7 @@ class Evaluator {
 
  private:
     friend class SeriesEvaluator;
+    friend class LaneAccess;
     void execute(std::size_t first_run, std::size_t last_run);
     const Program* program_ = nullptr;
     std::vector<Scalar> registers_;
@@ -99,69 +101,66 @@ void Evaluator<Scalar>::execute(std::size_t first_run, std::size_t last_run) {
     Scalar* result = r + program_->slots_.count + program_->constants_.size() + (in - begin);
     for (std::size_t run = first_run; run < last_run; ++run) {
         const Instruction* const end = begin + program_->runs_[run];
-        const auto each = [&](const auto& value) {
-            for (; in != end; ++in, ++result) *result = value(r[in->a]);
-        };
         switch (in->operation) {
             case Operation::add:
-                each([&](const Scalar& a) -> Scalar { return a + r[in->b]; });
+                for (; in != end; ++in, ++result) *result = r[in->a] + r[in->b];
                 break;
             case Operation::subtract:
-                each([&](const Scalar& a) -> Scalar { return a - r[in->b]; });
+                for (; in != end; ++in, ++result) *result = r[in->a] - r[in->b];
                 break;
             case Operation::multiply:
-                each([&](const Scalar& a) -> Scalar { return a * r[in->b]; });
+                for (; in != end; ++in, ++result) *result = r[in->a] * r[in->b];
                 break;
             case Operation::divide:
-                each([&](const Scalar& a) -> Scalar { return a / r[in->b]; });
+                for (; in != end; ++in, ++result) *result = r[in->a] / r[in->b];
                 break;
             case Operation::negate:
-                each([&](const Scalar& a) -> Scalar { return -a; });
+                for (; in != end; ++in, ++result) *result = -r[in->a];
                 break;
             case Operation::power:
-                each([&](const Scalar& a) -> Scalar { return integer_power(a, in->exponent); });
+                for (; in != end; ++in, ++result) *result = integer_power(r[in->a], in->exponent);
                 break;
             case Operation::real_power:
-                each([&](const Scalar& a) -> Scalar { return pow(a, r[in->b]); });
+                for (; in != end; ++in, ++result) *result = pow(r[in->a], r[in->b]);
                 break;
             case Operation::sqrt:
-                each([&](const Scalar& a) -> Scalar { return sqrt(a); });
+                for (; in != end; ++in, ++result) *result = sqrt(r[in->a]);
                 break;
             case Operation::sin:
-                each([&](const Scalar& a) -> Scalar { return sin(a); });
+                for (; in != end; ++in, ++result) *result = sin(r[in->a]);
                 break;
             case Operation::cos:
-                each([&](const Scalar& a) -> Scalar { return cos(a); });
+                for (; in != end; ++in, ++result) *result = cos(r[in->a]);
                 break;
             case Operation::tan:
-                each([&](const Scalar& a) -> Scalar { return tan(a); });
+                for (; in != end; ++in, ++result) *result = tan(r[in->a]);
                 break;
             case Operation::asin:
-                each([&](const Scalar& a) -> Scalar { return asin(a); });
+                for (; in != end; ++in, ++result) *result = asin(r[in->a]);
                 break;
             case Operation::acos:
-                each([&](const Scalar& a) -> Scalar { return acos(a); });
+                for (; in != end; ++in, ++result) *result = acos(r[in->a]);
                 break;
             case Operation::atan:
-                each([&](const Scalar& a) -> Scalar { return atan(a); });
+                for (; in != end; ++in, ++result) *result = atan(r[in->a]);
                 break;
             case Operation::sinh:
-                each([&](const Scalar& a) -> Scalar { return sinh(a); });
+                for (; in != end; ++in, ++result) *result = sinh(r[in->a]);
                 break;
             case Operation::cosh:
-                each([&](const Scalar& a) -> Scalar { return cosh(a); });
+                for (; in != end; ++in, ++result) *result = cosh(r[in->a]);
                 break;
             case Operation::tanh:
-                each([&](const Scalar& a) -> Scalar { return tanh(a); });
+                for (; in != end; ++in, ++result) *result = tanh(r[in->a]);
                 break;
             case Operation::exp:
-                each([&](const Scalar& a) -> Scalar { return exp(a); });
+                for (; in != end; ++in, ++result) *result = exp(r[in->a]);
                 break;
             case Operation::log:
-                each([&](const Scalar& a) -> Scalar { return log(a); });
+                for (; in != end; ++in, ++result) *result = log(r[in->a]);
                 break;
             case Operation::pi:
-                each([](const Scalar&) { return scalar_pi<Scalar>(); });
+                for (; in != end; ++in, ++result) *result = scalar_pi<Scalar>();
                 break;
             case Operation::number:
             case Operation::symbol:

@@ -1,4 +1,4 @@
-// A program over double as machine code.
+// A program over double, or lanes, as machine code.
 #pragma once
 
 #include <span>
@@ -9,6 +9,8 @@
 namespace achilles {
 
 // Code of type void(double* registers) for these instructions, the first of which writes register `first`; may be none.
-std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first);
+// With a width of eight it is of type void(Eight* registers).
+std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
+                                                Width width);
 
 }  // namespace achilles

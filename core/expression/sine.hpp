@@ -9,5 +9,10 @@ struct SineCosine {
     double sine = 0.0, cosine = 1.0;
 };
 SineCosine sine_and_cosine(double angle);
+inline void sine_and_cosine(double angle, double& sine, double& cosine) {
+    const SineCosine wave = sine_and_cosine(angle);
+    sine = wave.sine;
+    cosine = wave.cosine;
+}
 
 }  // namespace achilles

@@ -23,7 +23,7 @@ class SeriesCompiler {
         const auto count = first + static_cast<std::uint32_t>(program_.instructions_.size());
         first_moving_ = first + static_cast<std::uint32_t>(program_.fixed_);
         series_.coefficients_.push_back({});  // the number 1
-        next_register_ = count;
+        series_.hidden_ = next_register_ = count;
         next_series_ = 1 + slots.fixed_begin;
         forms_.resize(count);
         for (std::uint32_t i = 0; i < slots.fixed_begin; ++i) forms_[i] = {{1 + i, one}};

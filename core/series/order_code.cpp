@@ -4,6 +4,7 @@
 
 #include "expression/machine.hpp"
 #include "series/order.hpp"
+#include "series/rule_code.hpp"
 
 namespace achilles {
 
@@ -73,7 +74,8 @@ class OrderWriter {
     Index older() const { return sums_ + lanes_; }
 
     void write_order(bool first) {
-        for (std::size_t i = 0; i < plan_.rules.size(); ++i) rule(plan_.rules[i], static_cast<Index>(3 * i));
+        for (std::size_t i = 0; i < plan_.rules.size(); ++i)
+            write_rule(code_, plan_.rules[i], factors, static_cast<Index>(3 * i));
         for (const Part& part : parts_) keep_and_sum(part, first);
     }
 
@@ -163,67 +165,6 @@ class OrderWriter {
         return code_.jump_if_not_above(0, motion, ACHILLES_PLACE(one));
     }
 
-    // ---- rules ----
-
-    // A sum as far as it is known: in a register, or a number (or its negative) that is not looked up yet.
-    struct Sum {
-        enum class Kind { none, in_register, number, negative } kind = Kind::none;
-        unsigned reg = 0;
-        std::uint32_t number = 0;
-    };
-
-    // A factor times its number; into this register unless it is known to be 1 or -1.
-    Sum product(std::int8_t known, std::uint32_t number, Index factor, unsigned to) {
-        if (known > 0) return {Sum::Kind::number, 0, number};
-        if (known < 0) return {Sum::Kind::negative, 0, number};
-        const auto held = code_.holder(number);
-        if (!held) code_.get(to, number);
-        code_.memory(Code::multiply, Width::one, to, held ? *held : to, factors, factor);
-        return {Sum::Kind::in_register, to, 0};
-    }
-
-    void rule(const SeriesRule& rule, Index factor) {
-        using Kind = Sum::Kind;
-        const unsigned result = code_.result(rule.result);
-        const std::uint32_t operands[3] = {rule.x, rule.y, rule.w};
-        Sum sum;
-        for (int i = 2; i >= 0; --i) {
-            if (operands[i] == 0) continue;
-            const bool alone = sum.kind == Kind::none;
-            const Sum term = product(rule.known[i], operands[i], factor + i, alone ? result : 0);
-            sum = alone ? term : total(sum, term, result);
-        }
-        if (sum.kind == Kind::none) code_.zero(result);
-        if (sum.kind == Kind::number) code_.get(result, sum.number);
-        if (sum.kind == Kind::negative) negate(result, sum.number);
-        code_.store(result, rule.result);
-    }
-
-    void negate(unsigned to, std::uint32_t number) {
-        code_.negative_zero(to);
-        code_.apply(Code::subtract, to, to, number);
-    }
-
-    // sum + term, in the result's register
-    Sum total(const Sum& sum, const Sum& term, unsigned result) {
-        using Kind = Sum::Kind;
-        if (sum.kind == Kind::in_register && term.kind == Kind::in_register) {
-            code_.registers(Code::add, Width::one, result, sum.reg, term.reg);
-        } else if (sum.kind == Kind::in_register) {
-            code_.apply(term.kind == Kind::negative ? Code::subtract : Code::add, result, sum.reg, term.number);
-        } else if (term.kind == Kind::in_register) {
-            code_.apply(sum.kind == Kind::negative ? Code::subtract : Code::add, result, term.reg, sum.number);
-        } else if (sum.kind == Kind::number) {
-            code_.combine(term.kind == Kind::negative ? Code::subtract : Code::add, result, sum.number, term.number);
-        } else if (term.kind == Kind::number) {
-            code_.combine(Code::subtract, result, term.number, sum.number);
-        } else {
-            negate(result, sum.number);
-            code_.apply(Code::subtract, result, result, term.number);
-        }
-        return {Kind::in_register, result, 0};
-    }
-
     // ---- this order as a row ----
 
     // Two numbers side by side.
@@ -285,9 +226,8 @@ class OrderWriter {
 };
 
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width width) {
-    constexpr std::size_t most_rules = 10000;
     const auto widest = widest_code();
-    if (!widest || width > *widest || plan.rules.empty() || plan.rules.size() > most_rules) return nullptr;
+    if (!widest || width > *widest || plan.rules.empty() || plan.rules.size() > most_rules_in_code) return nullptr;
     OrderWriter writer(plan, width);
     const std::size_t first = writer.write_first();
     const std::optional<std::size_t> later = plan.outputs.empty() ? std::nullopt : std::optional(writer.write_later());

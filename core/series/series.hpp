@@ -38,6 +38,7 @@ class SeriesProgram {
  private:
     friend class SeriesEvaluator;
     friend class SeriesCompiler;
+    friend class LaneAccess;
 
     // A number that depends on the parameters alone: one of the program's registers, or made of two others.
     struct Coefficient {
@@ -71,6 +72,12 @@ class SeriesProgram {
         std::array<std::uint32_t, 3> coefficient;
     };
 
+    // See series/start.hpp.
+    template <class Scalar>
+    void fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const;
+    template <class Scalar>
+    void start(Scalar* registers, const Scalar* coefficients, std::array<Scalar, 3>* factors) const;
+
     Program program_;
     bool partial_ = false;
     std::vector<Coefficient> coefficients_;  // the first is 1
@@ -79,6 +86,7 @@ class SeriesProgram {
     std::vector<Combination> combinations_;
     std::size_t inner_sums_ = 0;
     std::size_t registers_ = 0;              // of order 0: the program's, then hidden ones
+    std::size_t hidden_ = 0;                 // the first of these
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
 };

@@ -4,6 +4,10 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <atomic>
+
+#include "simulate/side_by_side.hpp"
+
 namespace achilles {
 
 namespace {
@@ -28,6 +32,22 @@ void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
     // its neighbour.
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), work, tbb::auto_partitioner()); });
+}
+
+void simulate_ends(const std::shared_ptr<const Model>& model, std::size_t count,
+                   const std::function<Run(std::size_t)>& run_of,
+                   const std::function<void(std::size_t, Attempt&&)>& take, int threads) {
+    std::atomic<std::size_t> next = 0;
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    const auto work = [&](int) {
+        try {
+            SideBySide(model, count, next, run_of, take).work();
+        } catch (...) {
+            next = count;
+            throw;
+        }
+    };
+    arena.execute([&] { tbb::parallel_for(0, arena.max_concurrency(), work, tbb::simple_partitioner()); });
 }
 
 }  // namespace achilles
