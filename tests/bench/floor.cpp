@@ -1,7 +1,7 @@
-// bench_floor [SHARE] [METHOD]: never under the floor. Over every system of assets/systems, from random starts: the
-// least gap of a run, its outcome; for a random 1000 of them the times of events and the end state against 34 digits;
-// and grazing starts. SHARE (1) scales the numbers of runs. Prints every fault with the options that repeat it, and
-// exits with 1 if there is one.
+// bench_floor [SHARE] [METHOD] [eight]: never under the floor. Over every system of assets/systems, from random starts:
+// the least gap of a run, its outcome; for a random 1000 of them the times of events and the end state against 34
+// digits; and grazing starts. With "eight" runs are simulated eight at a time, of which the ends are known. SHARE (1)
+// scales the numbers of runs. Prints every fault with the options that repeat it, and exits with 1 if there is one.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <map>
 #include <mutex>
+#include <span>
+#include <string_view>
 
 #include "floor/floor.hpp"
 #include "simulate/many.hpp"
@@ -29,11 +31,29 @@ struct Faults {
     }
 };
 
-std::vector<Run> runs_from(const Model& model, Starts& starts, long count, Method method) {
+// How runs are simulated.
+struct Way {
+    Method method;
+    bool eight_at_a_time;
+};
+
+// summarize(i, attempt) of every run.
+template <class Summarize>
+auto simulate_all(const std::shared_ptr<const Model>& model, const std::vector<Run>& runs, const Way& way,
+                  const Summarize& summarize) {
+    if (!way.eight_at_a_time) return simulate_many(model, std::span<const Run>(runs), summarize);
+    std::vector<std::invoke_result_t<const Summarize&, std::size_t, Attempt&&>> results(runs.size());
+    simulate_ends(
+        model, runs.size(), [&](std::size_t i) { return runs[i]; },
+        [&](std::size_t i, Attempt&& attempt) { results[i] = summarize(i, std::move(attempt)); });
+    return results;
+}
+
+std::vector<Run> runs_from(const Model& model, Starts& starts, long count, const Way& way) {
     std::vector<Run> runs;
     for (long i = 0; i < count; ++i) {
         Run run = model.default_run();
-        run.options.method = method;
+        run.options.method = way.method;
         const State start = starts.next();
         run.q = start.q;
         run.v = start.v;
@@ -42,19 +62,19 @@ std::vector<Run> runs_from(const Model& model, Starts& starts, long count, Metho
     return runs;
 }
 
-long random_starts(const std::shared_ptr<const Model>& model, long count, Method method) {
+long random_starts(const std::shared_ptr<const Model>& model, long count, const Way& way) {
     Starts starts(model, 1729);
     Faults faults;
     double least = 0.0;
     long impacts = 0, zenos = 0;
     std::atomic<long> refused = 0;
     for (long done = 0; done < count; done += 10000) {
-        const auto runs = runs_from(*model, starts, std::min(10000L, count - done), method);
+        const auto runs = runs_from(*model, starts, std::min(10000L, count - done), way);
         struct Summary {
             double least_gap;
             long impacts, zenos;
         };
-        const auto summaries = simulate_many(model, runs, [&](std::size_t, Attempt&& attempt) {
+        const auto summaries = simulate_all(model, runs, way, [&](std::size_t, Attempt&& attempt) {
             if (std::holds_alternative<InputError>(attempt)) {
                 ++refused;
                 return Summary{0.0, 0, 0};
@@ -63,7 +83,7 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, Method
             const std::string wrong = fault(trajectory, 100.0 * trajectory.run.options.tolerance);
             if (!wrong.empty()) faults.add(wrong + "\n       " + start_of(trajectory));
             long ends = 0;
-            for (const Event& event : trajectory.events) ends += event.kind == Event::Kind::zeno ? 1 : 0;
+            for (const Phase& phase : trajectory.phases) ends += phase.kind == Phase::Kind::constrained ? 1 : 0;
             return Summary{trajectory.statistics.least_gap, trajectory.statistics.impacts, ends};
         });
         for (const Summary& summary : summaries) {
@@ -78,15 +98,15 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, Method
     return faults.count;
 }
 
-long against_truth(const std::shared_ptr<const Model>& model, long count, Method method) {
+long against_truth(const std::shared_ptr<const Model>& model, long count, const Way& way) {
     Starts starts(model, 4104);
     Faults faults;
-    auto runs = runs_from(*model, starts, count, method);
+    auto runs = runs_from(*model, starts, count, way);
     for (Run& run : runs) {
         run.options.tolerance = 1e-12;
         run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
     }
-    const auto all = simulate_many(model, runs, [&](std::size_t i, Attempt&& attempt) {
+    const auto all = simulate_all(model, runs, way, [&](std::size_t i, Attempt&& attempt) {
         if (std::holds_alternative<InputError>(attempt)) return Comparison{};
         const auto& trajectory = std::get<Trajectory>(attempt);
         const Comparison comparison = Judge(model, runs[i]).compare(trajectory);
@@ -113,7 +133,7 @@ long against_truth(const std::shared_ptr<const Model>& model, long count, Method
 }
 
 // A dip is right if it is met when it is below the floor, and only then. Undecided is right at the default tolerance.
-long grazing(const std::shared_ptr<const Model>& model, long count, Method method) {
+long grazing(const std::shared_ptr<const Model>& model, long count, const Way& way) {
     long wrong = 0;
     GrazingStarts source(model, 96);
     for (const double least : {1e-10, -1e-10, 1e-13}) {
@@ -124,15 +144,17 @@ long grazing(const std::shared_ptr<const Model>& model, long count, Method metho
             const Grazing& grazing = *found;
             for (const double tolerance : {1e-14, model->default_run().options.tolerance}) {
                 Run run = model->default_run();
-                run.options.method = method;
+                run.options.method = way.method;
                 run.options.tolerance = tolerance;
-                run.options.end_time = static_cast<double>(grazing.dip.t) + 0.01;
+                run.options.end_time = static_cast<double>(grazing.dip.t) + (way.eight_at_a_time ? 0.005 : 0.01);
                 run.q = grazing.start.q;
                 run.v = grazing.start.v;
-                const Trajectory trajectory = simulate(model, run);
+                const Trajectory trajectory = way.eight_at_a_time ? by_eight(model, run) : simulate(model, run);
                 const bool undecided = trajectory.outcome.kind == Outcome::Kind::undecided;
-                const bool met =
-                    !trajectory.events.empty() && trajectory.events[0].t < static_cast<double>(grazing.dip.t) + 0.005;
+                const bool met = way.eight_at_a_time
+                                     ? trajectory.statistics.impacts > 0
+                                     : !trajectory.events.empty() &&
+                                           trajectory.events[0].t < static_cast<double>(grazing.dip.t) + 0.005;
                 const bool right = !undecided && met == (grazing.dip.gap < 0);
                 const bool allowed = right || (undecided && tolerance != 1e-14);
                 ++seen[fmt::format("{} at {:.0e}", right ? "right" : undecided ? "undecided" : "WRONG", tolerance)];
@@ -158,10 +180,12 @@ long grazing(const std::shared_ptr<const Model>& model, long count, Method metho
 int main(int count, char** arguments) {
     const double share = count > 1 ? std::atof(arguments[1]) : 1.0;
     const auto method = count > 2 ? method_from(arguments[2]) : std::optional(Method::dopri5);
-    if (!(share > 0.0) || !method) {
-        fmt::print(stderr, "usage: bench_floor [SHARE] [dopri5|taylor]\n");
+    const bool eight = count > 3 && std::string_view(arguments[3]) == "eight";
+    if (!(share > 0.0) || !method || count > (eight ? 4 : 3)) {
+        fmt::print(stderr, "usage: bench_floor [SHARE] [dopri5|taylor] [eight]\n");
         return 2;
     }
+    const Way way{*method, eight};
     const auto scaled = [&](double runs) { return std::max(1L, std::lround(share * runs)); };
     long faults = 0;
     std::vector<std::filesystem::path> systems;
@@ -171,10 +195,10 @@ int main(int count, char** arguments) {
     for (const auto& path : systems) {
         const auto model = std::make_shared<const Model>(read_system(path));
         const std::string name = path.stem();
-        fmt::print("{}, {}\n", name, to_text(*method));
-        faults += random_starts(model, scaled(name == "ball_on_sine" ? 1e6 : 1e5), *method);
-        faults += against_truth(model, scaled(1000), *method);
-        faults += grazing(model, scaled(100), *method);
+        fmt::print("{}, {}{}\n", name, to_text(way.method), eight ? ", eight at a time" : "");
+        faults += random_starts(model, scaled(name == "ball_on_sine" ? 1e6 : 1e5), way);
+        faults += against_truth(model, scaled(1000), way);
+        faults += grazing(model, scaled(100), way);
     }
     return faults == 0 ? 0 : 1;
 }

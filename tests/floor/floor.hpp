@@ -32,13 +32,17 @@ class Starts {
 // step, or below -`between` inside one, where dense output is an interpolation. Empty if nothing is.
 std::string fault(const Trajectory& trajectory, double between);
 
+// The end of a run that is simulated beside others.
+Trajectory by_eight(const std::shared_ptr<const Model>& model, const Run& run);
+
 // The start of a trajectory in digits that give the same bits back, for a bug report.
 std::string start_of(const Trajectory& trajectory);
 
 // A trajectory beside the truth.
 struct Comparison {
     // Largest difference between the times of impacts before truncation, of Zeno points (beyond what is certified) and
-    // of releases, and in the end state. Infinite if phases differ.
+    // of releases, and in the end state. Infinite if phases differ. Of a trajectory that keeps its end alone, the
+    // releases and the end state.
     double error = 0.0;
     std::string where;  // the largest difference
     // The same between the run and runs from starts moved by 1e-7, over 1e-7, and at least 1. Infinite if phases
