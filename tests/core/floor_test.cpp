@@ -33,6 +33,23 @@ TEST_P(Floor, IsNeverPassedFromRandomStarts) {
     for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
 }
 
+TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
+    const auto model = load(GetParam());
+    Starts starts(model, 9);
+    std::vector<achilles::Run> runs;
+    for (int i = 0; i < 400; ++i) runs.push_back(started(*model, starts.next()));
+    std::vector<std::string> faults(runs.size());
+    simulate_ends(
+        model, runs.size(), [&](std::size_t i) { return runs[i]; },
+        [&](std::size_t i, Attempt&& attempt) {
+            if (std::holds_alternative<InputError>(attempt)) return;
+            const auto& trajectory = std::get<Trajectory>(attempt);
+            faults[i] = fault(trajectory, 0.0);
+            if (!faults[i].empty()) faults[i] += start_of(trajectory);
+        });
+    for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
+}
+
 TEST_P(Floor, IsMetWhenThe34DigitsSay) {
     const auto model = load(GetParam());
     Starts starts(model, 8);
@@ -44,6 +61,10 @@ TEST_P(Floor, IsMetWhenThe34DigitsSay) {
         const Comparison comparison = Judge(model, run).compare(trajectory);
         EXPECT_TRUE(comparison.agrees()) << comparison.error << " off, sensitivity " << comparison.sensitivity
                                          << ", at " << comparison.where << start_of(trajectory);
+        const Trajectory end = by_eight(model, run);
+        EXPECT_LE(std::max((end.end.q - trajectory.end.q).norm(), (end.end.v - trajectory.end.v).norm()),
+                  1e-8 * comparison.sensitivity)
+            << start_of(trajectory);
     }
 }
 
@@ -97,13 +118,21 @@ TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
                     run.options.tolerance = tolerance;
                     run.options.end_time = static_cast<double>(grazing.dip.t) + 0.01;
                     const Trajectory trajectory = simulate(model, run);
-                    if (trajectory.outcome.kind == Outcome::Kind::undecided) {
-                        EXPECT_GT(tolerance, 1e-14) << trajectory.outcome.message << start_of(trajectory);
-                        continue;
-                    }
                     const double until = static_cast<double>(grazing.dip.t) + 0.005;
                     const bool met = !trajectory.events.empty() && trajectory.events[0].t < until;
-                    EXPECT_EQ(met, grazing.dip.gap < 0) << grazing.dip.gap << start_of(trajectory);
+                    if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+                        EXPECT_GT(tolerance, 1e-14) << trajectory.outcome.message << start_of(trajectory);
+                    } else {
+                        EXPECT_EQ(met, grazing.dip.gap < 0) << grazing.dip.gap << start_of(trajectory);
+                    }
+                    run.options.end_time = until;
+                    const Trajectory beside = by_eight(model, run);
+                    if (beside.outcome.kind == Outcome::Kind::undecided) {
+                        EXPECT_GT(tolerance, 1e-14) << beside.outcome.message << start_of(beside);
+                    } else {
+                        EXPECT_EQ(beside.statistics.impacts > 0, grazing.dip.gap < 0)
+                            << grazing.dip.gap << start_of(beside);
+                    }
                 }
             }
         }

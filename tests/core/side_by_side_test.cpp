@@ -1,5 +1,6 @@
 // Runs eight at a time: the same bits by any vectors and beside any neighbours, and the ends that each run has alone.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <atomic>
 #include <cmath>
@@ -272,6 +273,7 @@ std::vector<Run> mixture(const Model& model) {
 }
 
 TEST(RunsSideBySide, DependOnNoNeighbourAndNoThread) {
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);  // even where there are two cores
     const auto model = test::load("ball_on_sine");
     const auto runs = mixture(*model);
     std::vector<std::string> alone;
