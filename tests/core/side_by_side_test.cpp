@@ -163,6 +163,72 @@ TEST(LaneSteps, AreTheSameToTheLastBitByAnyVectors) {
     }
 }
 
+// A drop onto the floor x = 0: hddot = -g.
+std::shared_ptr<const Model> drop() {
+    return test::typed(
+        "title = \"drop\"\n[[coordinate]]\nname = \"x\"\nstart = 0\n[[parameter]]\nname = \"g\"\nvalue = 1\n"
+        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"g*x\"\n"
+        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
+}
+
+Eight eight(double x) {
+    Eight result;
+    for (double& lane : result.lane) lane = x;
+    return result;
+}
+
+// Nothing is claimed of a force that its remainder covers, of one that pulls, or of a state that is none.
+TEST(LaneSteps, KnowThatAForceStaysOnlyAboveItsRemainder) {
+    const auto model = drop();
+    for (const Vectors vectors : possible_vectors()) {
+        const auto stepper = make_lane_stepper(*model, 1e-10, vectors);
+        Eight g = eight(1.0);
+        g[1] = 1e-11;
+        g[2] = -1.0;
+        stepper->fix({g});
+        LaneStep step(*model);
+        step.until = eight(1.0);
+        step.q_and_v[0][3] = std::numeric_limits<double>::quiet_NaN();
+        step.q_and_v[1][4] = std::numeric_limits<double>::infinity();
+        stepper->stay(step, 5);
+        for (std::size_t lane = 0; lane < Eight::count; ++lane) {
+            const bool plain = lane == 0 || lane > 4;
+            EXPECT_EQ(step.end[lane] == LaneStep::End::no_event, plain) << lane;
+            if (lane == 1 || lane == 2) {
+                EXPECT_EQ(step.t[lane], 0.0);
+            }
+        }
+    }
+}
+
+// A throw to a height, over a floor that it leaves or comes down to: h = 1e-3 + t - t^2/2 is least at its end. What is
+// within the remainder, or within what earlier steps made the gap wrong by, is not plain.
+TEST(LaneSteps, TellAnImpactOnlyBeyondTheRemainder) {
+    const auto model = drop();
+    const auto stepper = make_lane_stepper(*model, 1e-10);
+    stepper->fix({eight(1.0)});
+    LaneStep step(*model);
+    const double flight = 1.0 + std::sqrt(1.0 + 2.0e-3);  // until it comes down
+    for (std::size_t lane = 0; lane < Eight::count; ++lane) {
+        step.q_and_v[0][lane] = step.h[lane] = 1e-3;
+        step.q_and_v[1][lane] = step.hdot[lane] = 1.0;
+    }
+    const double ends[] = {2.5,           flight + 1e-6, flight + 1e-11, flight - 1e-11,
+                           flight - 1e-6, 1.0,           flight - 1e-4,  flight - 1e-6};
+    std::copy(std::begin(ends), std::end(ends), step.until.lane);
+    step.error[6] = 2e-3;       // more than its height there
+    step.rate_error[7] = 1e-6;  // moves the gap by as much as its height at the end
+    stepper->fly(step);
+    using End = LaneStep::End;
+    const End expected[] = {End::impact,   End::impact,   End::not_plain, End::not_plain,
+                            End::no_event, End::no_event, End::not_plain, End::not_plain};
+    for (std::size_t lane = 0; lane < Eight::count; ++lane)
+        EXPECT_EQ(static_cast<int>(step.end[lane]), static_cast<int>(expected[lane])) << lane;
+    EXPECT_NEAR(step.t[0], flight, 1e-13);
+    EXPECT_GT(step.error[4], 0.0);  // of what the next step must know
+    EXPECT_LT(step.error[4], 1e-8);
+}
+
 // ---- runs ----
 
 std::string end_of(const Attempt& attempt) {
