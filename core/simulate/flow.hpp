@@ -1,6 +1,7 @@
 // One smooth stretch of motion, free or in contact, advanced by an adaptive stepper with dense output, whichever it is.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -58,7 +59,7 @@ class Flow {
     std::unique_ptr<Stepper> stepper_;
     const Model* model_;
     std::vector<double> parameters_;
-    std::optional<Evaluator<double>> acceleration_[2];  // of a Motion, at the end of a step
+    std::array<std::optional<Evaluator<double>>, 2> acceleration_;  // of a Motion, at the end of a step
     Motion motion_ = Motion::flight;
     double t_ = 0.0, span_ = 0.0;
     double first_ = 0.0;           // bound on the next step; 0: none

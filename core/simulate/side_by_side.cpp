@@ -15,7 +15,7 @@ constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter 
 SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
                        const std::function<Run(std::size_t)>& run_of,
                        const std::function<void(std::size_t, Attempt&&)>& take)
-    : model_(model), count_(count), next_(next), run_of_(run_of), take_(take), step_(*model) {}
+    : step_(*model), model_(model), count_(count), next_(next), run_of_(run_of), take_(take) {}
 
 void SideBySide::work() {
     while (true) {

@@ -46,6 +46,8 @@ class SideBySide {
     long most_steps_in_contact() const;
     void move(Execution& run, std::size_t lane, long steps, double least_gap) const;
 
+    LaneStep step_;
+    Line members_;  // of the step that is made: a lane each
     const std::shared_ptr<const Model>& model_;
     std::size_t count_;
     std::atomic<std::size_t>& next_;
@@ -60,8 +62,6 @@ class SideBySide {
         std::array<std::size_t, Eight::count> sets{};  // whose parameters its lanes have
     };
     std::map<double, Prepared> steppers_;  // by tolerance
-    LaneStep step_;
-    Line members_;  // of the step that is made: a lane each
 };
 
 }  // namespace achilles
