@@ -12,7 +12,6 @@ class LaneAccess {
     static const Program& program_of(const SeriesProgram& series) { return series.program_; }
     static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
     static std::uint32_t output_of(const SeriesProgram& series, std::size_t index) { return series.outputs_[index]; }
-    static std::uint32_t output_of(const Program& program, std::size_t index) { return program.outputs_[index]; }
     static std::size_t registers_of(const SeriesProgram& series) { return series.registers_; }
     static std::size_t coefficients_of(const SeriesProgram& series) { return series.coefficients_.size(); }
     static std::size_t moving_inputs(const Program& program) { return program.slots_.fixed_begin; }

@@ -1,4 +1,4 @@
-// One order of all series of a program in eight runs at once: order.hpp's recurrences with a vector for every number.
+// The orders of all series of a program in eight runs at once: order.hpp's recurrences with a vector for every number.
 //
 // One run's inner sums fill a vector by themselves; eight runs' need no number to change its place, load each row once
 // for all sums with one factor, and have eight times as much to do while a rule waits for the one before.

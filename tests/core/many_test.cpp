@@ -157,6 +157,9 @@ TEST(ManyRuns, AreCancelledByAnException) {
     const auto take = [](std::size_t, Attempt&&) { throw Cancelled(); };
     EXPECT_THROW(simulate_many(model, 10000, run_of, take), Cancelled);
     EXPECT_LT(begun, 10000);
+    begun = 0;
+    EXPECT_THROW(simulate_ends(model, 10000, run_of, take), Cancelled);
+    EXPECT_LT(begun, 10000);
 }
 
 }  // namespace

@@ -185,10 +185,7 @@ TEST(Methods, SymmetryDoesNotHideTerms) {
 
 // A contact force that is constant, and so small that its remainder covers it, is not known to stay: hddot = -g.
 TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
-    const auto model = test::typed(
-        "title = \"drop\"\n[[coordinate]]\nname = \"x\"\nstart = 0\n[[parameter]]\nname = \"g\"\nvalue = 1\n"
-        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"g*x\"\n"
-        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
+    const auto model = test::drop();
     auto run = model->default_run();
     for (const double g : {1.0, 1e-11, -1.0}) {
         run.parameters[0] = g;

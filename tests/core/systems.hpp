@@ -35,6 +35,14 @@ inline std::shared_ptr<const Model> typed(const std::string& text) {
     return std::make_shared<const Model>(parse_system(text, "typed.toml"));
 }
 
+// A drop onto the floor x = 0: hddot = -g.
+inline std::shared_ptr<const Model> drop() {
+    return typed(
+        "title = \"drop\"\n[[coordinate]]\nname = \"x\"\nstart = 0\n[[parameter]]\nname = \"g\"\nvalue = 1\n"
+        "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"g*x\"\n"
+        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
+}
+
 inline nlohmann::json reference(const std::string& name) {
     std::ifstream file(source_file("tests/reference/" + name + ".json"));
     return nlohmann::json::parse(file);
