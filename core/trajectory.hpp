@@ -51,7 +51,7 @@ struct Phase {
 
 // One inequality of a truncation condition: satisfied when left < right.
 struct Inequality {
-    std::string name;  // "c1: time", ...
+    std::string_view name;  // "c1: time", ...: a literal
     double left = 0.0, right = 0.0;
 };
 
@@ -63,11 +63,13 @@ struct Certificate {
     Reinitialization reinitialization = Reinitialization::kinetic;
     bool below_rounding = false;                                   // completed since no further flight can be resolved
     double zeno_low = 0.0, zeno_high = 0.0;                        // encloses tau_inf
+    double zeno_time = 0.0;                                        // its best estimate, inside
     double position_bound = 0.0;                                   // on |q_inf - q*|
     double velocity_bound = 0.0;                                   // on |v_inf - v*|
     std::optional<double> shadowing_position, shadowing_velocity;  // THEORY section 5, at tau_inf
+    std::optional<double> uniform_position;                        // on |q - q~| at all times from tau_k to tau_inf
     double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
-    std::string decisive;                                          // the inequality with the least margin
+    std::string_view decisive;                                     // the inequality with the least margin, or why
     struct Paper {
         double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
@@ -82,8 +84,8 @@ struct Event {
     double t = 0.0;
     Vector q, v_before, v_after;  // equal velocities where nothing jumps (release, zeno)
     double impact_speed = 0.0;    // impact: |hdot| before
-    int impacts = 0;              // zeno: impacts of the phase it ends
-    struct Truncation {           // zeno: where the bouncing was cut and what restarted
+    int impacts = 0;              // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
+    struct Truncation {           // zeno: the impact where the bouncing was cut, and what restarted from it
         double t = 0.0;
         Vector q, v_before, v;  // v: after re-initialisation
         double impact_speed = 0.0;

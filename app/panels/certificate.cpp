@@ -35,7 +35,7 @@ void show_inequality(const Inequality& inequality, bool decisive) {
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Color color = decisive ? text_color() : faint_color();
-    std::string name = inequality.name;
+    std::string name(inequality.name);
     if (const std::size_t at_power = name.find("^2"); at_power != std::string::npos)
         name.replace(at_power, 2, "\u00b2");
     list->AddText(at, packed(color), name.c_str());
@@ -82,8 +82,10 @@ std::vector<std::string> certificate_lines(const Event& event) {
     lines.push_back("\u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
     lines.push_back(
         fmt::format("|q\u221e - q*| < {:.2g},  |v\u221e - v*| < {:.2g}", c.position_bound, c.velocity_bound));
+    if (c.uniform_position)
+        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {:.2g}", *c.uniform_position));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("restart at \u03c4\u221e: q within {:.2g}, v within {:.2g}", *c.shadowing_position,
+        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {:.2g}, v within {:.2g}", *c.shadowing_position,
                                     *c.shadowing_velocity));
     lines.push_back(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min));
     if (event.truncation)

@@ -50,6 +50,9 @@ const Inequality* failed(const Certificate& certificate) {
 }
 
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) {
+    if (reason.cut)
+        return "Cut here: what follows is proved to stay within the tolerances of what is drawn. The next event, the "
+               "Zeno point, tells by how much.";
     if (!(reason.normal_acceleration < 0.0))
         return fmt::format("Not cut: the surface falls away here, the gap would accelerate by {}.",
                            number(reason.normal_acceleration));

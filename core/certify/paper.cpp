@@ -32,6 +32,7 @@ PaperConditions::PaperConditions(const Model& model, const Run& run)
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       point_(model.evaluator(model.bounds(), run.parameters)),
+      trend_(model.evaluator(model.bouncing().trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       box_(model.evaluator<Interval>(model.bounds(), run.parameters)),
@@ -163,7 +164,8 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.a_max = b.a_max.hi();
     // The sharper interval for tau_inf (THEORY section 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
     const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
-    set_zeno_time(certificate, collision.t, wait);
+    set_zeno_time(certificate, collision.t, wait,
+                  estimated_wait(trend_at(trend_, collision), mid(e_), collision.speed));
     const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
     certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();
     certificate.paper =

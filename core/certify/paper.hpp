@@ -49,7 +49,7 @@ class PaperConditions : public TruncationConditions {
     std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;
-    Evaluator<double> point_;
+    Evaluator<double> point_, trend_;
     Range hddot_;
     Evaluator<Interval> box_, surface_, motion_;
 };

@@ -13,12 +13,21 @@ class Range {
  public:
     Range() = default;
     // `value` and `gradient` are prepared with the parameters; gradient output i is the derivative by input slots[i].
+    // More outputs may follow, to be read by further().
     Range(Evaluator<Interval> value, Evaluator<Interval> gradient, std::vector<std::uint32_t> slots);
 
-    // Contains the value at every point of the box (one interval for each of the slots). Where the derivative by a
-    // variable keeps its sign, the extremes lie at that variable's ends; the rest is bounded by the mean-value form,
-    // and never worse than by plain evaluation. Undefined where the expression is not defined on the whole box.
+    // Contains the value at every point of the box (one interval for each of the slots). Over a box on which the value
+    // hardly changes this is the mean-value form. Else, where the derivative by a variable keeps its sign, the extremes
+    // lie at that variable's ends; the rest is bounded by the mean-value form, and never worse than by plain
+    // evaluation. Undefined where the expression is not defined on the whole box.
     Interval over(const std::vector<Interval>& box);
+    // The same over a part of the box that was looked at last, by the slopes over the whole of it: tight where it lies
+    // near the middle.
+    Interval over_part(const std::vector<Interval>& part) const;
+    // Output i of the gradient's program after the derivatives, over that box.
+    const Interval& further(std::size_t i) const { return gradient_.output(slots_.size() + i); }
+    // The derivative by variable i over the box that was looked at last; undefined where it is not defined all over it.
+    const Interval& slope(std::size_t i) const { return slopes_[i]; }
 
  private:
     Interval evaluate(const std::vector<Interval>& box);
@@ -26,7 +35,8 @@ class Range {
 
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
-    std::vector<Interval> slopes_, rest_, middle_;  // over the box that is looked at
+    std::vector<Interval> slopes_, rest_, middle_, centre_;  // of the box that is looked at
+    Interval at_centre_;                                     // the value there
 };
 
 // The inputs that the programs of model/bouncing.hpp vary with: q, s, sigma.

@@ -1,6 +1,7 @@
 #include "certify/truncation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "certify/paper.hpp"
 #include "certify/sharp.hpp"
@@ -18,14 +19,18 @@ Interval norm(const std::vector<Interval>& x) {
     return sqrt(sum);
 }
 
-Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w) {
-    const Interval one(1.0), r = a_max / a_min, rebound = Interval(2.0) * e * (one + e) * w;
-    return {rebound / (a_max * (one - square(e) / r)), rebound / (a_min * (one - square(e) * r))};
+Trend trend_at(Evaluator<double>& program, const Collision& collision) {
+    put(program, State{collision.before.q, collision.tangential});
+    program.run();
+    return {-program.output(0), -program.output(1), -program.output(2)};
 }
 
-void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait) {
+void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated) {
     certificate.zeno_low = (Interval(tau_k) + Interval(wait.earliest.lo())).lo();
     certificate.zeno_high = (Interval(tau_k) + Interval(wait.latest.hi())).hi();
+    const double low = std::max(tau_k, certificate.zeno_low), time = tau_k + estimated;
+    certificate.zeno_time = std::isfinite(time) ? std::clamp(time, low, std::max(low, certificate.zeno_high))
+                                                : 0.5 * (low + certificate.zeno_high);
 }
 
 void name_decisive(Certificate& certificate) {

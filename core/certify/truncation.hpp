@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "certify/zeno_time.hpp"
 #include "model/model.hpp"
 #include "trajectory.hpp"
 
@@ -40,14 +41,12 @@ std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);
 
-// tau_inf - tau_k wherever -hddot stays in [a_min, a_max] and e^2 a_max/a_min < 1 (THEORY section 4): attained bounds.
-struct Wait {
-    Interval earliest, latest;
-};
-Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w);
+// How -hddot changes at a collision, by the program Bouncing::trend.
+Trend trend_at(Evaluator<double>& program, const Collision& collision);
 
-// Writes it into the certificate as [zeno_low, zeno_high].
-void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait);
+// Writes into the certificate that tau_inf lies between tau_k + earliest and tau_k + latest, and where it is estimated:
+// inside, and not before tau_k.
+void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated);
 // Names the one of the first three inequalities (time, position, velocity) that has least room.
 void name_decisive(Certificate& certificate);
 

@@ -22,6 +22,12 @@ Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& dire
     return sums;
 }
 
+Expression product(const Row& a, const Row& b) {
+    Expression sum = a.front().graph().number(0);
+    for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
+    return sum;
+}
+
 Row sum(const Row& a, const Row& b) {
     Row result;
     for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
@@ -55,15 +61,9 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     for (const auto& slots : {q, v})
         for (const Row& row : jacobian(A, slots)) slopes.insert(slopes.end(), row.begin(), row.end());
     const Expression hddot_of_v = graph.adopt(equations.hddot), hddot = substitute(hddot_of_v, v, velocity);
-    Row trend = {hddot_of_v};
     const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
-    Expression by_sigma = graph.number(0);
-    for (std::size_t i = 0; i < count; ++i) {
-        trend.push_back(by_q[i] * s[i]);
-        by_sigma = by_sigma + by_v[i] * n[i];
-    }
-    for (std::size_t i = 0; i < count; ++i) trend.push_back(by_v[i] * A[i]);
-    trend.push_back(by_sigma);
+    const Expression by_sigma = product(by_v, n), rate_along = product(by_q, s) + product(by_v, A);
+    const Row drift{rate_along, product(by_q, n) + product(by_v, B), product(by_v, D)};
     std::vector<std::uint32_t> variables = q;
     variables.insert(variables.end(), v.begin(), v.end());
     variables.push_back(layout.sigma());
@@ -74,8 +74,10 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         for (const Row& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());
         return Program(outputs, slots);
     };
-    return {program({{hddot}}), program({gradient(hddot, variables)}), program({velocity, rate}), program({trend}),
-            program({A, n, B, D, ndot, Bdot, slopes})};
+    const Row slope_of_hddot = gradient(hddot, variables);
+    return {program({{hddot}}), program({slope_of_hddot}), program({velocity, rate}),
+            program({{hddot_of_v, rate_along, by_sigma}}),
+            program({slope_of_hddot, A, n, B, D, ndot, Bdot, slopes, drift})};
 }
 
 }  // namespace achilles

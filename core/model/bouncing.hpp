@@ -17,9 +17,13 @@ struct Bouncing {
     Program hddot;     // hddot(q, s + n sigma)
     Program gradient;  // its derivatives with respect to q (n), s (n), sigma
     Program motion;    // v = s + n sigma (n), s' (n)
-    // At sigma = 0: hddot, its rate of change with time along the motion by each of q (n) and s (n), that with sigma.
+    // At sigma = 0: hddot, its rate along the constrained motion (P below), its derivative with respect to sigma.
     Program trend;
-    Program shadow;  // A (n), n (n), B (n), D (n), ndot (n), Bdot (n), dA/dq (n x n), dA/ds (n x n), row by row
+    // The gradient again (it shares most of its work with what follows); A (n), n (n), B (n), D (n), ndot (n), Bdot
+    // (n), dA/dq (n x n), dA/ds (n x n), row by row; then P, Phi, Xi, by which hddot(q, s) moves along the bouncing,
+    // d/dt = P + Phi sigma + Xi sigma^2 (THEORY-truncation section 4):
+    //     P = hddot_q s + hddot_s A,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
+    Program shadow;
 };
 
 // Derives and compiles the programs, in a copy of the equations' graph.

@@ -53,6 +53,7 @@ Json certificate_of(const Certificate& c) {
                    {"velocity_bound", number(c.velocity_bound)},
                    {"shadowing_position", number(c.shadowing_position)},
                    {"shadowing_velocity", number(c.shadowing_velocity)},
+                   {"uniform_position", number(c.uniform_position)},
                    {"a_min", number(c.a_min)},
                    {"a_max", number(c.a_max)},
                    {"decisive", c.decisive}};

@@ -30,12 +30,20 @@ std::string impact_lines(const std::vector<const Event*>& impacts) {
     return text;
 }
 
+// A line for each part of a sentence.
+std::string indented(std::string sentence) {
+    const std::string margin(12, ' ');
+    for (std::size_t at = 0; (at = sentence.find("; ", at)) != std::string::npos; ++at)
+        sentence.replace(at, 2, ";\n" + margin);
+    return margin + sentence + "\n";
+}
+
 std::string event_line(const Model& model, const Event& event) {
     std::string text = fmt::format("  {:<9} t = {:<16.10g} {}\n", to_text(event.kind), event.t, named(model, event.q));
     if (event.kind == Event::Kind::zeno)
-        text += fmt::format("            after {} impacts, cut short at t = {:.10g}, speed {:.3g}\n", event.impacts,
-                            event.truncation->t, event.truncation->impact_speed);
-    if (event.certificate) text += "            " + sentence(*event.certificate) + "\n";
+        text += fmt::format("            after {} impacts, cut short at the last of them, t = {:.10g}, speed {:.3g}\n",
+                            event.impacts, event.truncation->t, event.truncation->impact_speed);
+    if (event.certificate) text += indented(sentence(*event.certificate));
     return text;
 }
 
@@ -52,11 +60,14 @@ std::string sentence(const Certificate& c) {
     std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}",
                                    interval_text(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g}", c.zeno_low);
-    if (c.shadowing_position && *c.shadowing_position > 0.0)
-        text += fmt::format("; at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
-                            *c.shadowing_position, *c.shadowing_velocity);
+    if (c.uniform_position && *c.uniform_position > 0.0)
+        text += fmt::format(
+            "; at all times from tau_k to tau_inf within {:.2g} of the true position (the bounces not drawn are no "
+            "higher); at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
+            *c.uniform_position, *c.shadowing_position, *c.shadowing_velocity);
     const char* link = c.position_bound == 0.0 ? "; " : c.paper ? "; decided by the condition " : "; decided by the ";
-    text += link + c.decisive;
+    text += link;
+    text += c.decisive;
     if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
     return text;
 }

@@ -8,15 +8,15 @@ namespace achilles {
 
 // ---- completion ----
 
-// The bouncing is replaced by the constrained motion from the collision on; the phase changes at the best estimate of
-// the Zeno time, the middle of its interval.
+// The collision is the last impact that is drawn: the bouncing after it is replaced by the constrained motion. The
+// phase changes at the best estimate of the Zeno time.
 void Execution::complete(const Collision& collision, Certificate certificate) {
-    const double zeno_time = 0.5 * (certificate.zeno_low + certificate.zeno_high);
+    record_.impact(t_, state_, impact(contact_, state_.v, restitution_), collision.speed);
     state_ = {collision.before.q, collision.restart};
     record_.stretch(state_);
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
-    event.t = zeno_time;
+    event.t = certificate.zeno_time;
     event.truncation =
         Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
     event.certificate = std::move(certificate);

@@ -188,6 +188,13 @@ void Execution::land() {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(t_, state_));
         return;
     }
+    if (record_.impacts() >= run_.options.max_impacts) {
+        const bool elastic = restitution_ >= 1.0;
+        stop(Outcome::Kind::too_many_impacts,
+             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
+                         t_, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
+        return;
+    }
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (restitution_ > 0.0 && conditions_ && conditions_->hopeless_at(-contact.hdot) && is_well_resolved(-contact.hdot))
         return bounce(contact, restitution_);
@@ -228,13 +235,6 @@ std::optional<Certificate> Execution::prove(
 
 // Newton's law, and the flight it starts.
 void Execution::bounce(const Contact& contact, double e) {
-    if (record_.impacts() >= run_.options.max_impacts) {
-        const bool elastic = e >= 1.0;
-        stop(Outcome::Kind::too_many_impacts,
-             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
-                         t_, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
-        return;
-    }
     const Vector v_after = impact(contact, state_.v, e);
     record_.impact(t_, state_, v_after, -contact.hdot);
     state_.v = v_after;
@@ -271,8 +271,8 @@ void Execution::capture(const Collision& before) {
         certificate.certified = true;
         certificate.conditions = run_.options.truncation.conditions;
         certificate.reinitialization = Reinitialization::kinetic;
-        certificate.zeno_low = certificate.zeno_high = t_;
-        certificate.shadowing_position = certificate.shadowing_velocity = 0.0;
+        certificate.zeno_low = certificate.zeno_high = certificate.zeno_time = t_;
+        certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
         certificate.decisive = "exact: restitution 0";

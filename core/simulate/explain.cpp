@@ -18,6 +18,8 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
         return energy.output(0);
     };
     ImpactReason reason;
+    const Event* next = event + 1 < trajectory.events.size() ? &trajectory.events[event + 1] : nullptr;
+    reason.cut = next != nullptr && next->kind == Event::Kind::zeno;
     reason.energy_before = energy_at(impact.v_before);
     reason.energy_after = energy_at(impact.v_after);
 

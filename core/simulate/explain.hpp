@@ -9,8 +9,10 @@
 
 namespace achilles {
 
-// Of an impact (index into trajectory.events): what it cost, and why the bouncing was not cut short at it.
+// Of an impact (index into trajectory.events): what it cost, and why the bouncing was not cut short at it, if it was
+// not.
 struct ImpactReason {
+    bool cut = false;  // it was: the bounces after it are not drawn
     double energy_before = 0.0, energy_after = 0.0;
     double normal_acceleration = 0.0;  // hddot of the free motion at the velocity that contact would start with
     // What could be proved here whatever the tolerances: its first three inequalities are those of the run's own

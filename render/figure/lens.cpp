@@ -41,7 +41,7 @@ void set_time_left(Axis& axis, double low, double high) {
 std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     if (event >= trajectory.events.size()) return std::nullopt;
     const Event& zeno = trajectory.events[event];
-    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.impacts == 0) return std::nullopt;
+    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.impacts < 2) return std::nullopt;
     const Model& model = *trajectory.model;
     Lens lens;
     lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
@@ -60,12 +60,9 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     auto gap = model.evaluator(model.gap(), trajectory.run.parameters);
     Sampler sampler(trajectory);
     const auto first = event - static_cast<std::size_t>(zeno.impacts);
-    for (std::size_t i = first; i < event; ++i) {
-        const Event& impact = trajectory.events[i];
-        const bool last = i + 1 == event;
-        const double end = last ? zeno.truncation->t : trajectory.events[i + 1].t;
-        const double down = last ? zeno.truncation->impact_speed : trajectory.events[i + 1].impact_speed;
-        const double w = impact.impact_speed, length = end - impact.t;
+    for (std::size_t i = first; i + 1 < event; ++i) {  // to the impact at which the bouncing is cut
+        const Event &impact = trajectory.events[i], &next = trajectory.events[i + 1];
+        const double w = impact.impact_speed, down = next.impact_speed, length = next.t - impact.t;
         Flight& drawn = lens.flights_.emplace_back(Flight{x(impact.t), w, {}});
         for (int k = 0; k <= points_a_flight; ++k) {
             const double u = share(k), t = impact.t + u * length;

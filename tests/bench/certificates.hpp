@@ -10,18 +10,17 @@
 
 namespace achilles::bench {
 
-// Every collision at which a run asked for a certificate: its impacts, and those it was cut at.
+// Every collision at which a run asked for a certificate: its impacts, of which the last before a Zeno point is the
+// cut.
 inline std::vector<Collision> collisions(const Trajectory& trajectory) {
     Surface surface(*trajectory.model, trajectory.run);
     std::vector<Collision> result;
     for (const Event& event : trajectory.events) {
-        if (event.kind == Event::Kind::release) continue;
-        const State before{event.truncation ? event.truncation->q : event.q,
-                           event.truncation ? event.truncation->v_before : event.v_before};
+        if (event.kind != Event::Kind::impact) continue;
+        const State before{event.q, event.v_before};
         const Contact contact = surface.at(before);
         const auto kind = trajectory.run.options.truncation.reinitialization;
-        result.push_back({event.truncation ? event.truncation->t : event.t, before, -contact.hdot,
-                          reinitialize(contact, before.v, Reinitialization::kinetic),
+        result.push_back({event.t, before, -contact.hdot, reinitialize(contact, before.v, Reinitialization::kinetic),
                           reinitialize(contact, before.v, kind)});
     }
     return result;

@@ -94,13 +94,13 @@ TEST(Restarts, KineticIsOfThirdOrderEuclideanOfFirst) {
     EXPECT_NEAR(order("double_pendulum", Reinitialization::euclidean, 5.0, 1e-6), 1.0, 0.05);
 }
 
-// Cuts of a trajectory, and those that could have been proved at the impact before: the quick look put them off.
+// Cuts of a trajectory, and those that could have been proved at the impact before it: the quick look put them off.
 struct Cuts {
     int all = 0, late = 0;
     void count(const Trajectory& trajectory) {
         Surface surface(*trajectory.model, trajectory.run);
-        for (std::size_t i = 1; i < trajectory.events.size(); ++i) {
-            const Event& last = trajectory.events[i - 1];
+        for (std::size_t i = 2; i < trajectory.events.size(); ++i) {
+            const Event& last = trajectory.events[i - 2];
             if (trajectory.events[i].kind != Event::Kind::zeno || last.kind != Event::Kind::impact) continue;
             ++all;
             const Contact contact = surface.at({last.q, last.v_before});

@@ -36,7 +36,9 @@ TEST(Reasons, AnImpactThatIsNotCutFailsSomething) {
         for (std::size_t i = 1; i < trajectory.events.size(); ++i) {
             if (trajectory.events[i].kind != Event::Kind::impact) continue;
             const ImpactReason reason = explain_impact(trajectory, i);
-            if (!reason.attempt) continue;
+            EXPECT_EQ(reason.cut,
+                      i + 1 < trajectory.events.size() && trajectory.events[i + 1].kind == Event::Kind::zeno);
+            if (!reason.attempt || reason.cut) continue;
             bool failed = false;
             for (const Inequality& inequality : reason.attempt->inequalities)
                 failed = failed || !(inequality.left < inequality.right);

@@ -55,6 +55,7 @@ TEST_F(Outputs, JsonHasTheKeysOfTheContract) {
             EXPECT_LT(c["zeno_time"][0].get<double>(), event["t"].get<double>());
             EXPECT_GT(c["zeno_time"][1].get<double>(), event["t"].get<double>());
             EXPECT_TRUE(c["shadowing_position"].is_null());
+            EXPECT_TRUE(c["uniform_position"].is_null());
             for (const char* key : {"position_bound", "velocity_bound", "a_min", "a_max", "decisive", "e1", "e2",
                                     "beta", "eta", "zeta", "c1", "c2", "c3"})
                 EXPECT_TRUE(c.contains(key)) << key;
@@ -76,12 +77,15 @@ TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
         EXPECT_EQ(c["conditions"], "sharp");
         EXPECT_LE(c["shadowing_position"].get<double>(), 1e-6);
         EXPECT_LE(c["shadowing_velocity"].get<double>(), 1e-6);
-        EXPECT_EQ(c["decisive"], "time bound");
+        EXPECT_LE(c["uniform_position"].get<double>(), 1e-6);
+        EXPECT_GT(c["uniform_position"].get<double>(), c["shadowing_position"].get<double>());
+        EXPECT_EQ(c["decisive"], "position bound");
         EXPECT_FALSE(c.contains("e1"));
         EXPECT_EQ(c["inequalities"].size(), 5u);
     }
-    EXPECT_NE(summary(sharp).find("of the true motion; decided by the time bound"), std::string::npos)
-        << summary(sharp);
+    const std::string text = summary(sharp);
+    EXPECT_NE(text.find("of the true motion;\n            decided by the position bound"), std::string::npos) << text;
+    EXPECT_NE(text.find("of the true position (the bounces not drawn are no higher)"), std::string::npos) << text;
 }
 
 TEST_F(Outputs, WhatIsNotFiniteIsNull) {
@@ -95,7 +99,7 @@ TEST_F(Outputs, WhatIsNotFiniteIsNull) {
 TEST_F(Outputs, CsvHasTwoRowsAtAnImpactTheSecondWithALargerJ) {
     const std::vector<std::string> lines = split(to_csv(trajectory), '\n');
     EXPECT_EQ(lines[0], "t,phase,x,y,x',y',gap,gap rate,lambda,energy,j");
-    std::size_t pairs = 0;
+    std::size_t pairs = 0, cuts = 0;
     for (std::size_t i = 2; i < lines.size(); ++i) {
         const auto before = split(lines[i - 1], ','), after = split(lines[i], ',');
         ASSERT_EQ(after.size(), 11u);
@@ -103,11 +107,18 @@ TEST_F(Outputs, CsvHasTwoRowsAtAnImpactTheSecondWithALargerJ) {
         if (before[0] != after[0] || before[10] == after[10]) continue;
         ++pairs;
         EXPECT_EQ(std::stoi(after[10]), std::stoi(before[10]) + 1);
-        if (after[1] == "hybrid" && before[1] == "hybrid") {
+        const auto j = static_cast<std::size_t>(std::stoi(after[10]));
+        if (j < trajectory.events.size() && trajectory.events[j].kind == Event::Kind::zeno) {
+            // The last impact before a Zeno point: what follows is the restarted motion.
+            EXPECT_EQ(std::stod(after[2 + 2]), trajectory.events[j].truncation->v[0]);
+            EXPECT_NEAR(std::stod(after[7]), 0.0, 1e-15);
+            ++cuts;
+        } else if (after[1] == "hybrid" && before[1] == "hybrid") {
             EXPECT_NEAR(std::stod(after[7]), -0.5 * std::stod(before[7]), 1e-9 + 1e-6 * std::abs(std::stod(before[7])));
         }
     }
     EXPECT_EQ(pairs, trajectory.events.size());
+    EXPECT_EQ(cuts, 2u);
     EXPECT_EQ(lines[1].substr(0, 13), "0,hybrid,0,2,");
 }
 
@@ -123,7 +134,7 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
 
 TEST_F(Outputs, TextIsForGoldens) {
     const std::string text = to_text(trajectory);
-    EXPECT_EQ(text.substr(0, 62), "phase hybrid [0, 2.72514217] impacts 22\nphase constrained [2.7");
+    EXPECT_EQ(text.substr(0, 62), "phase hybrid [0, 2.72514217] impacts 23\nphase constrained [2.7");
 }
 
 }  // namespace

@@ -46,7 +46,6 @@ Outline outline_of(const Trajectory& trajectory) {
         if (event.kind == Event::Kind::release) outline.releases.push_back(event.t);
         if (event.kind != Event::Kind::zeno) continue;
         auto& bounces = outline.bounces.back();
-        bounces.impacts.push_back(event.truncation->t);  // where it was cut there is an impact too
         bounces.zeno_low = event.certificate->zeno_low;
         bounces.zeno_high = event.certificate->zeno_high;
         ++outline.zenos;

@@ -1,0 +1,165 @@
+// What is drawn is true at every instant: the uniform bound of the sharp conditions, the impact at which a bouncing is
+// cut, and the Zeno time to third order (THEORY-truncation sections 2 to 4).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "certify/truncation.hpp"
+#include "output/output.hpp"
+#include "simulate/impact.hpp"
+#include "systems.hpp"
+
+namespace achilles {
+namespace {
+
+std::shared_ptr<const Model> falling_ball() {
+    return test::typed(R"(
+title = "Ball"
+[[coordinate]]
+name = "y"
+start = 1.0
+rate = 0.0
+[[parameter]]
+name = "e"
+value = 0.8
+[lagrangian]
+kinetic = "1/2*y'^2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = "e"
+)");
+}
+
+// The true height of that ball, flight by flight.
+double true_height(double t, double e) {
+    constexpr double g = 9.81;
+    double start = -std::sqrt(2.0 / g), up = std::sqrt(2.0 * g);  // as if it had been thrown up before
+    while (up > 1e-12) {
+        const double length = 2.0 * up / g;
+        if (t < start + length) return up * (t - start) - 0.5 * g * (t - start) * (t - start);
+        start += length;
+        up *= e;
+    }
+    return 0.0;
+}
+
+// Of a flat floor every bound is attained, so that time, position and velocity at tau_inf hold at the first impact
+// already. What is seen does not.
+TEST(Truncation, ATextbookBallBounces) {
+    const auto model = falling_ball();
+    const Trajectory trajectory = simulate(model, model->default_run());
+    ASSERT_EQ(trajectory.phases.size(), 2u);
+    EXPECT_GE(trajectory.phases[0].impacts, 25);
+    Sampler sampler(trajectory);
+    double furthest = 0.0;
+    for (int i = 0; i <= 100000; ++i) {
+        const double t = 1e-4 * i;
+        furthest = std::max(furthest, std::abs(sampler.at(t).state.q[0] - true_height(t, 0.8)));
+    }
+    EXPECT_LE(furthest, 1e-6);
+    const auto zenos = test::events_of(trajectory, Event::Kind::zeno);
+    ASSERT_EQ(zenos.size(), 1u);
+    const Certificate& c = *zenos[0].certificate;
+    EXPECT_LE(furthest, *c.uniform_position);
+    EXPECT_GE(furthest, 0.99 * *c.uniform_position);  // the first bounce that is not drawn is that high
+    EXPECT_NEAR(zenos[0].t, std::sqrt(2.0 / 9.81) * (1.0 + 2.0 * 0.8 / 0.2), 1e-9);
+}
+
+TEST(Truncation, TheImpactAtTheCutIsAnImpactLikeAnyOther) {
+    for (const double e : {0.5, 0.0}) {
+        const auto model = test::load("ball_on_sine");
+        auto run = model->default_run();
+        for (std::size_t i = 0; i < run.parameters.size(); ++i)
+            if (model->description().parameters[i].name == "e") run.parameters[i] = e;
+        const Trajectory trajectory = simulate(model, run);
+        long impacts = 0;
+        for (const Phase& phase : trajectory.phases) impacts += phase.impacts;
+        EXPECT_EQ(impacts, trajectory.statistics.impacts);
+        Surface surface(*model, run);
+        int zenos = 0, since = 0;
+        for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+            const Event& event = trajectory.events[i];
+            if (event.kind == Event::Kind::impact) ++since;
+            if (event.kind != Event::Kind::zeno) continue;
+            ++zenos;
+            ASSERT_GE(i, 1u);
+            const Event& cut = trajectory.events[i - 1];
+            ASSERT_EQ(cut.kind, Event::Kind::impact);
+            EXPECT_EQ(event.impacts, since);
+            since = 0;
+            EXPECT_EQ(cut.t, event.truncation->t);
+            EXPECT_EQ(cut.q, event.truncation->q);
+            EXPECT_EQ(cut.v_before, event.truncation->v_before);
+            EXPECT_EQ(cut.impact_speed, event.truncation->impact_speed);
+            const Contact after = surface.at({cut.q, cut.v_after});
+            EXPECT_NEAR(after.hdot, e * cut.impact_speed, 1e-13);  // Newton's law, not the restart
+        }
+        EXPECT_GE(zenos, 2);
+    }
+}
+
+struct Cut {
+    double w, estimate_error, half_width, first_order_half_width;
+};
+
+// The wait for the first Zeno point as it is seen from each impact before it.
+std::vector<Cut> cuts_of(const std::string& system) {
+    const auto model = test::load(system);
+    auto run = model->default_run();
+    run.options.tolerance = 1e-14;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-13;
+    const Trajectory trajectory = simulate(model, run);
+    const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
+    Surface surface(*model, run);
+    const auto conditions = truncation_conditions(*model, run);
+    const Interval e(0.5);
+    std::vector<Cut> cuts;
+    for (const Event& event : trajectory.events) {
+        if (event.t >= zeno.t || event.kind != Event::Kind::impact) break;
+        const State before{event.q, event.v_before};
+        const Contact contact = surface.at(before);
+        const Vector s = reinitialize(contact, before.v, Reinitialization::kinetic);
+        const auto c = conditions->widest({event.t, before, -contact.hdot, s, s});
+        if (!c) continue;
+        EXPECT_LE(c->zeno_low, zeno.t);
+        EXPECT_GE(c->zeno_high, zeno.t);
+        const Wait wait = wait_for_zeno(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
+        cuts.push_back({event.impact_speed, std::abs(c->zeno_time - zeno.t), 0.5 * (c->zeno_high - c->zeno_low),
+                        0.5 * (wait.latest.hi() - wait.earliest.lo())});
+    }
+    return cuts;
+}
+
+double slope(const Cut& a, const Cut& b, double Cut::*value) {
+    return std::log(a.*value / (b.*value)) / std::log(a.w / b.w);
+}
+
+TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
+    for (const auto& problem : test::problems) {
+        const std::vector<Cut> cuts = cuts_of(problem.asset);
+        const Cut *large = nullptr, *small = nullptr;
+        for (const Cut& cut : cuts) {
+            if (cut.w < 2e-2 && large == nullptr) large = &cut;
+            if (cut.w > 3e-4) small = &cut;
+        }
+        ASSERT_TRUE(large != nullptr && small != nullptr && small->w < 0.1 * large->w);
+        EXPECT_GT(slope(*large, *small, &Cut::half_width), 2.8) << problem.key;
+        EXPECT_GT(slope(*large, *small, &Cut::estimate_error), 2.8) << problem.key;
+        EXPECT_NEAR(slope(*large, *small, &Cut::first_order_half_width), 2.0, 0.5) << problem.key;
+        EXPECT_LT(small->half_width, 0.1 * small->first_order_half_width) << problem.key;
+    }
+}
+
+// (E) is what the exact identity gives: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
+TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
+    const Trend trend{2.0, 0.3, 0.7};
+    const double e = 0.5, w = 1e-2, a = trend.a, b = trend.b, c = trend.c, K = (1 + e) / (1 - e);
+    const double cB = -b * K / (2 * a * a), cC = -(b / (a * a) + c / a) / (2 * a);
+    const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
+    const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
+    EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
+}
+
+}  // namespace
+}  // namespace achilles
