@@ -20,7 +20,8 @@ struct LaneStep {
     explicit LaneStep(const Model& model)
         : q_and_v(2 * static_cast<std::size_t>(model.n())), n(q_and_v.size() / 2), g(n.size()) {}
 
-    Eight t, until;  // s: now, and where the motion ends at the latest
+    Eight t, until;     // s: now, and where the motion ends at the latest
+    Eight state_error;  // as in Gap
     // In flight: the gap, as in Gap; `known` is 1 where it starts from zero, else 0. After a step without event that at
     // its end, by the series.
     Eight h, hdot, error, rate_error, known;

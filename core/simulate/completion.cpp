@@ -14,6 +14,7 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     record_.impact(t_, state_, impact(contact_, state_.v, restitution_), collision.speed);
     state_ = {collision.before.q, collision.restart};
     record_.stretch(state_);
+    hold_ = {};
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
     event.t = certificate.zeno_time;
@@ -27,8 +28,13 @@ double Execution::contact_until() const {
 }
 
 void Execution::wait_for_zeno_point() {
-    flow_.stay(t_, state_);
-    const bool vanished = stay(contact_until());
+    const Beginning start = beginning();
+    bool vanished = false;
+    do {
+        flow().stay(t_, state_, start.state_error);
+        vanished = stay(contact_until());
+    } while (doubt_ && try_exactly(start));
+    settle();
     Event event = std::move(*completion_);
     completion_.reset();
     if (vanished)
@@ -46,76 +52,109 @@ void Execution::wait_for_zeno_point() {
 // ---- contact ----
 
 void Execution::stay_until_release() {
-    flow_.stay(t_, state_);
-    record_.stretch(state_);
-    if (stay(run_.options.end_time)) release();
+    const Beginning start = beginning();
+    bool vanished = false;
+    do {
+        flow().stay(t_, state_, start.state_error);
+        record_.stretch(state_);
+        vanished = stay(run_.options.end_time);
+    } while (doubt_ && try_exactly(start));
+    settle();
+    if (vanished) release();
 }
 
 // Moves on the surface until a time (false) or until the contact force vanishes (true).
 bool Execution::stay(double until) {
-    while (!outcome_ && until - t_ > 1e-15 * std::abs(t_))
+    while (!outcome_ && !doubt_ && until - t_ > 1e-15 * std::abs(t_))
         if (stay_step(until)) return true;
-    if (!outcome_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
+    if (!outcome_ && !doubt_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
     return false;
 }
 
 // One step of it. True if the contact force vanishes where it ends.
 bool Execution::stay_step(double until) {
-    if (!advance(until - t_)) return false;
-    const auto projected = surface_.project(flow_.moved_end(), false);
-    if (!projected) {
-        leave_contact(flow_.end_time(), flow_.end());
-        return false;
+    if (!advance(until)) return false;
+    Descent descent = flow().stays_negative() ? Descent{} : force_descent();
+    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
+    bool asked_again = false;
+    switch (descent.kind) {
+        case Descent::Kind::none:
+            break;
+        case Descent::Kind::root:
+            if (descent.theta == 0.0) return true;
+            if (locate_release(descent.theta)) return !outcome_;
+            break;                 // the step became shorter
+        case Descent::Kind::rose:
+            if (!knows_its_start() || hold_.asked_again) return doubt_force(0.0);
+            break;
+        case Descent::Kind::open:
+            // As in flight: a dip that holds the end of a step lies inside the next one.
+            asked_again = !hold_.asked_again && end_step_at(descent.theta);
+            if (!asked_again && !(is_exact() && flow().end_time() >= until)) return doubt_force(descent.theta);
+            break;
+        case Descent::Kind::undecided:
+            return doubt_force(descent.theta);
     }
-    const auto descent = flow_.stays_negative() ? Descent{} : force_descent();
-    if (descent.kind == Descent::Kind::root && descent.theta == 0.0) return true;
-    if (descent.kind == Descent::Kind::undecided) {
-        stop(Outcome::Kind::undecided,
-             "the contact force comes closer to zero than the integration knows it just after " +
-                 where(flow_.begin_time() + descent.theta * flow_.duration(), state_));
-        return false;
-    }
-    if (descent.kind == Descent::Kind::root) {
-        if (locate_release(descent.theta)) return !outcome_;
-        take(surface_.at(flow_.end()));  // the step became shorter
-    } else {
-        take(*projected);
-    }
+    hold_ = {0, asked_again};
+    take_in_contact();
+    return false;
+}
+
+// Accepts the flow's last step, moved onto the surface. False, and the run is over, if it cannot be.
+bool Execution::take_in_contact() {
+    const auto projected = surface_.project(flow().moved_end(), false);
+    take(projected ? *projected : surface_.at(flow().end()));
+    if (!projected) leave_contact(t_, state_);
+    return projected.has_value();
+}
+
+// Whether the force vanishes cannot be told from theta on: the motion goes there, and ends in doubt. Always false.
+bool Execution::doubt_force(double theta) {
+    if (end_step_at(theta) && !take_in_contact()) return false;
+    doubt_ = "the contact force comes closer to zero than the integration knows it just after " + where(t_, state_);
     return false;
 }
 
 // Where the contact force vanishes along the last step: -hddot = W lambda. At theta = 0 if it did before, to within
 // rounding.
 Descent Execution::force_descent() {
-    Polynomial force = flow_.watched();
+    Polynomial force = flow().watched();
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
-    if (!flow_.is_expansion()) force.c[2] += -surface_.normal_acceleration(flow_.end()) - force(1.0);
-    if (!(force.c[0] > 0.0)) return {Descent::Kind::root, 0.0};
-    return first_descent(force, 0, flow_.remainder(force));
+    if (!flow().is_expansion()) {
+        State end = flow().end();
+        surface_.project(end, false);
+        force.c[2] += -surface_.normal_acceleration(end) - force(1.0);
+    }
+    if (hold_.known > 0) {
+        force.c[0] = 0.0;
+    } else if (!(force.c[0] > 0.0)) {
+        return {Descent::Kind::root, 0.0};
+    }
+    return first_descent(force, hold_.known, flow().remainder(force));
 }
 
 // The same as locate_impact, for hddot = 0 along the constrained motion.
 bool Execution::locate_release(double theta) {
-    double duration = theta * flow_.duration();
+    double duration = theta * flow().duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
+        if (const auto obstacle = flow().retake(duration); obstacle != Obstacle::none) {
             leave(obstacle);
             return true;
         }
-        const auto projected = surface_.project(flow_.moved_end(), false);
-        if (!projected || flow_.duration() < duration * (1.0 - 1e-12)) return false;
-        const State& end = flow_.end();
+        const auto projected = surface_.project(flow().moved_end(), false);
+        if (!projected || flow().duration() < duration * (1.0 - 1e-12)) return false;
+        const State& end = flow().end();
         const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
-            flow_.shift_end(correction);
-            surface_.project(flow_.moved_end(), false);
+            flow().shift_end(correction);
+            surface_.project(flow().moved_end(), false);
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides
         duration = std::max(duration + correction, 0.5 * duration);
     }
-    take(surface_.at(flow_.end()));
+    take(surface_.at(flow().end()));
     return true;
 }
 
@@ -135,6 +174,7 @@ void Execution::release() {
     record_.close(t_);
     record_.open(Phase::Kind::hybrid, t_);
     constrained_ = false;
+    hold_ = {};
     takeoff_ = {{0.0, 0.0}, 3};
     first_step_ = 0.0;
 }

@@ -46,8 +46,7 @@ class Dopri5 : public Stepper {
     Polynomial watched() const override { return component(2 * n_); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(const Polynomial& p) const override;
-    // Its remainder is many times what a step of its order makes.
-    void add_error(const Polynomial&, Gap&) const override {}
+    void add_error(const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return false; }
     long evaluations() const override { return evaluations_; }
 
@@ -61,6 +60,9 @@ class Dopri5 : public Stepper {
     Obstacle advance(double dt, double least);
     Obstacle accept();
     Obstacle obstacle_here() const;
+    double own_remainder(const Polynomial& p) const;
+    double drifting(const Polynomial& p) const;
+    double earlier_error(const Polynomial& p) const;
     Values values_of(const State& state) const;
     Polynomial component(std::size_t i) const {
         return interpolate({nodes_[0][i], nodes_[1][i], nodes_[2][i], nodes_[3][i], nodes_[4][i]});
@@ -185,7 +187,7 @@ Obstacle Dopri5::advance(double dt, double least) {
 Obstacle Dopri5::do_step(double longest, double first, double least) {
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
-    if (continuing_) gap_ = {nodes_[4][2 * n_], nodes_[4][2 * n_ + 1]};
+    if (continuing_) gap_ = {nodes_[4][2 * n_], nodes_[4][2 * n_ + 1], gap_.error, gap_.rate_error, gap_.state_error};
     from_ = to_;
     Obstacle obstacle = Obstacle::not_a_number;
     if (continuing_ && !by_order) {
@@ -223,10 +225,35 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 
 // The local error that the error control allows, and as much for the dense output between the ends, which is of one
 // order less. In a flight that is short against such a step, less than the highest term that was kept.
-double Dopri5::remainder(const Polynomial& p) const {
+double Dopri5::own_remainder(const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
-    return std::min(4.0 * tolerance_ * (1.0 + size), std::abs(p.c[4])) + 8.0 * 0x1p-53 * size;
+    const double allowed = 4.0 * tolerance_ * (1.0 + size);
+    return (motion_ == Motion::flight ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
+}
+
+// As Taylor's.
+double Dopri5::drifting(const Polynomial& p) const {
+    const double size = motion_ == Motion::flight
+                            ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
+                            : std::abs(p.c[0]) + std::abs(p.c[1]) / span_;
+    return gap_.state_error * (1.0 + size);
+}
+
+double Dopri5::earlier_error(const Polynomial& p) const {
+    if (motion_ == Motion::contact) return drifting(p);
+    return gap_.error + (gap_.rate_error + 0.5 * drifting(p) * span_) * span_;
+}
+
+double Dopri5::remainder(const Polynomial& p) const { return own_remainder(p) + earlier_error(p); }
+
+// A step leaves the gap and its rate wrong by no more than that.
+void Dopri5::add_error(const Polynomial& p, Gap& end) const {
+    const double own = own_remainder(p);
+    end.error = earlier_error(p) + own;
+    end.state_error = gap_.state_error;
+    end.rate_error =
+        gap_.rate_error + drifting(p) * span_ + std::min(4.0 * tolerance_ * (1.0 + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace

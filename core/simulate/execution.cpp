@@ -45,10 +45,12 @@ bool Execution::restart(const Run& run) {
     record_.restart(model_, run_);
     t_ = last_step_ = first_step_ = proving_ = 0.0;
     stalled_ = 0;
-    other_evaluations_ = -flow_.evaluations();
+    other_evaluations_ = -flow_.evaluations() - (exact_ ? exact_->evaluations() : 0);
     state_ = {run.q, run.v};
     contact_ = {};
     takeoff_ = {};
+    hold_ = {};
+    doubt_.reset();
     constrained_ = at_impact_ = false;
     completion_.reset();
     outcome_.reset();
@@ -76,6 +78,7 @@ void Execution::start_in_contact(const Surface::Normal& normal) {
         takeoff_ = {{0.0, 0.0}, 2};
     } else if (certainly_negative(normal.hddot) || certainly_negative(normal.jerk)) {
         constrained_ = true;
+        if (!certainly_negative(normal.hddot)) hold_.known = 1;
     } else if (certainly_positive(normal.jerk)) {
         takeoff_ = {{0.0, 0.0}, 3};
     } else {
@@ -83,101 +86,6 @@ void Execution::start_in_contact(const Surface::Normal& normal) {
              "the contact force and its rate are zero to within rounding: contact or release cannot be decided at " +
                  where(t_, state_));
     }
-}
-
-// ---- flight ----
-
-void Execution::fly_to_impact() {
-    if (!at_impact_) {
-        flow_.fly(t_, state_, takeoff_.gap, first_step_);
-        record_.stretch(state_);
-        while (!outcome_ && !find_impact()) {
-        }
-    }
-    at_impact_ = false;
-    if (!outcome_) land();
-}
-
-// The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
-// leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
-// better (the difference is above its rounding), the polynomial is made to end there.
-Polynomial Execution::gap_along() {
-    Polynomial h = flow_.watched();
-    const int known = takeoff_.multiplicity;
-    for (int j = 0; j < known; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
-    if (flow_.is_expansion()) return h;
-    const Contact contact = surface_.at(flow_.end());
-    const double value = contact.h - h(1.0), slope = contact.hdot * flow_.duration() - h.slope(1.0);
-    if (!surface_.within_gap_error(value, 4.0, contact, flow_.end())) {
-        // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
-        const int m = std::max(2, known);
-        const double b = slope - m * value;
-        h.c[static_cast<std::size_t>(m)] += value - b;
-        h.c[static_cast<std::size_t>(m + 1)] += b;
-    }
-    return h;
-}
-
-// One step. True if the flight is over, by an impact or an outcome.
-bool Execution::find_impact() {
-    if (!advance(run_.options.end_time - flow_.end_time())) return true;
-    Polynomial h = gap_along();
-    Descent descent = first_descent(h, takeoff_.multiplicity, flow_.remainder(h));
-    if (takeoff_.inside && descent.kind == Descent::Kind::none) descent.kind = Descent::Kind::undecided;
-    if (descent.kind == Descent::Kind::undecided) return leave_undecided(descent.theta);
-    if (descent.kind == Descent::Kind::root) {
-        if (descent.theta == 0.0) return true;  // it came down within the remainder of the last step
-        if (locate_impact(descent.theta)) return true;
-        h = gap_along();  // no impact after all, or the step became shorter
-    }
-    Gap gap{h(1.0), h.slope(1.0) / flow_.duration()};
-    const Contact contact = surface_.at(flow_.end());
-    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow_.end())) gap = {contact.h, contact.hdot};
-    flow_.add_error(h, gap);
-    flow_.move_gap(gap);
-    takeoff_ = {gap, 0, descent.kind == Descent::Kind::open};
-    take(contact);
-    return false;
-}
-
-// Whether the gap closes cannot be told from here on: the run ends there. Always true.
-bool Execution::leave_undecided(double theta) {
-    if (theta > 0.0 && flow_.retake(theta * flow_.duration()) == Obstacle::none) take(surface_.at(flow_.end()));
-    stop(Outcome::Kind::undecided,
-         fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot "
-                     "be told just after {}",
-                     flow_.remainder(flow_.watched()), where(t_, state_)));
-    return true;
-}
-
-// Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
-// impact in the step after all (it was the dense output that dipped).
-bool Execution::locate_impact(double theta) {
-    double duration = theta * flow_.duration();
-    for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow_.retake(duration); obstacle != Obstacle::none) {
-            leave(obstacle);
-            return true;
-        }
-        if (flow_.is_expansion()) break;
-        const bool shortened = flow_.duration() < duration * (1.0 - 1e-12);
-        const Polynomial h = gap_along();
-        const double hdot = h.slope(1.0) / flow_.duration();
-        if (shortened || !(hdot < 0.0)) return false;
-        const double correction = -h(1.0) / hdot;
-        if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
-            flow_.shift_end(correction);
-            break;
-        }
-        duration = std::max(duration + correction, 0.5 * duration);
-    }
-    const auto landed = surface_.project(flow_.moved_end(), true);
-    if (!landed) {
-        leave_contact(flow_.end_time(), flow_.end());
-        return true;
-    }
-    take(*landed);
-    return true;
 }
 
 // ---- impact ----
@@ -239,9 +147,9 @@ void Execution::bounce(const Contact& contact, double e) {
     record_.impact(t_, state_, v_after, -contact.hdot);
     state_.v = v_after;
     const double hdot = -e * contact.hdot;
-    takeoff_ = {{0.0, hdot}, 1};
+    takeoff_ = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
     first_step_ = 0.0;
-    if (flow_.is_expansion()) return;
+    if (flow().is_expansion()) return;
     const double hddot = surface_.normal_acceleration(state_);
     first_step_ = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
@@ -301,10 +209,10 @@ bool Execution::is_cancelled() {
     return true;
 }
 
-// One step of the flow, not longer than `longest`. False if the run is over.
-bool Execution::advance(double longest) {
+// One step of the flow, not past the time `until`. False if the run is over.
+bool Execution::advance(double until) {
     if (is_cancelled()) return false;
-    if (longest <= 1e-15 * std::abs(flow_.end_time())) {
+    if (until - flow().end_time() <= 1e-15 * std::abs(flow().end_time())) {
         stop(Outcome::Kind::end_time, "reached the end time");
         return false;
     }
@@ -315,7 +223,7 @@ bool Execution::advance(double longest) {
         return false;
     }
     // Steps of the resolution of time, one after the other, round back to the same state for ever.
-    const auto obstacle = stalled_ > most_stalled ? Obstacle::step_too_small : flow_.step(longest);
+    const auto obstacle = stalled_ > most_stalled ? Obstacle::step_too_small : flow().step(until);
     if (obstacle != Obstacle::none) leave(obstacle);
     return obstacle == Obstacle::none;
 }
@@ -323,9 +231,9 @@ bool Execution::advance(double longest) {
 // Accepts the flow's last step; `contact` is that of its end.
 void Execution::take(const Contact& contact) {
     contact_ = contact;
-    record_.step(flow_, contact.h);
-    pass(flow_.duration(), flow_.end_time());
-    state_ = flow_.end();
+    record_.step(flow(), contact.h);
+    pass(flow().duration(), flow().end_time());
+    state_ = flow().end();
 }
 
 // Time goes on to t, by a last step of this duration.
@@ -347,17 +255,67 @@ void Execution::leave(Obstacle obstacle) {
     stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
 }
 
-// A state that cannot be moved onto the surface. What led there is kept.
+// A state that cannot be moved onto the surface.
 void Execution::leave_contact(double t, const State& state) {
-    take(surface_.at(state));
     stop(Outcome::Kind::left_the_domain,
          fmt::format("{}, at {}", edge_of_contact(*model_, run_, state), where(t, state)));
+}
+
+// ---- doubt ----
+
+// What the flow integrates with: the run's tolerance, or the least that there is where a stretch is made again.
+Flow& Execution::flow() { return exactly_ ? *exact_ : flow_; }
+
+bool Execution::is_exact() const { return exactly_ || knows_its_start(); }
+
+// As well as can be: all that led there was as exact.
+bool Execution::knows_its_start() const { return run_.options.tolerance <= least_tolerance; }
+
+// What the steps so far may have made the state wrong by, relative to its size: a tenth of the tolerance each, as
+// measured.
+double Execution::state_error() const { return 0.1 * run_.options.tolerance * static_cast<double>(record_.steps()); }
+
+Execution::Beginning Execution::beginning() const {
+    return {state_, contact_, takeoff_, hold_, record_.mark(), t_, last_step_, first_step_, state_error(), stalled_};
+}
+
+void Execution::go_back(const Beginning& to) {
+    state_ = to.state;
+    contact_ = to.contact;
+    takeoff_ = to.takeoff;
+    hold_ = to.hold;
+    record_.go_back(to.recorded);
+    t_ = to.t;
+    last_step_ = to.last_step;
+    first_step_ = to.first_step;
+    stalled_ = to.stalled;
+}
+
+// The stretch that was made since is in doubt: true if it may be made again, as exactly as double precision allows.
+bool Execution::try_exactly(const Beginning& since) {
+    if (is_exact() || !asks_again_) return false;
+    if (!exact_) {
+        Run run = run_;
+        run.options.tolerance = least_tolerance;
+        exact_ = std::make_unique<Flow>(*model_, run);
+    }
+    doubt_.reset();
+    go_back(since);
+    exactly_ = true;
+    return true;
+}
+
+// The end of a stretch: what is in doubt still is the end of the run.
+void Execution::settle() {
+    exactly_ = false;
+    if (doubt_) stop(Outcome::Kind::undecided, std::move(*doubt_));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
 Trajectory Execution::finish() {
-    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), flow_.evaluations() + other_evaluations_);
+    const long evaluations = flow_.evaluations() + (exact_ ? exact_->evaluations() : 0) + other_evaluations_;
+    Trajectory trajectory = record_.finish(t_, state_, std::move(*outcome_), evaluations);
     trajectory.statistics.certificate_seconds = proving_;
     return trajectory;
 }

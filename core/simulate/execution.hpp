@@ -18,6 +18,8 @@ std::string where(double t, const State& state);
 
 class Execution {
  public:
+    static constexpr double least_tolerance = 1e-14;  // below that steps are rounding
+
     // `watch` may be null; otherwise it lives as long as this.
     Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep);
 
@@ -43,17 +45,36 @@ class Execution {
  private:
     friend class SideBySide;
 
-    // How the gap leaves zero at the start of a flight: h, hdot, and how many of h, hdot, hddot are zero there.
+    // How the gap leaves zero at the start of a flight, or of a step of it: h, hdot, and how many of h, hdot, hddot are
+    // zero there.
     struct Takeoff {
         Gap gap;
         int multiplicity = 0;
-        bool inside = false;  // the last step ended with the gap inside its remainder
+        bool asked_again = false;  // the step before was ended where the gap entered its remainder
+    };
+    // The same of the contact force in a constrained motion.
+    struct Hold {
+        int known = 0;  // 1 where it starts from zero
+        bool asked_again = false;
+    };
+    // Where a stretch of motion began.
+    struct Beginning {
+        State state;
+        Contact contact;
+        Takeoff takeoff;
+        Hold hold;
+        Recorder::Mark recorded;
+        double t, last_step, first_step, state_error;
+        int stalled;
     };
 
     void start_in_contact(const Surface::Normal& normal);
     Polynomial gap_along();
+    void meet_end(Polynomial& h, const Contact& contact);
     bool find_impact();
-    bool leave_undecided(double theta);
+    bool end_step_at(double theta);
+    bool doubt_gap(double theta);
+    bool land_here();
     bool locate_impact(double theta);
     void land();
     // What some work gives; its time counts as that of proofs.
@@ -76,11 +97,21 @@ class Execution {
     bool stay(double until);
     bool stay_step(double until);
     Descent force_descent();
+    bool doubt_force(double theta);
+    bool take_in_contact();
     bool locate_release(double theta);
     void release();
 
+    Flow& flow();
+    bool is_exact() const;
+    bool knows_its_start() const;
+    double state_error() const;
+    Beginning beginning() const;
+    void go_back(const Beginning& to);
+    bool try_exactly(const Beginning& since);
+    void settle();
     bool is_cancelled();
-    bool advance(double longest);
+    bool advance(double until);
     void take(const Contact& contact);
     void pass(double duration, double t);
     void leave(Obstacle obstacle);
@@ -91,6 +122,7 @@ class Execution {
     Run run_;
     Watch* watch_;
     Flow flow_;
+    std::unique_ptr<Flow> exact_;  // made where a stretch is first in doubt
     Surface surface_;
     std::unique_ptr<TruncationConditions> conditions_;
     Recorder record_;
@@ -103,9 +135,13 @@ class Execution {
     State state_;
     Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;
+    Hold hold_;
     std::optional<Event> completion_;  // the Zeno event that the run is on its way to
     std::optional<Outcome> outcome_;
-    int stalled_ = 0;  // steps in a row that were as short as the resolution of t
+    std::optional<std::string> doubt_;  // what cannot be told in the stretch that is made
+    bool exactly_ = false;              // it is made for the second time
+    bool asks_again_ = true;            // whether it may be
+    int stalled_ = 0;                   // steps in a row that were as short as the resolution of t
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
 };

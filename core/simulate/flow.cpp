@@ -14,11 +14,13 @@ void Flow::fly(double t, const State& state, const Gap& gap, double first_step) 
     start(Motion::flight, t, state, gap, first_step);
 }
 
-void Flow::stay(double t, const State& state) { start(Motion::contact, t, state, {}, 0.0); }
+void Flow::stay(double t, const State& state, double state_error) {
+    start(Motion::contact, t, state, {0.0, 0.0, 0.0, 0.0, state_error}, 0.0);
+}
 
 void Flow::start(Motion motion, double t, const State& state, const Gap& gap, double first_step) {
     motion_ = motion;
-    t_ = t;
+    t_ = end_ = t;
     span_ = 0.0;
     first_ = first_step;
     to_ = state;
@@ -30,9 +32,10 @@ void Flow::start(Motion motion, double t, const State& state, const Gap& gap, do
 // Shorter than half the resolution of time is no step.
 double Flow::least() const { return 1e-16 * std::max(1e-3, std::abs(t_)); }
 
-Obstacle Flow::step(double longest) {
-    t_ += span_;
+Obstacle Flow::step(double until) {
+    t_ = end_;
     span_ = 0.0;
+    const double longest = until - t_;
     const State& start = end();
     if (moved_) stepper_->initialize(motion_, start, gap_);
     moved_ = false;
@@ -40,6 +43,8 @@ Obstacle Flow::step(double longest) {
     first_ = 0.0;
     if (obstacle != Obstacle::none) return obstacle;
     span_ = stepper_->current_time();
+    // Neither short of it nor past it by a rounding: time never runs back.
+    end_ = span_ == longest ? until : std::min(t_ + span_, until);
     fetched_ = false;
     return obstacle;
 }
@@ -49,6 +54,7 @@ Obstacle Flow::retake(double duration) {
     const Obstacle obstacle = stepper_->redo_step(duration, least());
     if (obstacle != Obstacle::none) return obstacle;
     span_ = stepper_->current_time();
+    end_ = t_ + span_;
     fetched_ = false;
     return obstacle;
 }
@@ -76,13 +82,14 @@ void Flow::shift_end(double dt) {
         to_.v[i] += dt * a;
     }
     span_ += dt;
+    end_ = t_ + span_;
     moved_ = true;
 }
 
 Piece Flow::piece(std::vector<double>& coefficients) const {
     Piece piece;
     piece.start = t_;
-    piece.end = t_ + span_;
+    piece.end = end_;
     piece.contact = motion_ == Motion::contact;
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);

@@ -19,10 +19,10 @@ class Flow {
 
     // Start a stretch at (t, state). The first step is at most `first_step` (s); 0 leaves it to the stepper.
     void fly(double t, const State& state, const Gap& gap, double first_step);
-    void stay(double t, const State& state);
-    // Advances by one accepted step, not past t + `longest`. Where a function leaves its domain inside a step the step
-    // is shortened, until it is too short to be a step: that is the obstacle.
-    Obstacle step(double longest);
+    void stay(double t, const State& state, double state_error);
+    // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
+    // domain inside a step the step is shortened, until it is too short to be a step: that is the obstacle.
+    Obstacle step(double until);
     // Makes the last step again with this shorter duration, so that its end is as good as that of a step.
     Obstacle retake(double duration);
     // The end of the last step, to be moved (onto the surface, say); the next step starts from there.
@@ -35,7 +35,7 @@ class Flow {
     // The last step: [begin_time, begin_time + duration], its end, and q, v as polynomials in theta.
     double begin_time() const { return t_; }
     double duration() const { return span_; }
-    double end_time() const { return t_ + span_; }
+    double end_time() const { return end_; }
     const State& end() const {
         if (!fetched_) to_ = stepper_->current_state();
         fetched_ = true;
@@ -61,12 +61,12 @@ class Flow {
     std::vector<double> parameters_;
     std::array<std::optional<Evaluator<double>>, 2> acceleration_;  // of a Motion, at the end of a step
     Motion motion_ = Motion::flight;
-    double t_ = 0.0, span_ = 0.0;
-    double first_ = 0.0;           // bound on the next step; 0: none
-    mutable State to_;             // the end of the last step,
-    mutable bool fetched_ = true;  // once it has been asked for
-    Gap gap_;                      // in flight, at `to`
-    bool moved_ = false;           // the end is not where the stepper left it
+    double t_ = 0.0, span_ = 0.0, end_ = 0.0;  // end: t + span, as it is rounded
+    double first_ = 0.0;                       // bound on the next step; 0: none
+    mutable State to_;                         // the end of the last step,
+    mutable bool fetched_ = true;              // once it has been asked for
+    Gap gap_;                                  // in flight, at `to`
+    bool moved_ = false;                       // the end is not where the stepper left it
 };
 
 }  // namespace achilles

@@ -1,6 +1,7 @@
 #include "simulate/impact.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace achilles {
 
@@ -81,8 +82,12 @@ double Surface::hdot_error(const State& state) {
     return rad(enclosure.output(1));
 }
 
+// A gap may be known against zero far better than against the coordinates, as (2 + sin x) y is near y = 0: its rounding
+// is then that of the last correction. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
+// where dh vanishes on the surface it falls by a constant factor instead.
 std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
+    double before = std::numeric_limits<double>::infinity();
     std::optional<Contact> result(std::in_place);
     Contact& contact = *result;
     for (int round = 0;; ++round) {
@@ -91,7 +96,8 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
         // The bound costs more than a second look, which takes what was not at rounding level at first to a few
         // roundings of q: closer it will not come.
         const double roundings = std::abs(contact.h) / rounding_of_q(contact, state);
-        const bool far = round == 0 && roundings > 0.5, near = round > 0 && roundings <= 4.0;
+        const bool far = round == 0 && roundings > 0.5;
+        const bool near = round > 0 && (roundings <= 4.0 || std::abs(contact.h) <= 0x1p-40 * before);
         if (near || (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state))) {
             if (!keep_velocity) {
                 move_along(state.v, contact.hdot, contact.n);
@@ -100,6 +106,7 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
             return result;
         }
         if (round == rounds) break;
+        before = std::abs(contact.h);
         move_along(state.q, contact.h, contact.n);
     }
     result.reset();

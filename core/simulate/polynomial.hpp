@@ -25,6 +25,7 @@ struct Descent {
         none,       // it stays positive
         root,       // it does at theta, to the last bit of the polynomial
         undecided,  // from theta on it lies inside the remainder and comes out above: a touch, or two roots
+        rose,       // the same from 0 on: it starts inside the remainder, and has left it at theta
         open        // from theta on it lies inside the remainder until the end of the step
     };
     Kind kind = Kind::none;
@@ -34,7 +35,7 @@ struct Descent {
 // The first descent in (0, 1] of a polynomial from which the true quantity differs by at most `remainder`, with a root
 // of multiplicity `known` at 0 divided out first. Roots are isolated by sign variations in the Bernstein basis, of the
 // polynomial raised and lowered by the remainder, so that no two roots inside one step are missed and none is invented.
-// A quantity that starts inside the remainder and rises is `none`: where it starts is known.
+// Of a quantity that starts inside the remainder and rises nothing is known: whoever knows where it starts may decide.
 Descent first_descent(const Polynomial& polynomial, int known, double remainder);
 
 }  // namespace achilles

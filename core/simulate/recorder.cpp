@@ -22,6 +22,14 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.coefficients.reserve(8192);
 }
 
+void Recorder::go_back(const Mark& mark) {
+    trajectory_.pieces.resize(mark.pieces);
+    trajectory_.coefficients.resize(mark.coefficients);
+    trajectory_.statistics = mark.statistics;
+    scale_ = mark.scale;
+    any_gap_ = mark.any_gap;
+}
+
 void Recorder::open(Phase::Kind kind, double t) {
     Phase phase;
     phase.kind = kind;

@@ -15,6 +15,18 @@ class Recorder {
     // For another run of the same parameters.
     void restart(std::shared_ptr<const Model> model, const Run& run);
 
+    // What was recorded so far, and back to it. No event may lie between.
+    struct Mark {
+        std::size_t pieces, coefficients;
+        Statistics statistics;
+        double scale;
+        bool any_gap;
+    };
+    Mark mark() const {
+        return {trajectory_.pieces.size(), trajectory_.coefficients.size(), trajectory_.statistics, scale_, any_gap_};
+    }
+    void go_back(const Mark& mark);
+
     void open(Phase::Kind kind, double t);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }

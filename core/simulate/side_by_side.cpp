@@ -43,6 +43,7 @@ void SideBySide::begin(std::size_t index) {
                           !model_->contact_series().is_partial();
     if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));
     Member& member = member_for(index, run);
+    member.execution.asks_again_ = false;  // an undecided run is made again as a whole
     member.execution.begin();
     go_on(member);
 }
@@ -80,10 +81,10 @@ void SideBySide::go_on(Member& member) {
         const bool plain = run.record_.steps() < run.run_.options.max_steps && run.stalled_ == 0 &&
                            until - run.t_ > 1e-15 * std::abs(run.t_);
         if (in_contact) {
-            if (plain) return staying_.push_back(&member);
+            if (plain && !run.hold_.asked_again) return staying_.push_back(&member);
             run.completing() ? run.wait_for_zeno_point() : run.stay_until_release();
         } else {
-            const bool known = !run.at_impact_ && run.takeoff_.multiplicity <= 1 && !run.takeoff_.inside;
+            const bool known = !run.at_impact_ && run.takeoff_.multiplicity <= 1 && !run.takeoff_.asked_again;
             if (plain && known) return flying_.push_back(&member);
             run.fly_to_impact();
         }
@@ -153,9 +154,10 @@ void SideBySide::gather(bool flying) {
             step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = run.state_.v[i];
         }
         step_.t[lane] = run.t_;
+        step_.state_error[lane] = flying ? run.takeoff_.gap.state_error : run.state_error();
         step_.until[lane] = flying ? run.run_.options.end_time : run.contact_until();
         if (!flying) continue;
-        const auto& [gap, multiplicity, inside] = run.takeoff_;
+        const auto& [gap, multiplicity, asked_again] = run.takeoff_;
         step_.h[lane] = gap.h;
         step_.hdot[lane] = gap.hdot;
         step_.error[lane] = gap.error;
@@ -206,7 +208,7 @@ void SideBySide::after_flight(Execution& run, std::size_t lane) {
         run.land();
     } else if (step_.end[lane] == LaneStep::End::no_event) {
         move(run, lane, 1, step_.end_h[lane]);
-        Gap gap{step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane]};
+        Gap gap{step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
         const double off = step_.end_h[lane] - gap.h;
         if (std::abs(off) > 2.0 * step_.rounding[lane] &&
             !run.surface_.within_gap_error(off, 4.0, contact_of(lane), run.state_)) {
@@ -225,8 +227,10 @@ void SideBySide::after_contact(Execution& run, std::size_t lane) {
     if (steps > 0) move(run, lane, steps, step_.least_gap[lane]);
     if (plain) return;
     if (run.completing()) return run.wait_for_zeno_point();
-    run.flow_.stay(run.t_, run.state_);
-    if (run.stay_step(run.run_.options.end_time)) run.release();
+    run.flow_.stay(run.t_, run.state_, run.state_error());
+    const bool vanished = run.stay_step(run.run_.options.end_time);
+    run.settle();
+    if (vanished) run.release();
 }
 
 }  // namespace achilles

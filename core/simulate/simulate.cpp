@@ -6,12 +6,12 @@
 
 namespace achilles {
 
+namespace {
+
 // Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a
 // vanishing contact force releases into the next hybrid execution.
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
-    model->check(run);
-    const auto clock = std::chrono::steady_clock::now();
-    Execution execution(std::move(model), run, watch, keep);
+Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch, Keep keep) {
+    Execution execution(model, run, watch, keep);
     execution.begin();
     while (execution.running()) {
         if (execution.completing()) {
@@ -22,7 +22,23 @@ Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* w
             execution.fly_to_impact();
         }
     }
-    Trajectory trajectory = execution.finish();
+    return execution.finish();
+}
+
+}  // namespace
+
+// What is undecided may be so since the state had become wrong before: then the whole run is made once more, as exactly
+// as double precision allows.
+Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
+    model->check(run);
+    const auto clock = std::chrono::steady_clock::now();
+    Trajectory trajectory = execute(model, run, watch, keep);
+    if (trajectory.outcome.kind == Outcome::Kind::undecided && run.options.tolerance > Execution::least_tolerance) {
+        Run exact = run;
+        exact.options.tolerance = Execution::least_tolerance;
+        trajectory = execute(model, exact, watch, keep);
+        trajectory.run = run;
+    }
     trajectory.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return trajectory;
 }

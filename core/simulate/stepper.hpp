@@ -23,13 +23,16 @@ enum class Obstacle { none, left_the_domain, not_a_number, step_too_small };
 struct Gap {
     double h = 0.0, hdot = 0.0;
     double error = 0.0, rate_error = 0.0;  // what earlier steps of the flight may have made them wrong by
+    // What the steps before the flight may have made the state wrong by, relative to its size. The acceleration of the
+    // gap is then wrong by about as much as it and its rate are large.
+    double state_error = 0.0;
 };
 
 class Stepper {
  public:
     virtual ~Stepper() = default;
 
-    // Stands at a state, ready to step on from there. `gap` counts in flight alone.
+    // Stands at a state, ready to step on from there. Of `gap` only its state_error counts in contact.
     virtual void initialize(Motion motion, const State& state, const Gap& gap) = 0;
     // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
     // to be sensible after an impact. `least` is the shortest that time can resolve.

@@ -331,6 +331,20 @@ double Taylor::own_remainder(double size, double last_terms) const {
     return std::max(last_terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * n_]);
 }
 
+// How fast the error of the state moves what is watched: the gap's rate, or hddot itself.
+double Taylor::drifting() const {
+    const std::size_t w = 2 * n_;
+    const double size = motion_ == Motion::flight ? 2.0 * std::abs(row(2)[w]) + 6.0 * std::abs(row(3)[w])
+                                                  : std::abs(row(0)[w]) + std::abs(row(1)[w]);
+    return gap_.state_error * (1.0 + size);
+}
+
+// Of what is watched, at the end of the step.
+double Taylor::earlier_error() const {
+    if (motion_ == Motion::contact) return drifting();
+    return gap_.error + (gap_.rate_error + 0.5 * drifting() * span_) * span_;
+}
+
 double Taylor::remainder(const Polynomial& p) const {
     const Sizes sizes = sizes_of(p);
     return own_remainder(sizes.all, sizes.last) + earlier_error();
@@ -344,7 +358,8 @@ void Taylor::add_error(const Polynomial& p, Gap& end) const {
     const Sizes sizes = sizes_of(p);
     const double left_out = 0.16 * std::max(0.0, sizes.last - 1024.0 * 0x1p-53 * sizes.all);
     end.error = earlier_error() + 0.125 * own_remainder(sizes.all, sizes.last) + left_out;
-    end.rate_error = static_cast<double>(p.degree + 1) * left_out / span_;
+    end.rate_error = drifting() * span_ + static_cast<double>(p.degree + 1) * left_out / span_;
+    end.state_error = gap_.state_error;
 }
 
 // By Abel's sums, as first_descent() would find, without the polynomial.
@@ -360,7 +375,7 @@ bool Taylor::stays_negative() const {
         highest_sum = std::max(highest_sum, sum);
         size += std::abs(term);
     }
-    return highest_sum < -own_remainder(size, std::abs(term) + std::abs(before));
+    return highest_sum < -(own_remainder(size, std::abs(term) + std::abs(before)) + earlier_error());
 }
 
 std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {

@@ -49,7 +49,8 @@ class Taylor : public Stepper {
     void stay_in_domain(double step);
     bool is_defined();
     void evaluate(double duration);
-    double earlier_error() const { return motion_ == Motion::flight ? gap_.error + gap_.rate_error * span_ : 0.0; }
+    double drifting() const;
+    double earlier_error() const;
     double own_remainder(double size, double last_terms) const;
 
     std::size_t n_, width_;  // width: q, v, what is watched

@@ -1,0 +1,153 @@
+// The part of an execution in the air: free motion to the next impact.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+void Execution::fly_to_impact() {
+    if (!at_impact_) {
+        const Beginning start = beginning();
+        do {
+            flow().fly(t_, state_, takeoff_.gap, first_step_);
+            record_.stretch(state_);
+            while (!outcome_ && !find_impact()) {
+            }
+        } while (doubt_ && try_exactly(start));
+        settle();
+    }
+    at_impact_ = false;
+    if (!outcome_) land();
+}
+
+// Makes the polynomial of the gap end where h(q) does. Added is theta^m (value - b + b theta), with the value and slope
+// that it lacks at 1, and nothing below theta^m.
+void Execution::meet_end(Polynomial& h, const Contact& contact) {
+    const double value = contact.h - h(1.0), slope = contact.hdot * flow().duration() - h.slope(1.0);
+    const int m = std::max(2, takeoff_.multiplicity);
+    const double b = slope - m * value;
+    while (h.degree < m + 1) h.c[static_cast<std::size_t>(++h.degree)] = 0.0;
+    h.c[static_cast<std::size_t>(m)] += value - b;
+    h.c[static_cast<std::size_t>(m + 1)] += b;
+}
+
+// The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
+// leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
+// better (the difference is above its rounding), the polynomial is made to end there.
+Polynomial Execution::gap_along() {
+    Polynomial h = flow().watched();
+    for (int j = 0; j < takeoff_.multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
+    if (flow().is_expansion()) return h;
+    const Contact contact = surface_.at(flow().end());
+    if (!surface_.within_gap_error(contact.h - h(1.0), 4.0, contact, flow().end())) meet_end(h, contact);
+    return h;
+}
+
+// One step. True if the flight is over, by an impact, an outcome or a doubt.
+bool Execution::find_impact() {
+    if (!advance(run_.options.end_time)) return true;
+    Polynomial h = gap_along();
+    Descent descent = first_descent(h, takeoff_.multiplicity, flow().remainder(h));
+    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) {  // a short step knows its start better
+        h = gap_along();
+        descent = first_descent(h, takeoff_.multiplicity, flow().remainder(h));
+    }
+    bool asked_again = false;
+    switch (descent.kind) {
+        case Descent::Kind::none:
+            break;
+        case Descent::Kind::root:
+            if (descent.theta == 0.0) return land_here();
+            if (locate_impact(descent.theta)) return true;
+            h = gap_along();  // no impact after all, or the step became shorter
+            break;
+        case Descent::Kind::rose:
+            if (!knows_its_start() || takeoff_.asked_again) return doubt_gap(0.0);
+            break;
+        case Descent::Kind::open:
+            // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
+            asked_again = !takeoff_.asked_again && end_step_at(descent.theta);
+            if (asked_again) h = gap_along();
+            if (!asked_again && !(is_exact() && flow().end_time() >= run_.options.end_time))
+                return doubt_gap(descent.theta);
+            break;
+        case Descent::Kind::undecided:
+            return doubt_gap(descent.theta);
+    }
+    const Contact contact = surface_.at(flow().end());
+    Gap gap{h(1.0), h.slope(1.0) / flow().duration()};
+    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow().end())) {
+        if (contact.h < 0.0) {  // h(q) came down where the series of the gap, as good as the tolerance, did not
+            meet_end(h, contact);
+            const Descent under = first_descent(h, takeoff_.multiplicity, 0.0);
+            return under.kind == Descent::Kind::root && under.theta > 0.0 ? locate_impact(under.theta) : doubt_gap(0.0);
+        }
+        gap = {contact.h, contact.hdot};
+    }
+    flow().add_error(h, gap);
+    flow().move_gap(gap);
+    takeoff_ = {gap, 0, asked_again};
+    take(contact);
+    return false;
+}
+
+// Makes the last step end at a part of its length, if that is a step.
+bool Execution::end_step_at(double theta) {
+    return theta > 0.0 && theta < 1.0 && flow().retake(theta * flow().duration()) == Obstacle::none;
+}
+
+// Whether the gap closes cannot be told from theta on: the motion goes there, and ends in doubt. Always true.
+bool Execution::doubt_gap(double theta) {
+    const double remainder = flow().remainder(flow().watched());
+    if (end_step_at(theta)) take(surface_.at(flow().end()));
+    doubt_ = fmt::format(
+        "the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot be told just "
+        "after {}",
+        remainder, where(t_, state_));
+    return true;
+}
+
+// The gap came down to zero within the remainder of the last step: where that ended. Always true.
+bool Execution::land_here() {
+    const auto landed = surface_.project(state_, true);
+    if (!landed) {
+        leave_contact(t_, state_);
+    } else if (!(landed->hdot < 0.0)) {
+        return doubt_gap(0.0);
+    } else {
+        contact_ = *landed;
+    }
+    return true;
+}
+
+// Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
+// impact in the step after all (it was the dense output that dipped).
+bool Execution::locate_impact(double theta) {
+    double duration = theta * flow().duration();
+    for (int round = 0; round < 8; ++round) {
+        if (const auto obstacle = flow().retake(duration); obstacle != Obstacle::none) {
+            leave(obstacle);
+            return true;
+        }
+        if (flow().is_expansion()) break;
+        const bool shortened = flow().duration() < duration * (1.0 - 1e-12);
+        const Polynomial h = gap_along();
+        const double hdot = h.slope(1.0) / flow().duration();
+        if (shortened || !(hdot < 0.0)) return false;
+        const double correction = -h(1.0) / hdot;
+        if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
+            flow().shift_end(correction);
+            break;
+        }
+        duration = std::max(duration + correction, 0.5 * duration);
+    }
+    const auto landed = surface_.project(flow().moved_end(), true);
+    take(landed ? *landed : surface_.at(flow().end()));
+    if (!landed) leave_contact(t_, state_);
+    return true;
+}
+
+}  // namespace achilles
