@@ -11,11 +11,11 @@
 // digits, and "lost" are all that end under the floor, or not at all. The engine makes the runs one by one, as the
 // programs do, or eight at a time (simulate_ends).
 //
-// The engine's time is the whole of simulate(): checks, dense output, events, statistics; where it says "end", and in
-// the ensemble, only the end is kept (Keep::end), as the programs do. The certificates, which the programs do not have,
-// are measured beside it and subtracted, by asking the same questions again in the same round, in the ensemble by what
-// the runs say of themselves; both are printed. Times are those of the processor. Ratios are medians of the rounds'
-// ratios to Boost.Odeint: above 1 is faster.
+// The engine's time is the whole of simulate(): checks, dense output, events, statistics, certificates; where it says
+// "end", and in the ensemble, only the end is kept (Keep::end), as the programs do. What it would be without the
+// certificates, which the programs do not have, stands behind it: they are measured by asking the same questions again
+// in the same round, in the ensemble by what the runs say of themselves. Times are those of the processor, which is
+// named beside every ratio. Ratios are medians of the rounds' ratios to Boost.Odeint: above 1 is faster.
 //
 // What was tried, and what it gave of the engine's time (ball and pendulum at 1e-9, then at 1e-12):
 //   sums, differences and multiples as linear forms instead of rules       pendulum -35 percent
@@ -197,15 +197,32 @@ struct Entry {
     std::vector<double> whole, certifying, net;
 };
 
-void print(const Entry& entry, const std::vector<double>& reference) {
+// The processor that a ratio belongs to: it is another one on another.
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+    return "unknown processor";
+}
+
+// The median of the rounds' ratios.
+std::string ratio(const std::vector<double>& reference, const std::vector<double>& times) {
+    if (reference.empty()) return "     -";
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(reference[i] / entry.net[i]);
+    for (std::size_t i = 0; i < times.size(); ++i) ratios.push_back(reference[i] / times[i]);
+    return fmt::format("{:6.2f}", median(ratios));
+}
+
+void print(const Entry& entry, const std::vector<double>& reference) {
+    const std::string processor = processor_name();
     fmt::print("  {:<18} tolerance {:7.1e}  {:>3} {:5.0e}  error {:7.1e}  {:8.1f} us", entry.contestant->name,
                entry.tried->setting.tolerance, entry.contestant->cut_name, entry.tried->setting.cut, entry.tried->error,
-               1e6 * median(entry.net));
-    fmt::print("  {:>6}", ratios.empty() ? "-" : fmt::format("{:.2f}", median(ratios)));
-    if (entry.certificates) fmt::print("   + {:.1f} us of certificates", 1e6 * median(entry.certifying));
-    fmt::print("\n");
+               1e6 * median(entry.whole));
+    fmt::print("  {}", ratio(reference, entry.whole));
+    if (entry.certificates)
+        fmt::print("   without certificates {:.1f} us {}, these {:.0f} % of that", 1e6 * median(entry.net),
+                   ratio(reference, entry.net), 100.0 * median(entry.certifying) / median(entry.net));
+    fmt::print("   ({})\n", processor);
 }
 
 void compare(const std::vector<Contestant>& contestants, const std::vector<std::vector<Tried>>& tried, double error,
@@ -232,7 +249,7 @@ void compare(const std::vector<Contestant>& contestants, const std::vector<std::
     }
     std::vector<double> reference;
     for (const Entry& entry : entries)
-        if (entry.contestant->name == "Boost.Odeint") reference = entry.net;
+        if (entry.contestant->name == "Boost.Odeint") reference = entry.whole;
     for (const Entry& entry : entries) print(entry, reference);
     std::fflush(stdout);
 }
@@ -280,7 +297,7 @@ struct Ensemble {
     std::string name;
     // Fills in the ends; returns what of the time the certificates took, s.
     std::function<double(std::vector<Values>& ends)> run;
-    std::vector<double> net, certificates;
+    std::vector<double> whole, net;
     std::vector<Values> ends;
 };
 
@@ -354,25 +371,24 @@ void ensemble(int count, int rounds) {
             one.ends.resize(from.size());
             double certifying = 0.0;
             const double whole = seconds([&] { certifying = one.run(one.ends); });
-            one.certificates.push_back(certifying);
+            one.whole.push_back(whole);
             one.net.push_back(whole - certifying);
         }
     }
-    const auto& reference = all[all.size() - 2].net;
+    const auto& reference = all[all.size() - 2].whole;
     fmt::print("{} balls, x in [-3, 3], x' in [-2, 2], tolerance 1e-9, one core, medians of {} rounds\n", count,
                rounds);
     for (const Ensemble& one : all) {
-        std::vector<double> ratios, errors;
-        for (std::size_t i = 0; i < reference.size(); ++i) ratios.push_back(reference[i] / one.net[i]);
+        std::vector<double> errors;
         for (std::size_t i = 0; i < truth.size(); ++i) errors.push_back(error_of(one.ends[i], truth[i]));
         for (double& error : errors) error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
         std::sort(errors.begin(), errors.end());
-        fmt::print("  {:<24} {:8.0f} runs/s  {:6.2f}   error: median {:.1e}, 95 percent below {:.1e}; lost {}",
-                   one.name, count / median(one.net), median(ratios), errors[errors.size() / 2],
+        fmt::print("  {:<24} {:8.0f} runs/s  {}   error: median {:.1e}, 95 percent below {:.1e}; lost {}", one.name,
+                   count / median(one.whole), ratio(reference, one.whole), errors[errors.size() / 2],
                    errors[errors.size() * 95 / 100], count_lost(one.ends));
-        const double certifying = median(one.certificates);
-        if (certifying > 0.0) fmt::print("   with certificates {:.0f} runs/s", count / (median(one.net) + certifying));
-        fmt::print("\n");
+        if (median(one.net) < median(one.whole))
+            fmt::print("   without certificates {:.0f} runs/s {}", count / median(one.net), ratio(reference, one.net));
+        fmt::print("   ({})\n", processor_name());
         std::fflush(stdout);
     }
 }

@@ -161,33 +161,45 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
         const Real sigma = output(model_->surface(), 1)(x);
         const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->flight(), x, 0, n_));
         const Program &hddot = bouncing.hddot, &shadow = bouncing.shadow;
+        const std::size_t first = 2 * n_ + 1;  // the gradient of hddot stands before
         expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->flight(), n_)(x), "hddot");
         const Real h = 1e-16;
         const Real by_sigma =
             (evaluate(hddot, y, 0, 1, sigma + h)[0] - evaluate(hddot, y, 0, 1, sigma - h)[0]) / (2 * h);
         expect_same(evaluate(bouncing.gradient, y, 2 * n_, 1, sigma)[0], by_sigma, "d hddot/d sigma");
-        const Reals A = evaluate(shadow, y, 0, n_, sigma), B = evaluate(shadow, y, 2 * n_, n_, sigma);
-        const Reals D = evaluate(shadow, y, 3 * n_, n_, sigma), rate = evaluate(bouncing.motion, y, n_, n_, sigma);
+        const Reals A = evaluate(shadow, y, first, n_, sigma), B = evaluate(shadow, y, first + 2 * n_, n_, sigma);
+        const Reals D = evaluate(shadow, y, first + 3 * n_, n_, sigma),
+                    rate = evaluate(bouncing.motion, y, n_, n_, sigma);
         const Reals motion = joined(v(x), rate);
         for (std::size_t i = 0; i < n_; ++i) {
             expect_same(evaluate(bouncing.motion, y, i, 1, sigma)[0], x[n_ + i], "v");
             expect_same(rate[i], along([&](const Reals& at) { return tangential(at, i); }, x, free), "s'");
             expect_same(A[i] + B[i] * sigma + D[i] * sigma * sigma, rate[i], "A + B sigma + D sigma^2");
             expect_same(A[i], output(model_->contact(), i)(y), "A");
-            expect_same(evaluate(shadow, y, n_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
-            expect_same(evaluate(shadow, y, 4 * n_ + i, 1, sigma)[0], along(output(shadow, n_ + i, sigma), y, motion),
-                        "ndot");
-            expect_same(evaluate(shadow, y, 5 * n_ + i, 1, sigma)[0],
-                        along(output(shadow, 2 * n_ + i, sigma), y, motion), "Bdot");
+            expect_same(evaluate(shadow, y, first + n_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
+            expect_same(evaluate(shadow, y, first + 4 * n_ + i, 1, sigma)[0],
+                        along(output(shadow, first + n_ + i, sigma), y, motion), "ndot");
+            expect_same(evaluate(shadow, y, first + 5 * n_ + i, 1, sigma)[0],
+                        along(output(shadow, first + 2 * n_ + i, sigma), y, motion), "Bdot");
             for (std::size_t k = 0; k < 2 * n_; ++k) {  // dA/dq, then dA/ds, row by row
-                const std::size_t block = k < n_ ? 6 * n_ : 6 * n_ + n_ * n_;
+                const std::size_t block = k < n_ ? first + 6 * n_ : first + 6 * n_ + n_ * n_;
                 expect_same(evaluate(shadow, y, block + i * n_ + k % n_, 1, sigma)[0],
-                            along(output(shadow, i, sigma), y, unit(k)), "dA");
+                            along(output(shadow, first + i, sigma), y, unit(k)), "dA");
             }
         }
-        for (std::size_t k = 0; k < 2 * n_; ++k)
+        // The rate of hddot(q, s, 0) along the bouncing, and what the estimate of the Zeno time needs of it.
+        const Reals drift = evaluate(shadow, y, first + 6 * n_ + 2 * n_ * n_, 3);
+        expect_same(drift[0] + drift[1] * sigma + drift[2] * sigma * sigma, along(output(hddot, 0, Real(0)), y, motion),
+                    "P + Phi sigma + Xi sigma^2");
+        expect_same(evaluate(bouncing.trend, y, 0, 1)[0], evaluate(hddot, y, 0, 1, Real(0))[0], "hddot at sigma = 0");
+        expect_same(evaluate(bouncing.trend, y, 1, 1)[0], drift[0], "P");
+        expect_same(evaluate(bouncing.trend, y, 2, 1)[0], evaluate(bouncing.gradient, y, 2 * n_, 1, Real(0))[0],
+                    "d hddot/d sigma at 0");
+        for (std::size_t k = 0; k < 2 * n_; ++k) {
+            expect_same(evaluate(shadow, y, k, 1, sigma)[0], evaluate(bouncing.gradient, y, k, 1, sigma)[0], "again");
             expect_same(evaluate(bouncing.gradient, y, k, 1, sigma)[0], along(output(hddot, 0, sigma), y, unit(k)),
                         "d hddot");
+        }
     }
 }
 
