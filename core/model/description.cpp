@@ -14,6 +14,7 @@
 #include "model/fields.hpp"
 #include "model/input_error.hpp"
 #include "model/read_expressions.hpp"
+#include "number/ground.hpp"
 
 namespace achilles {
 
@@ -256,6 +257,7 @@ InputError SystemDescription::error(Location at, const std::string& message, con
 }
 
 SystemDescription parse_system(std::string text, std::string name) {
+    const Ground ground;  // decimals are read to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
     SystemDescription system;

@@ -7,6 +7,7 @@
 
 #include "model/mistakes.hpp"
 #include "model/read_expressions.hpp"
+#include "number/ground.hpp"
 
 namespace achilles {
 
@@ -14,6 +15,7 @@ Model::Model(SystemDescription description) : description_(std::move(description
     layout_ = {static_cast<std::uint32_t>(description_.coordinates.size()),
                static_cast<std::uint32_t>(description_.parameters.size())};
     slot_names_ = achilles::slot_names(description_, layout_);
+    const Ground ground;  // constants become intervals, too
     Mistakes mistakes;
     Names names;
     read_equations(description_, layout_, *graph_, names, equations_, mistakes);
@@ -66,6 +68,7 @@ void Model::compile() {
 
 const Bouncing& Model::bouncing() const {
     std::call_once(bouncing_once_, [&] {
+        const Ground ground;
         try {
             bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_));
         } catch (const TooLarge& problem) {
@@ -90,6 +93,7 @@ Run Model::default_run() const {
 }
 
 void Model::check(const Run& run) const {
+    const Ground ground;
     Mistakes mistakes;
     const auto refuse = [&](Location at, const std::string& message) { mistakes.add({at, message, {}}); };
     const Options& options = run.options;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "number/ground.hpp"
+
 namespace achilles {
 
 namespace {
@@ -18,6 +20,7 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t co
     : step_(*model), model_(model), count_(count), next_(next), run_of_(run_of), take_(take) {}
 
 void SideBySide::work() {
+    const Ground ground;
     while (true) {
         while (flying_.size() + staying_.size() < most_under_way) {
             const std::size_t index = next_.fetch_add(1);

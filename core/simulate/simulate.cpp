@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "number/ground.hpp"
 #include "simulate/execution.hpp"
 
 namespace achilles {
@@ -9,6 +10,7 @@ namespace achilles {
 // Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a
 // vanishing contact force releases into the next hybrid execution.
 Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
+    const Ground ground;
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();
     Execution execution(std::move(model), run, watch, keep);

@@ -256,6 +256,20 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     EXPECT_EQ(folder.files().size(), 2u);
 }
 
+TEST(Cli, SaysWhatProofsAssume) {
+    const Folder folder;
+    const std::string out = folder.run("simulate ball_on_sine --end 3").out;
+    for (const char* words :
+         {"IEEE double arithmetic in round-to-nearest", "elementary functions within 2 ulp", "4 for sinh, cosh, tanh"})
+        EXPECT_NE(out.find(words), std::string::npos) << out;
+    const json assumed = json::parse(folder.run("simulate ball_on_sine --end 3 --json -").out)["assumed"];
+    EXPECT_EQ(assumed["ulps"], 2);
+    EXPECT_EQ(assumed["ulps_hyperbolic"], 4);
+    EXPECT_NE(out.find(assumed["library"].get<std::string>()), std::string::npos) << out;
+    // Without a Zeno point nothing is proved.
+    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1").out.find("assume"), std::string::npos);
+}
+
 TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     const Folder folder;
     const Answer answer = folder.run("simulate ball_on_sine --max-impacts 3 --json a.json");
