@@ -15,6 +15,7 @@
 #include "model/input_error.hpp"
 #include "model/read_expressions.hpp"
 #include "number/ground.hpp"
+#include "number/subnormal.hpp"
 
 namespace achilles {
 
@@ -310,6 +311,8 @@ void assign(SystemDescription& description, std::string_view name_value) {
         names.insert(names.end(), {coordinate.name, coordinate.name + "'"});
     }
     for (ParameterDescription& parameter : description.parameters) {
+        if (parameter.name == name && is_subnormal(*value))
+            throw refuse(subnormal_parameter(name, *value), subnormal_hint);
         if (parameter.name == name) return void(parameter.value = *value);
         names.push_back(parameter.name);
     }

@@ -75,8 +75,9 @@ class Model {
 
     // The run that the description asks for.
     Run default_run() const;
-    // Throws InputErrors if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
-    // gap clearly negative, dh = 0 in contact, eps, tolerance or end time not positive.
+    // Throws InputErrors if the run cannot start: start not finite or T, V, h or the acceleration undefined there,
+    // restitution outside [0,1], M not positive definite, gap clearly negative, dh = 0 in contact, a parameter
+    // subnormal, eps, tolerance or end time not positive.
     void check(const Run& run) const;
 
     // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
@@ -89,8 +90,10 @@ class Model {
     void compile();
     // Throw Mistake.
     void check_restitution(const Run& run) const;
+    void check_energies(const Run& run, const Evaluator<double>& start) const;
     void check_gap(const Run& run) const;
-    void check_acceleration(const Run& run) const;
+    void check_mass(const Evaluator<double>& start) const;
+    void check_acceleration(const Run& run, const Evaluator<double>& start) const;
 
     SystemDescription description_;
     Layout layout_;
@@ -101,6 +104,7 @@ class Model {
     mutable std::unique_ptr<const Bouncing> bouncing_;
     SeriesProgram flight_series_, contact_series_;
     Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
+    Program start_;  // f (n), hddot, pivots (n), T, V: what must be defined where a run starts
 };
 
 }  // namespace achilles

@@ -58,6 +58,9 @@ const Refusal refusals[] = {
      "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
     {"setting_without_value", "simulate ball_on_sine --set g",
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
+    {"subnormal_parameter", "simulate ball_on_sine --set m=5e-324 --json a.json",
+     "--set m=5e-324: the parameter 'm' is 5e-324: so small a number has lost digits\n"
+     "0, or at least 2.3e-308 in size: choose units in which it is larger\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no 'shap' to choose; did you mean 'sharp'?\nthe choice is paper or sharp\n"},
     {"unknown_method", "simulate ball_on_sine --method tailor",
