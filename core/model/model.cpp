@@ -64,6 +64,10 @@ void Model::compile() {
     contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.n + 1);
     SeriesProgram by_force(program({e.f_by_force, {e.hddot}, e.pivots}), layout_.n + 1);
     if (by_force.inner_sums() < contact_series_.inner_sums()) contact_series_ = std::move(by_force);
+    edges_ = edges_of(equations_, layout_);
+    std::vector<Expression> distances;
+    for (const Edge& edge : edges_) distances.push_back(edge.distance);
+    if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), distances.size());
 }
 
 const Bouncing& Model::bouncing() const {

@@ -20,6 +20,7 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/description.hpp"
+#include "model/edges.hpp"
 #include "series/series.hpp"
 #include "trajectory.hpp"
 
@@ -51,6 +52,10 @@ class Model {
     // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
     const SeriesProgram& flight_series() const { return flight_series_; }
     const SeriesProgram& contact_series() const { return contact_series_; }
+
+    // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
+    const std::vector<Edge>& edges() const { return edges_; }
+    const SeriesProgram& edge_series() const { return edge_series_; }
 
     // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
     // too large.
@@ -102,7 +107,8 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
-    SeriesProgram flight_series_, contact_series_;
+    SeriesProgram flight_series_, contact_series_, edge_series_;
+    std::vector<Edge> edges_;
     Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
     Program start_;  // f (n), hddot, pivots (n), T, V: what must be defined where a run starts
 };

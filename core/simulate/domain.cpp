@@ -22,6 +22,21 @@ std::string undefined_among(const Model& model, const Run& run, std::span<const 
                        found->value);
 }
 
+// The first function that may come to its edge in the box, where it has a value and is not smooth; or "".
+std::string first_edge(const Model& model, const Run& run, const State& state, const Values& box) {
+    for (const Edge& edge : model.edges()) {
+        const Program program(std::span(&edge.distance, 1), model.layout().slots());
+        auto distance = model.evaluator<Interval>(program, run.parameters);
+        for (std::size_t i = 0; i < box.size(); ++i) distance.input(i) = box[i];
+        distance.run();
+        if (certainly_positive(distance.output(0))) continue;
+        return fmt::format("{} in {} comes to where it is not smooth, with {} = {:.3g}",
+                           shortened(model, edge.function), edge.place, shortened(model, edge.argument),
+                           value_at(model, run.parameters, edge.argument, state));
+    }
+    return "";
+}
+
 // The first pivot of M that is not positive all over the box, with its value at the state; or "".
 std::string first_bad_pivot(const Model& model, const Run& run, const State& state, const Values& box) {
     const Program program(model.equations().pivots, model.layout().slots());
@@ -49,6 +64,7 @@ std::string undefined_in(const Model& model, const Run& run, const State& state,
     std::string found = look({e.kinetic}, "the kinetic energy");
     if (found.empty()) found = look({e.potential}, "the potential");
     if (found.empty()) found = look({e.gap}, "the gap");
+    if (found.empty()) found = first_edge(model, run, state, box);
     if (found.empty()) found = first_bad_pivot(model, run, state, box);
     if (found.empty()) found = look(e.f, "the equations of motion");
     return found;

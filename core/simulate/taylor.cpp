@@ -56,15 +56,12 @@ Taylor::Taylor(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
       width_(2 * n_ + 1),
       tolerance_(std::max(run.options.tolerance, 0x1p-53)),
-      flight_program_(&model.flight_series()),
-      contact_program_(&model.contact_series()),
       flight_(model.flight_series(), run.parameters),
       contact_(model.contact_series(), run.parameters),
       flight_order_(best_order(model.flight_series(), tolerance_)),
       contact_order_(best_order(model.contact_series(), tolerance_)),
       rows_((highest + 1) * width_, 0.0),
-      units_(width_, 0.0),
-      end_(width_, 0.0) {}
+      units_(width_, 0.0) {}
 
 void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
     motion_ = motion;
@@ -251,7 +248,6 @@ Obstacle Taylor::do_step(double longest, double, double least) {
     if (!(step > least)) return Obstacle::step_too_small;
     span_ = step;
     evaluated_ = false;
-    stay_in_domain(step);
     return Obstacle::none;
 }
 
@@ -259,36 +255,6 @@ Obstacle Taylor::do_step(double longest, double, double least) {
 const State& Taylor::current_state() {
     if (!evaluated_) evaluate(span_);
     return to_;
-}
-
-// A term that hardly matters may end the domain inside a step that its series allows: sqrt(x) with a small factor. Then
-// the step goes as far as its end is defined; what ends there is found by the next one.
-void Taylor::stay_in_domain(double step) {
-    const SeriesProgram& program = motion_ == Motion::flight ? *flight_program_ : *contact_program_;
-    if (!program.is_partial()) return;
-    evaluate(step);
-    if (is_defined()) return;
-    double inside = 0.0, outside = step;
-    while (outside - inside > 1e-12 * step) {
-        const double middle = 0.5 * (inside + outside);
-        evaluate(middle);
-        (is_defined() ? inside : outside) = middle;
-    }
-    evaluate(inside);
-}
-
-// Whether the equations of motion have values where the step ends.
-bool Taylor::is_defined() {
-    SeriesEvaluator& series = motion_ == Motion::flight ? flight_ : contact_;
-    std::vector<double>& at = end_;
-    for (std::size_t i = 0; i < n_; ++i) {
-        at[i] = to_.q[static_cast<Eigen::Index>(i)];
-        at[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
-    }
-    series.begin(at.data());
-    for (std::size_t i = 0; i <= n_; ++i)
-        if (!std::isfinite(series.start(i))) return false;
-    return true;
 }
 
 Obstacle Taylor::redo_step(double duration, double least) {
