@@ -12,7 +12,9 @@ namespace {
 
 constexpr int highest = SeriesEvaluator::highest_order;
 constexpr int guarded = 10;
-constexpr int lowest = 5;  // a release is a triple root: the gap needs more terms than that
+constexpr double longest_near = 0x1p29;  // s: all powers up to the highest order are numbers
+constexpr double largest = 1e150;        // of a state: its square is a number
+constexpr int lowest = 5;                // a release is a triple root: the gap needs more terms than that
 
 constexpr auto reciprocals = [] {
     std::array<double, highest + 1> table{};
@@ -123,7 +125,7 @@ Obstacle Taylor::expand(double longest) {
         c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t i = 0; i < w; ++i) {
-        if (!(std::abs(c[i]) < 1e150)) return Obstacle::not_a_number;
+        if (!(std::abs(c[i]) < largest)) return Obstacle::not_a_number;
         units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
     }
     series.begin(c);
@@ -219,6 +221,7 @@ double Taylor::natural_step() {
 void Taylor::evaluate(double duration) {
     span_ = duration;
     evaluated_ = true;
+    if (duration > longest_near) return evaluate_far(duration);
     using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
     const double square = duration * duration;
     std::array<double, 2 * max_coordinates> reached;
@@ -246,7 +249,8 @@ Obstacle Taylor::do_step(double longest, double, double least) {
     if (const Obstacle obstacle = expand(longest); obstacle != Obstacle::none) return obstacle;
     const double step = std::min(longest, natural_step());
     if (!(step > least)) return Obstacle::step_too_small;
-    span_ = step;
+    span_ = step > longest_near ? within_numbers(step) : step;
+    if (span_ == 0.0) return Obstacle::not_a_number;
     evaluated_ = false;
     return Obstacle::none;
 }
@@ -255,6 +259,39 @@ Obstacle Taylor::do_step(double longest, double, double least) {
 const State& Taylor::current_state() {
     if (!evaluated_) evaluate(span_);
     return to_;
+}
+
+// Row k at t, where powers of t may overflow: nothing times infinity is no number, but nothing.
+double Taylor::far_term(int k, std::size_t component, double t) const {
+    const double c = row(k)[component];
+    return c == 0.0 ? 0.0 : c * std::pow(t, k);
+}
+
+void Taylor::evaluate_far(double duration) {
+    const auto sum = [&](std::size_t component) {
+        double value = 0.0;
+        for (int k = order_; k >= 0; --k) value += far_term(k, component, duration);
+        return value;
+    };
+    for (std::size_t i = 0; i < n_; ++i) {
+        to_.q.data()[i] = sum(i);
+        to_.v.data()[i] = sum(n_ + i);
+    }
+}
+
+// A step this long, which only what is nearly a straight line has, or as much of it as stays among the numbers that
+// expand() takes. Zero where next to nothing of it does.
+double Taylor::within_numbers(double step) {
+    constexpr double shorter = 0x1p-8;
+    const auto size_at = [&](double t) {
+        double sum = 0.0;
+        for (int k = 0; k <= order_; ++k)
+            for (std::size_t i = 0; i < width_; ++i) sum += std::abs(far_term(k, i, t));
+        return sum;
+    };
+    const bool is_at_the_end = size_at(0.0) > 0.5 * shorter * largest;
+    while (step > longest_near && !(size_at(step) < largest)) step = is_at_the_end ? 0.0 : shorter * step;
+    return step;
 }
 
 Obstacle Taylor::redo_step(double duration, double least) {
@@ -267,6 +304,10 @@ Polynomial Taylor::watched() const {
     Polynomial p;
     p.degree = order_;
     const std::size_t w = 2 * n_;
+    if (span_ > longest_near) {
+        for (int k = 0; k <= order_; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, w, span_);
+        return p;
+    }
     double even = 1.0, odd = span_;
     const double square = span_ * span_;
     for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); k += 2, even *= square, odd *= square) {

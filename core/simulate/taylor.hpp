@@ -46,6 +46,9 @@ class Taylor : public Stepper {
     Magnitude magnitude(const double* c) const;
     Obstacle leave_out_infinite();
     double natural_step();
+    double far_term(int k, std::size_t component, double t) const;
+    void evaluate_far(double duration);
+    double within_numbers(double step);
     void evaluate(double duration);
     double earlier_error() const { return motion_ == Motion::flight ? gap_.error + gap_.rate_error * span_ : 0.0; }
     double own_remainder(double size, double last_terms) const;
