@@ -34,7 +34,7 @@ void SideBySide::work() {
 }
 
 void SideBySide::begin(std::size_t index) {
-    const Run run = run_of_(index);
+    Run run = run_of_(index);
     std::optional<InputError> refusal;
     try {
         model_->check(run);
@@ -42,6 +42,7 @@ void SideBySide::begin(std::size_t index) {
         refusal = error;
     }
     if (refusal) return take_(index, std::move(*refusal));
+    raise_to_least(run.options);
     const bool in_lanes = run.options.method == Method::taylor && !model_->flight_series().is_partial() &&
                           !model_->contact_series().is_partial();
     if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));

@@ -13,7 +13,9 @@ Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* w
     const Ground ground;
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();
-    Execution execution(std::move(model), run, watch, keep);
+    Run used = run;
+    raise_to_least(used.options);
+    Execution execution(std::move(model), used, watch, keep);
     execution.begin();
     while (execution.running()) {
         if (execution.completing()) {

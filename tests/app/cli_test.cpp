@@ -259,6 +259,23 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     EXPECT_EQ(folder.files().size(), 2u);
 }
 
+TEST(Cli, ToleranceBelowWhatDoublesServeIsToldOnceAndRaised) {
+    const Folder folder;
+    const std::string warning =
+        "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n";
+    const Answer answer = folder.run("simulate ball_on_sine --end 1 --tolerance 1e-30 --json -");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.err, warning);
+    EXPECT_EQ(json::parse(answer.out)["options"]["tolerance"], 1e-15);
+    for (const char* command : {"figure ball_on_sine --end 1 --tolerance 1e-30 --out a.svg",
+                                "screenshot ball_on_sine --end 1 --tolerance 1e-30 --out a.png"}) {
+        const Answer picture = folder.run(command);
+        EXPECT_EQ(picture.status, 0) << picture.err;
+        EXPECT_EQ(picture.err, warning);
+    }
+    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1 --tolerance 1e-15 --json -").err, "");
+}
+
 TEST(Cli, SaysWhatProofsAssume) {
     const Folder folder;
     const std::string out = folder.run("simulate ball_on_sine --end 3").out;

@@ -1,13 +1,41 @@
-// Numbers at the edge of what doubles are: very long times.
+// Numbers at the edge of what doubles are: very small tolerances, very long times.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "output/output.hpp"
+#include "simulate/many.hpp"
 #include "systems.hpp"
 
 namespace achilles {
 namespace {
+
+TEST(SmallTolerances, AreToldAndRaised) {
+    const auto model = test::load("ball_on_sine");
+    auto run = model->default_run();
+    EXPECT_TRUE(warnings(run.options).empty());
+    run.options.end_time = 3.0;
+    run.options.tolerance = 1e-15;
+    run.options.truncation.eps_v = 1e-15;
+    EXPECT_TRUE(warnings(run.options).empty());
+    const Trajectory least = simulate(model, run);
+    run.options.tolerance = 1e-30;
+    run.options.truncation.eps_v = 9e-16;
+    EXPECT_EQ(warnings(run.options),
+              (std::vector<std::string>{"tolerance = 1e-30 is less than double precision can serve: 1e-15 is used",
+                                        "eps_v = 9e-16 is less than double precision can serve: 1e-15 is used"}));
+    const Trajectory raised = simulate(model, run);
+    EXPECT_EQ(raised.run.options.tolerance, 1e-15);
+    EXPECT_EQ(raised.run.options.truncation.eps_v, 1e-15);
+    EXPECT_EQ(raised.run.options.truncation.eps_q, 1e-6);
+    EXPECT_EQ(to_text(raised), to_text(least));
+    simulate_ends(
+        model, 1, [&](std::size_t) { return run; },
+        [](std::size_t, Attempt&& attempt) { EXPECT_EQ(std::get<Trajectory>(attempt).run.options.tolerance, 1e-15); },
+        1);
+    run.options.tolerance = -1e-30;
+    EXPECT_THROW(simulate(model, run), InputError);
+}
 
 void expect_numbers(const Trajectory& trajectory) {
     EXPECT_EQ(trajectory.outcome.message.find("nan"), std::string::npos) << trajectory.outcome.message;
