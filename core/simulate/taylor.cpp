@@ -13,7 +13,7 @@ namespace {
 constexpr int highest = SeriesEvaluator::highest_order;
 constexpr int guarded = 10;
 constexpr double longest_near = 0x1p29;  // s: all powers up to the highest order are numbers
-constexpr double largest = 1e150;        // of a state: its square is a number
+constexpr double largest_state = 1e150;  // of a state: its square is a number
 constexpr int lowest = 5;                // a release is a triple root: the gap needs more terms than that
 
 constexpr auto reciprocals = [] {
@@ -125,7 +125,7 @@ Obstacle Taylor::expand(double longest) {
         c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t i = 0; i < w; ++i) {
-        if (!(std::abs(c[i]) < largest)) return Obstacle::not_a_number;
+        if (!(std::abs(c[i]) < largest_state)) return Obstacle::not_a_number;
         units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
     }
     series.begin(c);
@@ -289,8 +289,8 @@ double Taylor::within_numbers(double step) {
             for (std::size_t i = 0; i < width_; ++i) sum += std::abs(far_term(k, i, t));
         return sum;
     };
-    const bool is_at_the_end = size_at(0.0) > 0.5 * shorter * largest;
-    while (step > longest_near && !(size_at(step) < largest)) step = is_at_the_end ? 0.0 : shorter * step;
+    const bool is_at_the_end = size_at(0.0) > 0.5 * shorter * largest_state;
+    while (step > longest_near && !(size_at(step) < largest_state)) step = is_at_the_end ? 0.0 : shorter * step;
     return step;
 }
 

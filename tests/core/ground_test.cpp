@@ -188,8 +188,8 @@ TEST_P(Grounds, GiveTheSameCertificate) {
         const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
         const Event::Truncation& cut = *zeno.truncation;
         Collision collision{cut.t, {cut.q, cut.v_before}, cut.impact_speed, cut.v, cut.v};
-        const auto asked = [&] {
-            const auto conditions = truncation_conditions(*model, run);
+        const auto asked = [&, &system = *model, &asking = run] {
+            const auto conditions = truncation_conditions(system, asking);
             return std::pair(conditions->hold(collision), conditions->widest(collision));
         };
         const auto usual = asked();
