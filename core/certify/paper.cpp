@@ -172,7 +172,9 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     return certificate;
 }
 
-std::optional<Certificate> PaperConditions::certify(const Collision& collision) { return prove(collision, truncation_); }
+std::optional<Certificate> PaperConditions::certify(const Collision& collision) {
+    return prove(collision, truncation_);
+}
 
 std::optional<Certificate> PaperConditions::certify_widest(const Collision& collision) {
     constexpr double any = 1e6;
