@@ -18,7 +18,9 @@ std::string first_system() {
 Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
                      const OptionOverrides& overrides, Library library, Patience patience) {
     library.finish = [overrides](SystemDescription& description) { apply(overrides, description.options); };
-    return {name, adjusted(std::move(first), settings, overrides), std::move(library), patience};
+    SystemDescription description = adjusted(std::move(first), settings, overrides);
+    warn(description.options);
+    return {name, std::move(description), std::move(library), patience};
 }
 
 Library library_of(Studio& studio) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 
 namespace achilles {
 
@@ -45,6 +46,10 @@ SystemDescription adjusted(SystemDescription description, const std::vector<std:
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides) {
     return adjusted(read_system(file), settings, overrides);
+}
+
+void warn(const Options& options) {
+    for (const std::string& warning : warnings(options)) fmt::print(stderr, "achilles: warning: {}\n", warning);
 }
 
 Run run_of_text(const SystemDescription& description) {

@@ -31,6 +31,9 @@ SystemDescription adjusted(SystemDescription description, const std::vector<std:
 SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
                               const OptionOverrides& overrides);
 
+// Tells on standard error what a person should know of the options of a run: core's warnings().
+void warn(const Options& options);
+
 // What the text of a system says, whatever the command line put over it: where "reset" leads.
 Run run_of_text(const SystemDescription& description);
 

@@ -29,6 +29,7 @@ int check(const CheckArguments& arguments) {
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
     const Run run = model.default_run();
     model.check(run);
+    warn(run.options);
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;
     OutputFiles files;

@@ -80,6 +80,7 @@ int draw(const FigureArguments& arguments, Studio& studio) {
     const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
     const Run run = model->default_run();
     model->check(run);
+    warn(run.options);
     studio.add(arguments.out);
 
     const Trajectory trajectory = simulate(model, run);

@@ -118,6 +118,7 @@ int draw_frames(const FramesArguments& arguments, Studio& studio) {
     const std::vector<ViewDescription> views = views_for(model->description(), arguments.views);
     const Run run = model->default_run();
     model->check(run);
+    warn(run.options);
     check_count({arguments.fps, arguments.speed, run.options.end_time});
 
     const Trajectory trajectory = simulate(model, run);

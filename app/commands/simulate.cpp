@@ -28,6 +28,7 @@ int run(const SimulateArguments& arguments) {
         open_system(find_system(arguments.system), arguments.settings, arguments.overrides));
     const Run run = model->default_run();
     model->check(run);
+    warn(run.options);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
     if (!arguments.json.empty()) files.add(arguments.json);

@@ -90,6 +90,11 @@ void show_status(const Session& session, const PanelState& state) {
         tooltip(trajectory.outcome.message);
         ImGui::SameLine(0.0F, units(24.0F));
     }
+    if (const auto warned = warnings(session.run().options); !warned.empty()) {
+        ImGui::TextUnformatted(fmt::format("least tolerances: {}", least_tolerance).c_str());
+        for (const std::string& warning : warned) tooltip(warning);
+        ImGui::SameLine(0.0F, units(24.0F));
+    }
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
     const std::string text =
         fmt::format("{}{} impacts   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy error {}   \u00b7   {}",

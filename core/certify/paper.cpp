@@ -26,8 +26,9 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run)
-    : n_(static_cast<std::size_t>(model.n())),
+PaperConditions::PaperConditions(const Model& model, const Run& run, const Ground& ground)
+    : TruncationConditions(ground),
+      n_(static_cast<std::size_t>(model.n())),
       sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
@@ -173,9 +174,11 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     return certificate;
 }
 
-std::optional<Certificate> PaperConditions::hold(const Collision& collision) { return prove(collision, truncation_); }
+std::optional<Certificate> PaperConditions::certify(const Collision& collision) {
+    return prove(collision, truncation_);
+}
 
-std::optional<Certificate> PaperConditions::widest(const Collision& collision) {
+std::optional<Certificate> PaperConditions::certify_widest(const Collision& collision) {
     constexpr double any = 1e6;
     auto certificate = prove(collision, {any, any, any, Conditions::paper, truncation_.reinitialization});
     if (certificate) certificate->below_rounding = true;

@@ -31,12 +31,14 @@ namespace achilles {
 
 class PaperConditions : public TruncationConditions {
  public:
-    PaperConditions(const Model& model, const Run& run);
+    PaperConditions(const Model& model, const Run& run, const Ground& ground);
 
     bool hopeless(const Collision& collision) override;
-    std::optional<Certificate> hold(const Collision& collision) override;
+
+ protected:
+    std::optional<Certificate> certify(const Collision& collision) override;
     // The same with tolerances that nothing exceeds.
-    std::optional<Certificate> widest(const Collision& collision) override;
+    std::optional<Certificate> certify_widest(const Collision& collision) override;
 
  private:
     struct Bounds;

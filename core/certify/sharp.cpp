@@ -41,8 +41,9 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run)
-    : n_(static_cast<std::size_t>(model.n())),
+SharpConditions::SharpConditions(const Model& model, const Run& run, const Ground& ground)
+    : TruncationConditions(ground),
+      n_(static_cast<std::size_t>(model.n())),
       sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
@@ -264,7 +265,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     return c;
 }
 
-std::optional<Certificate> SharpConditions::hold(const Collision& collision) {
+std::optional<Certificate> SharpConditions::certify(const Collision& collision) {
     auto certificate = prove(collision);
     if (!certificate) return std::nullopt;
     const double time = certificate->inequalities[0].left / truncation_.eps_t;
@@ -280,7 +281,7 @@ std::optional<Certificate> SharpConditions::hold(const Collision& collision) {
     return std::nullopt;
 }
 
-std::optional<Certificate> SharpConditions::widest(const Collision& collision) {
+std::optional<Certificate> SharpConditions::certify_widest(const Collision& collision) {
     auto certificate = prove(collision);
     if (certificate) certificate->below_rounding = true;
     return certificate;

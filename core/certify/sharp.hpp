@@ -39,12 +39,14 @@ namespace achilles {
 
 class SharpConditions : public TruncationConditions {
  public:
-    SharpConditions(const Model& model, const Run& run);
+    SharpConditions(const Model& model, const Run& run, const Ground& ground);
     bool hopeless(const Collision& collision) override;
     bool hopeless_at(double speed) override;
     void forget() override { wide_speed_ = too_wide_ = last_speed_ = 0.0; }
-    std::optional<Certificate> hold(const Collision& collision) override;
-    std::optional<Certificate> widest(const Collision& collision) override;
+
+ protected:
+    std::optional<Certificate> certify(const Collision& collision) override;
+    std::optional<Certificate> certify_widest(const Collision& collision) override;
 
  private:
     struct Time;

@@ -9,8 +9,10 @@
 namespace achilles {
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run) {
-    if (run.options.truncation.conditions == Conditions::paper) return std::make_unique<PaperConditions>(model, run);
-    return std::make_unique<SharpConditions>(model, run);
+    const Ground ground;
+    if (run.options.truncation.conditions == Conditions::paper)
+        return std::make_unique<PaperConditions>(model, run, ground);
+    return std::make_unique<SharpConditions>(model, run, ground);
 }
 
 Interval norm(const std::vector<Interval>& x) {

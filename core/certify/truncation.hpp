@@ -6,6 +6,7 @@
 
 #include "certify/zeno_time.hpp"
 #include "model/model.hpp"
+#include "number/ground.hpp"
 #include "trajectory.hpp"
 
 namespace achilles {
@@ -19,8 +20,11 @@ struct Collision {
     Vector restart;      // after re-initialisation: s, or v*
 };
 
+// No certificate is made but on a Ground: whoever constructs the conditions shows one, and the questions stand on one
+// of their own.
 class TruncationConditions {
  public:
+    explicit TruncationConditions(const Ground&) {}
     virtual ~TruncationConditions() = default;
     // Quick: true where they can be seen not to hold.
     virtual bool hopeless(const Collision& collision) = 0;
@@ -30,9 +34,19 @@ class TruncationConditions {
     virtual void forget() {}
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     // Takes long: ask hopeless() first.
-    virtual std::optional<Certificate> hold(const Collision& collision) = 0;
+    std::optional<Certificate> hold(const Collision& collision) {
+        const Ground ground;
+        return certify(collision);
+    }
     // What can be proved here whatever the tolerances, for a collision after which no further flight can be resolved.
-    virtual std::optional<Certificate> widest(const Collision& collision) = 0;
+    std::optional<Certificate> widest(const Collision& collision) {
+        const Ground ground;
+        return certify_widest(collision);
+    }
+
+ protected:
+    virtual std::optional<Certificate> certify(const Collision& collision) = 0;
+    virtual std::optional<Certificate> certify_widest(const Collision& collision) = 0;
 };
 
 // The conditions that the run asks for.

@@ -14,6 +14,8 @@
 #include "model/fields.hpp"
 #include "model/input_error.hpp"
 #include "model/read_expressions.hpp"
+#include "number/ground.hpp"
+#include "number/subnormal.hpp"
 
 namespace achilles {
 
@@ -256,6 +258,7 @@ InputError SystemDescription::error(Location at, const std::string& message, con
 }
 
 SystemDescription parse_system(std::string text, std::string name) {
+    const Ground ground;  // decimals are read to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
     SystemDescription system;
@@ -308,6 +311,8 @@ void assign(SystemDescription& description, std::string_view name_value) {
         names.insert(names.end(), {coordinate.name, coordinate.name + "'"});
     }
     for (ParameterDescription& parameter : description.parameters) {
+        if (parameter.name == name && is_subnormal(*value))
+            throw refuse(subnormal_parameter(name, *value), subnormal_hint);
         if (parameter.name == name) return void(parameter.value = *value);
         names.push_back(parameter.name);
     }

@@ -129,4 +129,8 @@ std::string shown(std::string_view text) {
     return list.size() > most || text.size() > 4 * most ? result + "..." : result;
 }
 
+std::string subnormal_parameter(std::string_view name, double value) {
+    return fmt::format("the parameter '{}' is {}: so small a number has lost digits", name, value);
+}
+
 }  // namespace achilles

@@ -20,6 +20,7 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/description.hpp"
+#include "model/edges.hpp"
 #include "series/series.hpp"
 #include "trajectory.hpp"
 
@@ -52,6 +53,10 @@ class Model {
     const SeriesProgram& flight_series() const { return flight_series_; }
     const SeriesProgram& contact_series() const { return contact_series_; }
 
+    // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
+    const std::vector<Edge>& edges() const { return edges_; }
+    const SeriesProgram& edge_series() const { return edge_series_; }
+
     // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
     // too large.
     const Bouncing& bouncing() const;
@@ -75,8 +80,9 @@ class Model {
 
     // The run that the description asks for.
     Run default_run() const;
-    // Throws InputErrors if the run cannot start: start not finite, restitution outside [0,1], M not positive definite,
-    // gap clearly negative, dh = 0 in contact, eps, tolerance or end time not positive.
+    // Throws InputErrors if the run cannot start: start not finite or T, V, h or the acceleration undefined there,
+    // restitution outside [0,1], M not positive definite, gap clearly negative, dh = 0 in contact, a parameter
+    // subnormal, eps, tolerance or end time not positive.
     void check(const Run& run) const;
 
     // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
@@ -89,8 +95,10 @@ class Model {
     void compile();
     // Throw Mistake.
     void check_restitution(const Run& run) const;
+    void check_energies(const Run& run, const Evaluator<double>& start) const;
     void check_gap(const Run& run) const;
-    void check_acceleration(const Run& run) const;
+    void check_mass(const Evaluator<double>& start) const;
+    void check_acceleration(const Run& run, const Evaluator<double>& start) const;
 
     SystemDescription description_;
     Layout layout_;
@@ -99,8 +107,10 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
-    SeriesProgram flight_series_, contact_series_;
+    SeriesProgram flight_series_, contact_series_, edge_series_;
+    std::vector<Edge> edges_;
     Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
+    Program start_;  // f (n), hddot, pivots (n), T, V: what must be defined where a run starts
 };
 
 }  // namespace achilles

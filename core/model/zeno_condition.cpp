@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "number/ground.hpp"
+
 namespace achilles {
 
 namespace {
@@ -251,6 +253,7 @@ class Search {
 }  // namespace
 
 std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run, Graph& graph) {
+    const Ground ground;
     return Search(model, run, graph).best();
 }
 

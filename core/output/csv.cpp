@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/model.hpp"
+#include "number/ground.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -19,6 +20,7 @@ void append(std::string& row, double x) {
 }  // namespace
 
 std::string to_csv(const Trajectory& trajectory) {
+    const Ground ground;
     const Model& model = *trajectory.model;
     const auto n = static_cast<std::size_t>(model.n());
     std::string text = "t,phase";

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "model/model.hpp"
+#include "number/ground.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -101,6 +102,7 @@ Json event_of(const Event& event) {
 std::string version() { return ACHILLES_VERSION; }
 
 std::string to_json(const Trajectory& trajectory) {
+    const Ground ground;
     Json phases = Json::array(), events = Json::array();
     for (const Phase& phase : trajectory.phases)
         phases.push_back({{"kind", to_text(phase.kind)},
@@ -127,7 +129,12 @@ std::string to_json(const Trajectory& trajectory) {
           {"impacts", s.impacts},
           {"energy_drift", number(s.energy_drift)},
           {"least_gap", number(s.least_gap)},
-          {"seconds", number(s.seconds)}}}};
+          {"seconds", number(s.seconds)}}},
+        {"assumed",  // by the certificates
+         {{"arithmetic", "IEEE 754 double, round to nearest"},
+          {"ulps", rounding::libm},
+          {"ulps_hyperbolic", rounding::hyperbolic},
+          {"library", mathematical_library()}}}};
     // Invalid UTF-8 in a title is replaced, never an exception.
     return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

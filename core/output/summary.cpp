@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "model/model.hpp"
+#include "number/ground.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -47,6 +48,14 @@ std::string event_line(const Model& model, const Event& event) {
     return text;
 }
 
+// What certificates rest on.
+std::string assumed() {
+    return fmt::format(
+        "They assume IEEE double arithmetic in round-to-nearest (set where they are\n"
+        "made) and elementary functions within {} ulp ({} for sinh, cosh, tanh), those of {} here.",
+        rounding::libm, rounding::hyperbolic, mathematical_library());
+}
+
 }  // namespace
 
 std::string interval_text(double low, double high) {
@@ -73,6 +82,7 @@ std::string sentence(const Certificate& c) {
 }
 
 std::string summary(const Trajectory& trajectory) {
+    const Ground ground;
     const Model& model = *trajectory.model;
     const Options& o = trajectory.run.options;
     std::string text = fmt::format("{}\n", model.description().title);
@@ -110,7 +120,8 @@ std::string summary(const Trajectory& trajectory) {
     if (completed)
         text +=
             "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"
-            "errors of several truncations add up.\n";
+            "errors of several truncations add up. " +
+            assumed() + "\n";
     return text;
 }
 

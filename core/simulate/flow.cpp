@@ -7,6 +7,7 @@ namespace achilles {
 
 Flow::Flow(const Model& model, const Run& run)
     : stepper_(run.options.method == Method::taylor ? make_taylor(model, run) : make_dopri5(model, run)),
+      edges_(model.edges().empty() ? nullptr : std::make_unique<EdgeWatch>(model, run)),
       model_(&model),
       parameters_(run.parameters) {}
 
@@ -39,8 +40,12 @@ Obstacle Flow::step(double until) {
     const State& start = end();
     if (moved_) stepper_->initialize(motion_, start, gap_);
     moved_ = false;
-    const Obstacle obstacle = stepper_->do_step(longest, first_, least());
+    Obstacle obstacle = stepper_->do_step(longest, first_, least());
     first_ = 0.0;
+    if (edges_ && obstacle == Obstacle::none) {
+        const double theta = edges_->safe_part(*stepper_);
+        if (theta < 1.0) obstacle = stepper_->redo_step(theta * stepper_->current_time(), least());
+    }
     if (obstacle != Obstacle::none) return obstacle;
     span_ = stepper_->current_time();
     // Neither short of it nor past it by a rounding: time never runs back.

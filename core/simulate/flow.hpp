@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "simulate/edge_watch.hpp"
 #include "simulate/polynomial.hpp"
 #include "simulate/stepper.hpp"
 #include "trajectory.hpp"
@@ -21,7 +22,8 @@ class Flow {
     void fly(double t, const State& state, const Gap& gap, double first_step);
     void stay(double t, const State& state, double state_error);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
-    // domain inside a step the step is shortened, until it is too short to be a step: that is the obstacle.
+    // domain inside a step the step is shortened, until it is too short to be a step: that is the obstacle. So it is
+    // where one comes to an edge inside (model/edges.hpp).
     Obstacle step(double until);
     // Makes the last step again with this shorter duration, so that its end is as good as that of a step.
     Obstacle retake(double duration);
@@ -57,6 +59,7 @@ class Flow {
     double least() const;
 
     std::unique_ptr<Stepper> stepper_;
+    std::unique_ptr<EdgeWatch> edges_;  // null where the system has none
     const Model* model_;
     std::vector<double> parameters_;
     std::array<std::optional<Evaluator<double>>, 2> acceleration_;  // of a Motion, at the end of a step

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "number/ground.hpp"
+
 namespace achilles {
 
 namespace {
@@ -115,6 +117,7 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
 
 Surface::Normal Surface::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
+    const Ground ground;
     auto& enclosure = model_->made(release_enclosure_, model_->release(), parameters_);
     for (std::size_t i = 0; i < n_; ++i) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);

@@ -41,6 +41,13 @@ struct Options {
     Truncation truncation;
 };
 
+// The least tolerance and eps that double precision can serve. A run that asks for less has this.
+inline constexpr double least_tolerance = 1e-15;
+// What a person should be told about options that are no mistake: a sentence for each that is below it.
+std::vector<std::string> warnings(const Options& options);
+// Raises those that are below to it.
+void raise_to_least(Options& options);
+
 // One run: options, the parameters' values (in the order of the description), and the start.
 struct Run {
     Options options;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "number/ground.hpp"
+
 namespace achilles {
 
 namespace {
@@ -18,6 +20,7 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t co
     : step_(*model), model_(model), count_(count), next_(next), run_of_(run_of), take_(take) {}
 
 void SideBySide::work() {
+    const Ground ground;
     while (true) {
         while (flying_.size() + staying_.size() < most_under_way) {
             const std::size_t index = next_.fetch_add(1);
@@ -31,7 +34,7 @@ void SideBySide::work() {
 }
 
 void SideBySide::begin(std::size_t index) {
-    const Run run = run_of_(index);
+    Run run = run_of_(index);
     std::optional<InputError> refusal;
     try {
         model_->check(run);
@@ -39,6 +42,7 @@ void SideBySide::begin(std::size_t index) {
         refusal = error;
     }
     if (refusal) return take_(index, std::move(*refusal));
+    raise_to_least(run.options);
     const bool in_lanes = run.options.method == Method::taylor && !model_->flight_series().is_partial() &&
                           !model_->contact_series().is_partial();
     if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "number/ground.hpp"
 #include "simulate/execution.hpp"
 
 namespace achilles {
@@ -30,14 +31,17 @@ Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Wa
 // What is undecided may be so since the state had become wrong before: then the whole run is made once more, as exactly
 // as double precision allows.
 Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
+    const Ground ground;
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();
-    Trajectory trajectory = execute(model, run, watch, keep);
-    if (trajectory.outcome.kind == Outcome::Kind::undecided && run.options.tolerance > Execution::least_tolerance) {
-        Run exact = run;
+    Run used = run;
+    raise_to_least(used.options);
+    Trajectory trajectory = execute(model, used, watch, keep);
+    if (trajectory.outcome.kind == Outcome::Kind::undecided && used.options.tolerance > Execution::least_tolerance) {
+        Run exact = used;
         exact.options.tolerance = Execution::least_tolerance;
         trajectory = execute(model, exact, watch, keep);
-        trajectory.run = run;
+        trajectory.run = used;
     }
     trajectory.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return trajectory;

@@ -12,7 +12,9 @@ namespace {
 
 constexpr int highest = SeriesEvaluator::highest_order;
 constexpr int guarded = 10;
-constexpr int lowest = 5;  // a release is a triple root: the gap needs more terms than that
+constexpr double longest_near = 0x1p29;  // s: all powers up to the highest order are numbers
+constexpr double largest_state = 1e150;  // of a state: its square is a number
+constexpr int lowest = 5;                // a release is a triple root: the gap needs more terms than that
 
 constexpr auto reciprocals = [] {
     std::array<double, highest + 1> table{};
@@ -56,15 +58,12 @@ Taylor::Taylor(const Model& model, const Run& run)
     : n_(static_cast<std::size_t>(model.n())),
       width_(2 * n_ + 1),
       tolerance_(std::max(run.options.tolerance, 0x1p-53)),
-      flight_program_(&model.flight_series()),
-      contact_program_(&model.contact_series()),
       flight_(model.flight_series(), run.parameters),
       contact_(model.contact_series(), run.parameters),
       flight_order_(best_order(model.flight_series(), tolerance_)),
       contact_order_(best_order(model.contact_series(), tolerance_)),
       rows_((highest + 1) * width_, 0.0),
-      units_(width_, 0.0),
-      end_(width_, 0.0) {}
+      units_(width_, 0.0) {}
 
 void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
     motion_ = motion;
@@ -126,7 +125,7 @@ Obstacle Taylor::expand(double longest) {
         c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t i = 0; i < w; ++i) {
-        if (!(std::abs(c[i]) < 1e150)) return Obstacle::not_a_number;
+        if (!(std::abs(c[i]) < largest_state)) return Obstacle::not_a_number;
         units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
     }
     series.begin(c);
@@ -222,6 +221,7 @@ double Taylor::natural_step() {
 void Taylor::evaluate(double duration) {
     span_ = duration;
     evaluated_ = true;
+    if (duration > longest_near) return evaluate_far(duration);
     using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
     const double square = duration * duration;
     std::array<double, 2 * max_coordinates> reached;
@@ -249,9 +249,9 @@ Obstacle Taylor::do_step(double longest, double, double least) {
     if (const Obstacle obstacle = expand(longest); obstacle != Obstacle::none) return obstacle;
     const double step = std::min(longest, natural_step());
     if (!(step > least)) return Obstacle::step_too_small;
-    span_ = step;
+    span_ = step > longest_near ? within_numbers(step) : step;
+    if (span_ == 0.0) return Obstacle::not_a_number;
     evaluated_ = false;
-    stay_in_domain(step);
     return Obstacle::none;
 }
 
@@ -261,34 +261,37 @@ const State& Taylor::current_state() {
     return to_;
 }
 
-// A term that hardly matters may end the domain inside a step that its series allows: sqrt(x) with a small factor. Then
-// the step goes as far as its end is defined; what ends there is found by the next one.
-void Taylor::stay_in_domain(double step) {
-    const SeriesProgram& program = motion_ == Motion::flight ? *flight_program_ : *contact_program_;
-    if (!program.is_partial()) return;
-    evaluate(step);
-    if (is_defined()) return;
-    double inside = 0.0, outside = step;
-    while (outside - inside > 1e-12 * step) {
-        const double middle = 0.5 * (inside + outside);
-        evaluate(middle);
-        (is_defined() ? inside : outside) = middle;
-    }
-    evaluate(inside);
+// Row k at t, where powers of t may overflow: nothing times infinity is no number, but nothing.
+double Taylor::far_term(int k, std::size_t component, double t) const {
+    const double c = row(k)[component];
+    return c == 0.0 ? 0.0 : c * std::pow(t, k);
 }
 
-// Whether the equations of motion have values where the step ends.
-bool Taylor::is_defined() {
-    SeriesEvaluator& series = motion_ == Motion::flight ? flight_ : contact_;
-    std::vector<double>& at = end_;
+void Taylor::evaluate_far(double duration) {
+    const auto sum = [&](std::size_t component) {
+        double value = 0.0;
+        for (int k = order_; k >= 0; --k) value += far_term(k, component, duration);
+        return value;
+    };
     for (std::size_t i = 0; i < n_; ++i) {
-        at[i] = to_.q[static_cast<Eigen::Index>(i)];
-        at[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
+        to_.q.data()[i] = sum(i);
+        to_.v.data()[i] = sum(n_ + i);
     }
-    series.begin(at.data());
-    for (std::size_t i = 0; i <= n_; ++i)
-        if (!std::isfinite(series.start(i))) return false;
-    return true;
+}
+
+// A step this long, which only what is nearly a straight line has, or as much of it as stays among the numbers that
+// expand() takes. Zero where next to nothing of it does.
+double Taylor::within_numbers(double step) {
+    constexpr double shorter = 0x1p-8;
+    const auto size_at = [&](double t) {
+        double sum = 0.0;
+        for (int k = 0; k <= order_; ++k)
+            for (std::size_t i = 0; i < width_; ++i) sum += std::abs(far_term(k, i, t));
+        return sum;
+    };
+    const bool is_at_the_end = size_at(0.0) > 0.5 * shorter * largest_state;
+    while (step > longest_near && !(size_at(step) < largest_state)) step = is_at_the_end ? 0.0 : shorter * step;
+    return step;
 }
 
 Obstacle Taylor::redo_step(double duration, double least) {
@@ -301,6 +304,10 @@ Polynomial Taylor::watched() const {
     Polynomial p;
     p.degree = order_;
     const std::size_t w = 2 * n_;
+    if (span_ > longest_near) {
+        for (int k = 0; k <= order_; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, w, span_);
+        return p;
+    }
     double even = 1.0, odd = span_;
     const double square = span_ * span_;
     for (std::size_t k = 0; k <= static_cast<std::size_t>(order_); k += 2, even *= square, odd *= square) {

@@ -46,8 +46,9 @@ class Taylor : public Stepper {
     Magnitude magnitude(const double* c) const;
     Obstacle leave_out_infinite();
     double natural_step();
-    void stay_in_domain(double step);
-    bool is_defined();
+    double far_term(int k, std::size_t component, double t) const;
+    void evaluate_far(double duration);
+    double within_numbers(double step);
     void evaluate(double duration);
     double drifting() const;
     double earlier_error() const;
@@ -55,7 +56,6 @@ class Taylor : public Stepper {
 
     std::size_t n_, width_;  // width: q, v, what is watched
     double tolerance_;
-    const SeriesProgram *flight_program_, *contact_program_;
     SeriesEvaluator flight_, contact_;
     int flight_order_, contact_order_;
     Motion motion_ = Motion::flight;
@@ -64,7 +64,6 @@ class Taylor : public Stepper {
     bool evaluated_ = true;      // to_ is the step's end, not its start
     std::vector<double> rows_;   // coefficients, order by order: q, v, watched
     std::vector<double> units_;  // 1/(tolerance of each component)
-    std::vector<double> end_;    // of the step, as the series take it
     int order_ = 0;              // of the last expansion
     double target_ = 0.0;        // the longest step that it is needed for, as far as is known
     double power_ = 0.0;         // target^order

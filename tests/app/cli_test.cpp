@@ -58,6 +58,9 @@ const Refusal refusals[] = {
      "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
     {"setting_without_value", "simulate ball_on_sine --set g",
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
+    {"subnormal_parameter", "simulate ball_on_sine --set m=5e-324 --json a.json",
+     "--set m=5e-324: the parameter 'm' is 5e-324: so small a number has lost digits\n"
+     "0, or at least 2.3e-308 in size: choose units in which it is larger\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no 'shap' to choose; did you mean 'sharp'?\nthe choice is paper or sharp\n"},
     {"unknown_method", "simulate ball_on_sine --method tailor",
@@ -254,6 +257,37 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     EXPECT_EQ(content(folder.path() / "run.csv").rfind("t,phase,y,y',gap,", 0), 0u);
     EXPECT_NE(content(folder.path() / "run.csv").find("\n0,hybrid,2,-1,"), std::string::npos);
     EXPECT_EQ(folder.files().size(), 2u);
+}
+
+TEST(Cli, ToleranceBelowWhatDoublesServeIsToldOnceAndRaised) {
+    const Folder folder;
+    const std::string warning =
+        "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n";
+    const Answer answer = folder.run("simulate ball_on_sine --end 1 --tolerance 1e-30 --json -");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.err, warning);
+    EXPECT_EQ(json::parse(answer.out)["options"]["tolerance"], 1e-15);
+    for (const char* command : {"figure ball_on_sine --end 1 --tolerance 1e-30 --out a.svg",
+                                "screenshot ball_on_sine --end 1 --tolerance 1e-30 --out a.png"}) {
+        const Answer picture = folder.run(command);
+        EXPECT_EQ(picture.status, 0) << picture.err;
+        EXPECT_EQ(picture.err, warning);
+    }
+    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1 --tolerance 1e-15 --json -").err, "");
+}
+
+TEST(Cli, SaysWhatProofsAssume) {
+    const Folder folder;
+    const std::string out = folder.run("simulate ball_on_sine --end 3").out;
+    for (const char* words :
+         {"IEEE double arithmetic in round-to-nearest", "elementary functions within 2 ulp", "4 for sinh, cosh, tanh"})
+        EXPECT_NE(out.find(words), std::string::npos) << out;
+    const json assumed = json::parse(folder.run("simulate ball_on_sine --end 3 --json -").out)["assumed"];
+    EXPECT_EQ(assumed["ulps"], 2);
+    EXPECT_EQ(assumed["ulps_hyperbolic"], 4);
+    EXPECT_NE(out.find(assumed["library"].get<std::string>()), std::string::npos) << out;
+    // Without a Zeno point nothing is proved.
+    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1").out.find("assume"), std::string::npos);
 }
 
 TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {

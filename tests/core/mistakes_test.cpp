@@ -386,11 +386,11 @@ const Change in_start[] = {
      "f.toml:18:8: dh = 0 at the start, which is in contact: the normal is not defined\n    gap = \"(x - 1)^2\"\n      "
      "     ^"},
     {"\"x - sin(theta)/9\"", "\"log(x - 2)\"",
-     "f.toml:18:8: the gap cannot be evaluated at the start: a function is outside its domain\n    gap = \"log(x - "
-     "2)\"\n           ^"},
+     "f.toml:18:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n    gap = \"log(x - 2)\"\n      "
+     "     ^"},
     {"\"m*x\"", "\"m*sqrt(x - 2)\"",
-     "f.toml:15:12: the acceleration is not finite at the start: a function is outside its domain\n    kinetic = "
-     "\"m/2*(x'^2 + theta'^2)\"\n               ^"},
+     "f.toml:16:14: the potential is not defined at the start: sqrt(x - 2), with x - 2 = -1\n    potential = "
+     "\"m*sqrt(x - 2)\"\n                 ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Start, Mistakes, testing::ValuesIn(in_start));
 

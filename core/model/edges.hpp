@@ -1,0 +1,31 @@
+// Functions that end at an edge, where they are not smooth: roots, logarithms, arcsines.
+//
+// sqrt(u) is smooth as long as u > 0. Where u falls below zero it has no value, which shows. Where u touches zero it
+// has a kink that no formula shows: sqrt(x^2) is |x|, and the Taylor series of it at x = -1 is that of -x, which goes
+// on through x = 0 as if nothing was there. So the distance from the edge is watched along the motion, as a root
+// itself:
+//
+//     sqrt(u), u^a (a no integer), log(u)     d = sqrt(u)
+//     asin(u), acos(u)                        d = sqrt(1 - u^2)
+//
+// The series of d changes its sign where u touches the edge, and comes close to zero where u nearly does.
+#pragma once
+
+#include <vector>
+
+#include "model/derive.hpp"
+
+namespace achilles {
+
+struct Edge {
+    Expression function;  // as it stands in T, V or h
+    Expression argument;
+    Expression distance;  // d: above zero where the function is smooth
+    const char* place;    // "the gap", for messages
+};
+
+// Those of T, V and h whose argument moves; derivatives have no others. Each distance once. Makes nodes in the graph of
+// the equations.
+std::vector<Edge> edges_of(const Equations& equations, const Layout& layout);
+
+}  // namespace achilles

@@ -1,0 +1,152 @@
+// Whether a run can start: Model::check().
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/input_error.hpp"
+#include "model/mistakes.hpp"
+#include "model/model.hpp"
+#include "model/undefined.hpp"
+#include "number/ground.hpp"
+#include "number/subnormal.hpp"
+
+namespace achilles {
+
+void Model::check(const Run& run) const {
+    const Ground ground;
+    Mistakes mistakes;
+    const auto refuse = [&](Location at, const std::string& message, const std::string& hint = {}) {
+        mistakes.add({at, message, hint});
+    };
+    const Options& options = run.options;
+    const auto positive = [&](const char* name, double value) {
+        if (!(value > 0.0) || !std::isfinite(value))
+            refuse({}, fmt::format("{} must be a positive number, but it is {}", name, value));
+    };
+    positive("end_time", options.end_time);
+    positive("tolerance", options.tolerance);
+    positive("eps_q", options.truncation.eps_q);
+    positive("eps_v", options.truncation.eps_v);
+    positive("eps_t", options.truncation.eps_t);
+    if (options.max_impacts < 1) refuse({}, "max_impacts must be at least 1");
+    if (options.max_steps < 1) refuse({}, "max_steps must be at least 1");
+    const std::size_t before = mistakes.count();
+    for (std::size_t i = 0; i < run.parameters.size(); ++i) {
+        const auto& parameter = description_.parameters[i];
+        if (!std::isfinite(run.parameters[i]))
+            refuse(parameter.at, fmt::format("the parameter '{}' is not finite", parameter.name));
+        if (is_subnormal(run.parameters[i]))
+            refuse(parameter.at, subnormal_parameter(parameter.name, run.parameters[i]), subnormal_hint);
+    }
+    for (int i = 0; i < n(); ++i) {
+        const auto& coordinate = description_.coordinates[static_cast<std::size_t>(i)];
+        if (!std::isfinite(run.q[i]))
+            refuse(coordinate.start_at, fmt::format("the start of '{}' is not finite", coordinate.name));
+        if (!std::isfinite(run.v[i]))
+            refuse(coordinate.rate_at, fmt::format("the rate of '{}' is not finite", coordinate.name));
+    }
+    if (mistakes.count() == before) {
+        auto start = evaluator(start_, run.parameters);
+        put(start, State{run.q, run.v});
+        start.run();
+        mistakes.attempt([&] { check_restitution(run); });
+        // What follows from an energy or a gap without a value has none either: it is told once.
+        const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
+        const bool has_gap = mistakes.attempt([&] { check_gap(run); });
+        const bool has_mass = has_energies && mistakes.attempt([&] { check_mass(start); });
+        if (has_mass && has_gap) mistakes.attempt([&] { check_acceleration(run, start); });
+    }
+    mistakes.raise(description_);
+}
+
+void Model::check_restitution(const Run& run) const {
+    const double e = evaluator(restitution_, run.parameters).output(0);
+    if (!(e >= 0.0 && e <= 1.0))
+        throw Mistake{description_.restitution.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e),
+                      "0 is plastic, 1 is elastic"};
+}
+
+namespace {
+
+// "WHAT is not defined at the start: log(x - 2), with x - 2 = -1", where the part can be named. What has no such part
+// is too large.
+Mistake no_value(const Model& model, const Run& run, Location at, const char* what,
+                 std::span<const Expression> expressions) {
+    const State state{run.q, run.v};
+    const auto part = first_undefined(model, run.parameters, expressions, state, box_of(state));
+    if (!part) return {at, fmt::format("{} is not finite at the start", what), {}};
+    return {at,
+            fmt::format("{} is not defined at the start: {}, with {} = {:.3g}", what, part->part, part->operand,
+                        part->value),
+            {}};
+}
+
+}  // namespace
+
+// T and V have values.
+void Model::check_energies(const Run& run, const Evaluator<double>& start) const {
+    const std::size_t first = 2 * std::size_t{layout_.n} + 1;
+    if (!std::isfinite(start.output(first)))
+        throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.kinetic, 1});
+    if (!std::isfinite(start.output(first + 1)))
+        throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.potential, 1});
+}
+
+// The gap has a value and is not clearly negative, and where there is contact there is a normal.
+void Model::check_gap(const Run& run) const {
+    const State start{run.q, run.v};
+    auto gap = evaluator<Interval>(gap_, run.parameters);
+    put(gap, start);
+    gap.run();
+    const Interval h = gap.output(0);
+    const double error = rad(h);
+    if (!std::isfinite(error)) throw no_value(*this, run, description_.gap.at, "the gap", {&equations_.gap, 1});
+    if (mid(h) < -4.0 * error)
+        throw Mistake{description_.gap.at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
+                      "choose a start with h(q) >= 0"};
+    if (std::abs(mid(h)) > 4.0 * error) return;
+    auto surface = evaluator(surface_, run.parameters);
+    put(surface, start);
+    surface.run();
+    bool is_flat = true;
+    for (std::size_t i = 0; i < layout_.n; ++i) is_flat = is_flat && surface.output(2 + layout_.n + i) == 0.0;
+    if (is_flat)
+        throw Mistake{description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined", {}};
+}
+
+// M is positive definite.
+void Model::check_mass(const Evaluator<double>& start) const {
+    for (std::size_t i = 0; i < layout_.n; ++i) {
+        const double pivot = start.output(layout_.n + 1 + i);
+        if (pivot > 0.0) continue;
+        throw Mistake{description_.kinetic.at,
+                      fmt::format("the mass matrix is not positive definite at the start (the pivot of '{}' is {})",
+                                  description_.coordinates[i].name, pivot),
+                      "every coordinate needs a positive inertia"};
+    }
+}
+
+// The equations of motion have values. Where they have none, a derivative of V, h or T is to blame.
+void Model::check_acceleration(const Run& run, const Evaluator<double>& start) const {
+    bool finite = true;
+    for (std::size_t i = 0; i <= layout_.n; ++i) finite = finite && std::isfinite(start.output(i));
+    if (finite) return;
+    Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
+    std::vector<std::uint32_t> q;
+    for (std::size_t i = 0; i < layout_.n; ++i) q.push_back(layout_.q(i));
+    const auto blame = [&](const Text& text, const char* what, const std::vector<Expression>& parts) {
+        const Program program(parts, layout_.slots());
+        auto value = evaluator(program, run.parameters);
+        put(value, State{run.q, run.v});
+        value.run();
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            if (!std::isfinite(value.output(i))) throw no_value(*this, run, text.at, what, parts);
+    };
+    blame(description_.potential, "a derivative of the potential", gradient(graph.adopt(equations_.potential), q));
+    std::vector<Expression> of_gap = gradient(graph.adopt(equations_.gap), q);
+    for (const auto& row : jacobian(of_gap, q)) of_gap.insert(of_gap.end(), row.begin(), row.end());
+    blame(description_.gap, "a derivative of the gap", of_gap);
+    throw no_value(*this, run, description_.kinetic.at, "the acceleration", equations_.f);
+}
+
+}  // namespace achilles

@@ -1,0 +1,33 @@
+// Which part of an expression has no value.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+
+namespace achilles {
+
+// A part as a person would name it, and what stands in its way: its operand (as in log(x)), or the divisor.
+struct Undefined {
+    std::string part, operand;  // as text, cut after 60 letters
+    double value;               // of the operand, at the state
+};
+
+// The first part of some expressions that has no value somewhere in a box of q and v: a function outside its domain, a
+// division by zero. Nothing where there is none.
+std::optional<Undefined> first_undefined(const Model& model, std::span<const double> parameters,
+                                         std::span<const Expression> expressions, const State& state,
+                                         const std::vector<Interval>& box);
+
+// An expression for a message: at most 60 letters and "...".
+std::string shortened(const Model& model, Expression expression);
+// Its value at a state.
+double value_at(const Model& model, std::span<const double> parameters, Expression expression, const State& state);
+
+// A state as a box of q and v.
+std::vector<Interval> box_of(const State& state);
+
+}  // namespace achilles

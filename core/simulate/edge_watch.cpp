@@ -1,0 +1,74 @@
+#include "simulate/edge_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+constexpr int counted = 4;  // last terms: symmetry may hide three in a row
+constexpr int lowest = 8;
+constexpr int highest = SeriesEvaluator::highest_order;
+static_assert(highest < Polynomial::capacity);
+
+// The sum of the last terms' sizes.
+double tail(const Polynomial& p) {
+    double sum = 0.0;
+    for (int k = p.degree; k > p.degree - counted; --k) sum += std::abs(p.c[static_cast<std::size_t>(k)]);
+    return sum;
+}
+
+}  // namespace
+
+EdgeWatch::EdgeWatch(const Model& model, const Run& run)
+    : block_(2 * static_cast<std::size_t>(model.n())),
+      series_(model.edge_series(), run.parameters),
+      distances_(model.edges().size()) {}
+
+// The motion of a step is a polynomial in theta, whatever the method; so the distances are series in theta. They need
+// as many orders as it takes them to become small.
+double EdgeWatch::safe_part(const Stepper& stepper) {
+    motion_.clear();
+    const std::size_t degree = stepper.coefficients(motion_);
+    motion_.resize(motion_.size() + block_, 0.0);
+    series_.begin(motion_.data());
+    for (std::size_t i = 0; i < distances_.size(); ++i) distances_[i].c[0] = series_.start(i);
+    bool known = false;
+    for (int k = 1; k <= highest && !known; ++k) {
+        series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree + 1) * block_);
+        known = k >= lowest;
+        for (std::size_t i = 0; i < distances_.size(); ++i) {
+            Polynomial& distance = distances_[i];
+            distance.c[static_cast<std::size_t>(k)] = series_.output(i);
+            distance.degree = k;
+            known = known && tail(distance) < 0x1p-10 * distance.c[0];
+        }
+    }
+    double theta = 1.0;
+    for (Polynomial& distance : distances_) theta = std::min(theta, safe_part(distance));
+    return theta;
+}
+
+double EdgeWatch::safe_part(Polynomial& distance) const {
+    const double start = distance.c[0], allowed = 0x1p-6 * start;
+    if (!(start > 0.0)) return 0.0;
+    // Where the series is known: its last terms are small there. Of a step that is very much too long, the last ones
+    // may have overflowed.
+    while (distance.degree > lowest && !std::isfinite(tail(distance))) --distance.degree;
+    double known = 1.0;
+    for (int k = distance.degree; k > distance.degree - counted; --k) {
+        const double c = std::abs(distance.c[static_cast<std::size_t>(k)]);
+        if (!(c <= allowed)) known = std::min(known, std::isfinite(c) ? std::pow(allowed / c, 1.0 / k) : 0.0);
+    }
+    double power = known;
+    for (int k = 1; known < 1.0 && k <= distance.degree; ++k, power *= known)
+        distance.c[static_cast<std::size_t>(k)] *= power;
+    // Above an eighth, whatever is left out. It starts well above.
+    distance.c[0] -= 0.125 * start + tail(distance);
+    const Descent descent = first_descent(distance, 0, 0.0);
+    if (descent.kind == Descent::Kind::none) return known;
+    return known * (descent.theta > 0.0 ? descent.theta : 0.5);
+}
+
+}  // namespace achilles
