@@ -83,7 +83,7 @@ bool Execution::stay_step(double until) {
         case Descent::Kind::root:
             if (descent.theta == 0.0) return true;
             if (locate_release(descent.theta)) return !outcome_;
-            break;                 // the step became shorter
+            break;  // the step became shorter
         case Descent::Kind::rose:
             if (!knows_its_start() || hold_.asked_again) return doubt_force(0.0);
             break;

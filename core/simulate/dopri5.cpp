@@ -237,7 +237,7 @@ double Dopri5::drifting(const Polynomial& p) const {
     const double size = motion_ == Motion::flight
                             ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                             : std::abs(p.c[0]) + std::abs(p.c[1]) / span_;
-    return gap_.state_error * (1.0 + size);
+    return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
 }
 
 double Dopri5::earlier_error(const Polynomial& p) const {

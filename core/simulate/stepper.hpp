@@ -24,8 +24,10 @@ struct Gap {
     double h = 0.0, hdot = 0.0;
     double error = 0.0, rate_error = 0.0;  // what earlier steps of the flight may have made them wrong by
     // What the steps before the flight may have made the state wrong by, relative to its size. The acceleration of the
-    // gap is then wrong by about as much as it and its rate are large.
+    // gap is then wrong by about as much as it and its rate are large; what is beyond `steepest` is a narrow bend,
+    // passed in an instant.
     double state_error = 0.0;
+    static constexpr double steepest = 1e3;
 };
 
 class Stepper {

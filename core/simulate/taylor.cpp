@@ -343,7 +343,7 @@ double Taylor::drifting() const {
     const std::size_t w = 2 * n_;
     const double size = motion_ == Motion::flight ? 2.0 * std::abs(row(2)[w]) + 6.0 * std::abs(row(3)[w])
                                                   : std::abs(row(0)[w]) + std::abs(row(1)[w]);
-    return gap_.state_error * (1.0 + size);
+    return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
 }
 
 // Of what is watched, at the end of the step.
