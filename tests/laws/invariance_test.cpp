@@ -1,5 +1,5 @@
 // What must not change a motion: another zero of the potential, L in other units of energy, other units of time and of
-// the coordinates. The texts of the system are rewritten, so that everything is derived and certified anew.
+// the coordinates, a gap times a positive function. The texts of the system are rewritten, so that everything is derived and certified anew.
 #include <cctype>
 
 #include "laws/laws.hpp"
@@ -103,6 +103,34 @@ TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
         text->text = rescaled(changed, text->text, "0.01");
     ASSERT_NE(changed.gap.text, description().gap.text);
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
+}
+
+// A gap times a positive function of the coordinates is the same surface: its gradient is another one, impacts, Zeno
+// points and releases are the same.
+TEST_P(Invariance, TheGapTimesAPositiveFunction) {
+    const auto events = [&](const SystemDescription& system) {
+        auto run = run_of(GetParam());
+        run.options.tolerance = 1e-13;
+        run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-9;
+        const Trajectory trajectory = simulate(std::make_shared<const Model>(system), run);
+        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        std::vector<Event> result;
+        for (const Event& event : trajectory.events)
+            if (event.kind != Event::Kind::impact) result.push_back(event);
+        return result;
+    };
+    const std::vector<Event> expected = events(description());
+    const std::string q = description().coordinates[0].name;
+    for (const std::string& factor : {"(2 + sin(" + q + "))", "exp(" + q + ")"}) {
+        SystemDescription changed = description();
+        wrap(changed.gap, factor + "*(", ")");
+        const std::vector<Event> found = events(changed);
+        ASSERT_EQ(found.size(), expected.size()) << factor;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            EXPECT_EQ(found[i].kind, expected[i].kind) << factor;
+            EXPECT_NEAR(found[i].t, expected[i].t, 1e-8) << factor << ", event " << i;
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Execution, Invariance, testing::ValuesIn(all_cases()), name_of);
