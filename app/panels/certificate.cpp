@@ -80,17 +80,15 @@ std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
     lines.push_back("\u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
-    lines.push_back(
-        fmt::format("|q\u221e - q*| < {:.2g},  |v\u221e - v*| < {:.2g}", c.position_bound, c.velocity_bound));
+    lines.push_back(fmt::format("|q\u221e - q*| < {},  |v\u221e - v*| < {}", bound_text(c.position_bound),
+                                bound_text(c.velocity_bound)));
     if (c.uniform_position)
-        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {:.2g}", *c.uniform_position));
+        lines.push_back(fmt::format("until \u03c4\u221e: q true to {}", bound_text(*c.uniform_position)));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {:.2g}, v within {:.2g}", *c.shadowing_position,
-                                    *c.shadowing_velocity));
+        lines.push_back(fmt::format("at \u03c4\u221e: q true to {}, v to {}", bound_text(*c.shadowing_position),
+                                    bound_text(*c.shadowing_velocity)));
     lines.push_back(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min));
-    if (event.truncation)
-        lines.push_back(fmt::format("cut at t = {:.10g}, speed {:.3g}{}", event.truncation->t,
-                                    event.truncation->impact_speed, c.below_rounding ? " (below rounding)" : ""));
+    if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
     return lines;
 }

@@ -15,6 +15,8 @@ std::string summary(const Trajectory& trajectory);
 std::string sentence(const Certificate& certificate);
 // "[low, high]" with as many digits as tell the ends apart, and two more.
 std::string interval_text(double low, double high);
+// A bound, to two digits; what is below 1e-30 is not told further.
+std::string bound_text(double bound);
 std::string version();
 
 }  // namespace achilles

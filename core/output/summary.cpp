@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/output.hpp"
@@ -64,16 +66,19 @@ std::string interval_text(double low, double high) {
     return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
 }
 
+std::string bound_text(double bound) { return fmt::format("{:.2g}", std::max(bound, 1e-30)); }
+
 std::string sentence(const Certificate& c) {
     if (!c.certified) return "not certified";
-    std::string text = fmt::format("tau_inf in {}; |q_inf - q*| < {:.2g}, |v_inf - v*| < {:.2g}",
-                                   interval_text(c.zeno_low, c.zeno_high), c.position_bound, c.velocity_bound);
+    std::string text =
+        fmt::format("tau_inf in {}; |q_inf - q*| < {}, |v_inf - v*| < {}", interval_text(c.zeno_low, c.zeno_high),
+                    bound_text(c.position_bound), bound_text(c.velocity_bound));
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g}", c.zeno_low);
     if (c.uniform_position && *c.uniform_position > 0.0)
         text += fmt::format(
-            "; at all times from tau_k to tau_inf within {:.2g} of the true position (the bounces not drawn are no "
-            "higher); at tau_inf within {:.2g} (position) and {:.2g} (velocity) of the true motion",
-            *c.uniform_position, *c.shadowing_position, *c.shadowing_velocity);
+            "; at all times from tau_k to tau_inf within {} of the true position (the bounces not drawn are no "
+            "higher); at tau_inf within {} (position) and {} (velocity) of the true motion",
+            bound_text(*c.uniform_position), bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity));
     const char* link = c.position_bound == 0.0 ? "; " : c.paper ? "; decided by the condition " : "; decided by the ";
     text += link;
     text += c.decisive;

@@ -188,7 +188,7 @@ TEST(Hand, pins_compares_and_unpins) {
 
 TEST(Hand, opens_the_lens_and_scrolls_it_for_ever) {
     Hands hands("ball_on_sine");
-    hands.session.apply(command::Select{11});
+    hands.session.apply(command::Select{10});
     hands.rest(2);
     hands.click("open lens");
     ASSERT_TRUE(hands.session.scene().shows("lens"));

@@ -262,7 +262,7 @@ TEST(Paper, CertifiedIntervalsShrinkAroundTheZenoTimes) {
         const CertifiedWidth &first = widths[n].front(), &last = widths[n].back();
         const double slope =
             std::log((first.high - first.low) / (last.high - last.low)) / std::log(first.speed / last.speed);
-        EXPECT_NEAR(slope, 2.0, 0.25);
+        EXPECT_NEAR(slope, 3.0, 0.25);
     }
 }
 
