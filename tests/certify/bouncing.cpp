@@ -151,12 +151,12 @@ bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double e
     Real left = longest;
     for (; left > 0; flight.known = 0) {
         const double reach = std::min(expected, static_cast<double>(left));
-        const Coefficients path =
-            expand(until == Until::release ? contact_motion_ : flight_, flight.point, reach, tolerance);
+        const bool in_contact = until == Until::release || until == Until::least_force;
+        const Coefficients path = expand(in_contact ? contact_motion_ : flight_, flight.point, reach, tolerance);
         double step = safe_step(path, reach, tolerance);
-        Reals watched = along(path, until == Until::release ? release_ : gap_, 0, step, tolerance);
-        if (until == Until::dip) watched = derivative(watched);
-        if (until != Until::impact)
+        Reals watched = along(path, in_contact ? release_ : gap_, 0, step, tolerance);  // hddot, or h
+        if (until == Until::dip || until == Until::least_force) watched = derivative(watched);
+        if (until == Until::dip || until == Until::release)
             for (Real& c : watched) c = -c;
         // Known roots are zero, and would be found again.
         if (until == Until::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
@@ -182,6 +182,10 @@ bool TrueMotion::stay(Flight& contact, const Real& longest, double tolerance) {
     return move(contact, Until::release, longest, static_cast<double>(longest), tolerance);
 }
 
+bool TrueMotion::stay_to_dip(Flight& contact, const Real& longest, double tolerance) {
+    return move(contact, Until::least_force, longest, static_cast<double>(longest), tolerance);
+}
+
 Real TrueMotion::normal_acceleration(const Point& point) {
     for (std::size_t i = 0; i < n_; ++i) {
         acceleration_.input(i) = point.q[i];
@@ -191,8 +195,23 @@ Real TrueMotion::normal_acceleration(const Point& point) {
     return acceleration_.output(n_);
 }
 
+Real TrueMotion::jerk(const Point& point) {
+    normal_acceleration(point);
+    return acceleration_.output(2 * n_ + 1);
+}
+
+Point TrueMotion::drift(const Point& slid, const Real& time) {
+    normal_acceleration(slid);
+    Point result = slid;
+    for (std::size_t i = 0; i < n_; ++i) {
+        result.q[i] += slid.v[i] * time;
+        result.v[i] += acceleration_.output(i) * time;
+    }
+    return result;
+}
+
 std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) {
-    ZenoPoint result{0, collision, 0, {}};
+    ZenoPoint result{0, collision, 0, {}, {}};
     Point& point = result.point;
     const double first = -static_cast<double>(contact(point).hdot);
     for (; result.impacts < 100000; ++result.impacts) {
@@ -202,10 +221,7 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
         if (!(w > 0) || !(a > 0)) return std::nullopt;
         if (e_ == 0 || w < until * first) {
             const Real rest = 2 * e_ * w / (a * (1 - e_));
-            for (std::size_t i = 0; i < n_; ++i) {
-                point.q[i] += slid.v[i] * rest;
-                point.v[i] = slid.v[i] + acceleration_.output(i) * rest;
-            }
+            point = drift(slid, rest);
             result.time += rest;
             return result;
         }
@@ -214,6 +230,8 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
         result.velocities.push_back(point.v);
         Flight flight{point, result.time, 1};
         if (!fly(flight, 100 * expected, expected, std::max(1e-32, 1e-20 * speed))) return std::nullopt;
+        if (result.flights.size() < flights_kept)
+            result.flights.push_back({point, result.time, flight.time - result.time});
         point = flight.point;
         result.time = flight.time;
         result.velocities.push_back(point.v);
@@ -221,17 +239,53 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
     return std::nullopt;
 }
 
-Point TrueMotion::constrained(Point start, const Real& duration, double tolerance) {
-    Real left = duration;
-    while (left > 0) {
-        const double expected = static_cast<double>(left);
-        const Coefficients path = expand(contact_motion_, start, expected, tolerance);
-        const double length = safe_step(path, expected, tolerance);
-        const Real taken = length < expected ? Real(length) : left;
-        start = sum(path, taken);
-        left -= taken;
+std::vector<Instant> TrueMotion::inside(const ZenoPoint& zeno, double tolerance) {
+    std::vector<Instant> result;
+    for (std::size_t i = 0; i < zeno.flights.size(); ++i) {
+        const ZenoPoint::Flown& flown = zeno.flights[i];
+        const Point middle = flight_at(flown.start, {flown.duration / 2}, tolerance)[0];
+        Reals times;
+        for (std::size_t k = 1; k < instants_of_flight[i]; ++k)
+            times.push_back(flown.duration * k / instants_of_flight[i]);
+        times.push_back(flown.duration / 2 - contact(middle).hdot / normal_acceleration(middle));  // the top
+        std::sort(times.begin(), times.end());
+        const auto points = flight_at(flown.start, times, tolerance);
+        for (std::size_t k = 0; k < times.size(); ++k) result.push_back({flown.time + times[k], points[k]});
     }
-    return start;
+    return result;
+}
+
+Point TrueMotion::constrained(Point start, const Real& duration, double tolerance) {
+    return contact_at(start, {duration}, tolerance).back();
+}
+
+// One series serves all of the times within its reach.
+std::vector<Point> TrueMotion::follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance) {
+    std::vector<Point> result;
+    Real from = 0;
+    while (result.size() < times.size()) {
+        const double left = static_cast<double>(times.back() - from);
+        if (!(left > 0.0)) {
+            result.resize(times.size(), point);
+            break;
+        }
+        const Coefficients path = expand(motion, point, left, tolerance);
+        const double length = safe_step(path, left, tolerance);
+        const Real end = length < left ? Real(from + length) : times.back();
+        for (; result.size() < times.size() && times[result.size()] <= end;)
+            result.push_back(sum(path, times[result.size()] - from));
+        point = sum(path, end - from);
+        from = end;
+    }
+    return result;
+}
+
+std::vector<Point> TrueMotion::contact_at(const Point& start, const Reals& times, double tolerance) {
+    return follow(contact_motion_, start, times, tolerance);
+}
+
+std::vector<Point> TrueMotion::flight_at(const Point& start, const Reals& times, double tolerance) {
+    return follow(flight_, start, times, tolerance);
 }
 
 }  // namespace achilles::test

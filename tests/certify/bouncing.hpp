@@ -2,6 +2,7 @@
 // constrained motion from a restart. Certificates (core/certify) are judged by it.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "certify/taylor.hpp"
@@ -19,7 +20,22 @@ struct ZenoPoint {
     Point point;
     int impacts = 0;
     std::vector<Reals> velocities;  // after each impact and before the next: the largest excursions on the way
+    struct Flown {
+        Point start;
+        Real time, duration;  // time: of its start
+    };
+    std::vector<Flown> flights;  // the first ones
 };
+
+// Where a motion is at a time after tau_k.
+struct Instant {
+    Real time;
+    Point point;
+};
+
+// How many instants of each of the first flights are looked at: the highest need most. 30 in all.
+constexpr std::size_t flights_kept = 6;
+constexpr std::array<std::size_t, flights_kept> instants_of_flight{10, 6, 5, 4, 3, 2};
 
 // Motion underway. At the start of a flight the gap has a root of this multiplicity: 1 after an impact, 3 after a
 // release.
@@ -40,8 +56,14 @@ class TrueMotion {
     // Follows the impacts until their speed has fallen by the factor `until`; what is left is a geometric series, up to
     // terms in the square of that speed. Nothing if the bouncing does not behave like one.
     std::optional<ZenoPoint> zeno(const Point& collision, double until = 1e-8);
+    // Instants within its first flights, in time: spread evenly, and the top of each.
+    std::vector<Instant> inside(const ZenoPoint& zeno, double tolerance);
     // The motion that keeps contact, for a time, whatever the force.
     Point constrained(Point start, const Real& duration, double tolerance);
+    // Where the motion is at these times after the start, which ascend: in contact whatever the force, or free whatever
+    // the gap.
+    std::vector<Point> contact_at(const Point& start, const Reals& times, double tolerance);
+    std::vector<Point> flight_at(const Point& start, const Reals& times, double tolerance);
 
     // Flies to the next impact, for `longest` at most, in steps of at most `expected`. False if none came.
     bool fly(Flight& flight, const Real& longest, double expected, double tolerance);
@@ -49,22 +71,28 @@ class TrueMotion {
     bool fly_to_dip(Flight& flight, const Real& longest, double expected, double tolerance);
     // Keeps contact until the force vanishes, for `longest` at most. True if it did.
     bool stay(Flight& contact, const Real& longest, double tolerance);
+    // Keeps contact, whatever the force, until that stops falling and rises, likewise.
+    bool stay_to_dip(Flight& contact, const Real& longest, double tolerance);
 
     struct Contact {
         Real h, hdot;
         Reals n, g;
     };
     Contact contact(const Point& point);
-    // hddot of the free motion.
+    // hddot of the free motion, and its rate h''' along the constrained one.
     Real normal_acceleration(const Point& point);
+    Real jerk(const Point& point);
+    // A state in contact after a short time, to first order.
+    Point drift(const Point& slid, const Real& time);
 
  private:
     using Coefficients = std::vector<Point>;  // by order
-    enum class Until { impact, dip, release };
+    enum class Until { impact, dip, release, least_force };
     Coefficients expand(Evaluator<Series>& motion, const Point& from, double duration, double tolerance);
     Reals along(const Coefficients& path, Evaluator<Series>& program, std::size_t output, double& step,
                 double tolerance);
     bool move(Flight& flight, Until until, const Real& longest, double expected, double tolerance);
+    std::vector<Point> follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance);
 
     std::size_t n_;
     Real e_;

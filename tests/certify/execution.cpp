@@ -23,13 +23,31 @@ TrueRuns::TrueRuns(const Model& model, const Run& run)
 }
 
 TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
+    flight_ = {start, 0, 0};
+    contact_ = false;
+    return run(end_time, cut);
+}
+
+TrueExecution TrueRuns::run_from_contact(const Point& start, double end_time, double cut) {
+    Point point = start;
+    for (int round = 0; round < 4; ++round) {
+        const auto contact = motion_.contact(point);
+        for (std::size_t i = 0; i < n_; ++i) point.q[i] -= contact.h * contact.n[i];
+    }
+    point = motion_.restart(point, Reinitialization::kinetic);
+    const Real hddot = motion_.normal_acceleration(point);
+    contact_ = hddot < 0 || (hddot == 0 && motion_.jerk(point) < 0);
+    flight_ = {point, 0, hddot > 0 ? 2 : 3};
+    return run(end_time, cut);
+}
+
+TrueExecution TrueRuns::run(double end_time, double cut) {
     end_time_ = end_time;
     cut_ = cut;
     result_ = {};
-    flight_ = {start, 0, 0};
-    contact_ = false;
     expected_ = end_time;
     while (flight_.time < end_time_) {
+        if (result_.events.size() > most_events) throw std::runtime_error("the truth about this bouncing does not end");
         if (contact_) {
             stay();
         } else {
@@ -39,6 +57,11 @@ TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
     result_.end = flight_.point;
     result_.end_phase = contact_ ? Phase::Kind::constrained : Phase::Kind::hybrid;
     return std::move(result_);
+}
+
+// The geometric series takes hddot as constant, which where it nears zero no speed is low enough for.
+bool TrueRuns::settles(const Point& slid, const Real& acceleration, const Real& rest) {
+    return abs(motion_.normal_acceleration(motion_.drift(slid, rest)) + acceleration) < 1e-6 * acceleration;
 }
 
 void TrueRuns::fly() {
@@ -54,8 +77,8 @@ void TrueRuns::fly() {
     Point& point = flight_.point;
     const Point slid = motion_.restart(point, Reinitialization::kinetic);
     const Real a = -motion_.normal_acceleration(slid);
-    if (a > 0 && e_ < 1 && (e_ == 0 || w < cut_)) {
-        const Real rest = 2 * e_ * w / (a * (1 - e_));
+    const Real rest = a > 0 && e_ < 1 ? Real(2 * e_ * w / (a * (1 - e_))) : Real(0);
+    if (a > 0 && e_ < 1 && (e_ == 0 || (w < cut_ && settles(slid, a, rest)))) {
         result_.events.push_back({Event::Kind::zeno, flight_.time + rest, w, point});
         point = slid;
         contact_ = true;

@@ -1,5 +1,5 @@
-// The whole completed execution in 34 digits, from a start in the air to an end time: every impact down to speeds far
-// below what double precision resolves, Zeno points, releases. What simulate() computes is judged by it.
+// The whole completed execution in 34 digits, from a start in the air or in contact to an end time: every impact down
+// to speeds far below what double precision resolves, Zeno points, releases. What simulate() computes is judged by it.
 #pragma once
 
 #include <vector>
@@ -29,19 +29,26 @@ struct Dip {
 
 Point point_of(const State& state);
 
+// Throws std::runtime_error where a bouncing does not settle.
 class TrueRuns {
  public:
     // 0 <= e <= 1.
     TrueRuns(const Model& model, const Run& run);
 
-    // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut`; what is left is a geometric
-    // series and the plastic restart, which errs by O(cut^3).
+    // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut` and hddot no longer changes in
+    // what is left, which is a geometric series and the plastic restart and errs by O(cut^3).
     TrueExecution run(const Point& start, double end_time, double cut = 1e-9);
+    // Starts on the surface, at rest along its normal: the point is moved there from what rounding made of it. It stays
+    // if the contact force is positive, or is zero and grows.
+    TrueExecution run_from_contact(const Point& start, double end_time, double cut = 1e-9);
     // Where the gap first stops falling and rises again, if free motion from the start does that within the time.
     std::optional<Dip> first_dip(const Point& start, double within);
 
  private:
     static constexpr double precision = 1e-26;  // of a step
+    static constexpr std::size_t most_events = 20000;
+    TrueExecution run(double end_time, double cut);
+    bool settles(const Point& slid, const Real& acceleration, const Real& rest);
     void fly();
     void stay();
 
