@@ -64,6 +64,9 @@ Certificate falsified(Certificate c, Lie lie, const Collision& collision, const 
         case Lie::shadowing_velocity:
             if (c.shadowing_velocity) *c.shadowing_velocity /= 100.0;
             break;
+        case Lie::uniform_position:
+            if (c.uniform_position) *c.uniform_position /= 100.0;
+            break;
         case Lie::swapped_accelerations:
             swap_accelerations(c, e, w);
             break;

@@ -7,17 +7,18 @@ namespace achilles::test {
 
 enum class Lie {
     earliest_time,  // times 100
-    latest_time,    // this and the next four: divided by 100
+    latest_time,    // this and the next five: divided by 100
     position,
     velocity,
     shadowing_position,
     shadowing_velocity,
+    uniform_position,
     swapped_accelerations,  // a_min for a_max in the interval of tau_inf, and the reverse
     eta_with_M              // |M g'|/W in the paper's c3 instead of |M^-1 g'|/W
 };
-constexpr Lie lies[] = {
-    Lie::earliest_time,      Lie::latest_time,           Lie::position,  Lie::velocity, Lie::shadowing_position,
-    Lie::shadowing_velocity, Lie::swapped_accelerations, Lie::eta_with_M};
+constexpr Lie lies[] = {Lie::earliest_time,    Lie::latest_time,           Lie::position,
+                        Lie::velocity,         Lie::shadowing_position,    Lie::shadowing_velocity,
+                        Lie::uniform_position, Lie::swapped_accelerations, Lie::eta_with_M};
 
 // The certificate that a program with this mistake would have issued.
 Certificate falsified(Certificate certificate, Lie lie, const Collision& collision, const Run& run, const Model& model);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "certify/definition7.hpp"
@@ -24,6 +25,13 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
         if (claim.about == Claim::About::position) ratios[position].push_back(ratio);
         if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
         if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
+        if (claim.about == Claim::About::uniform_position) ratios[uniform].push_back(ratio);
+    }
+    const double half_width = 0.5 * (certified.certificate.zeno_high - certified.certificate.zeno_low);
+    if (certified.best && half_width > 0.0) {
+        ++estimates;
+        const double error = std::abs(static_cast<double>(trial.zeno->time - *certified.best));
+        worst_estimate = std::max(worst_estimate, error / half_width);
     }
     if (certified.asked.conditions == Conditions::paper) {
         const double far = largest_excursion(trial, certified.asked.reinitialization);
@@ -47,6 +55,11 @@ double Tally::median(Ratio ratio) const {
     return *middle;
 }
 
+double Tally::least(Ratio ratio) const {
+    const auto found = std::min_element(ratios[ratio].begin(), ratios[ratio].end());
+    return found == ratios[ratio].end() ? std::numeric_limits<double>::quiet_NaN() : *found;
+}
+
 void add(Tallies& tallies, const Trial& trial, const Model& model) {
     for (const Certified& certified : trial.certified)
         tallies[{certified.asked.conditions, certified.asked.reinitialization, certified.held}].add(trial, certified,
@@ -54,9 +67,9 @@ void add(Tallies& tallies, const Trial& trial, const Model& model) {
 }
 
 std::string table_head() {
-    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}\n", "system", "",
-                       "restart", "", "proved", "false", "n/a", "time", "position", "velocity", "farthest", "formula",
-                       "shadowing");
+    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>9}{:>9}{:>10}{:>9}\n",
+                       "system", "", "restart", "", "proved", "false", "n/a", "time", "position", "velocity",
+                       "farthest", "formula", "shadowing", "uniform", "least", "estimates", "worst");
 }
 
 std::string table_rows(const std::string& system, const Tallies& tallies) {
@@ -69,8 +82,11 @@ std::string table_rows(const std::string& system, const Tallies& tallies) {
                             tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest));
         rows += fmt::format("{:>9.2f}{:>9.2f}", tally.median(Tally::position), tally.median(Tally::velocity));
         const bool paper = conditions == Conditions::paper;
-        rows += paper ? fmt::format("{:>9.2f}{:>9.3f}\n", tally.median(Tally::excursion), tally.median(Tally::formula))
-                      : fmt::format("{:>18}{:>10.2f}\n", "", tally.median(Tally::shadowing));
+        rows += paper ? fmt::format("{:>9.2f}{:>9.3f}{:>10}", tally.median(Tally::excursion),
+                                    tally.median(Tally::formula), "")
+                      : fmt::format("{:>18}{:>10.2f}", "", tally.median(Tally::shadowing));
+        rows += fmt::format("{:>9.3f}{:>9.5f}{:>10}{:>9.4f}\n", tally.median(Tally::uniform),
+                            tally.least(Tally::uniform), tally.estimates, tally.worst_estimate);
     }
     return rows;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "simulate/impact.hpp"
+#include "simulate/simulate.hpp"
 
 namespace achilles::test {
 
@@ -37,6 +38,11 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
                               {About::velocity, c.velocity_bound, v}};
     if (c.shadowing_position) result.push_back({About::shadowing_position, *c.shadowing_position, shadow_q});
     if (c.shadowing_velocity) result.push_back({About::shadowing_velocity, *c.shadowing_velocity, shadow_v});
+    if (c.uniform_position) result.push_back({About::uniform_position, *c.uniform_position, own.farthest});
+    if (certified.best) {
+        result.push_back({About::best_estimate, *certified.best, c.zeno_low});
+        result.push_back({About::best_estimate, c.zeno_high, *certified.best});
+    }
     if (!certified.held) return result;
     // What was asked for: Def. 7 limits how far the Zeno point is, the sharp conditions how well it is known.
     const bool paper = c.conditions == Conditions::paper;
@@ -90,10 +96,23 @@ void Trials::certify(Trial& trial, const State& before) {
             run.options.truncation.reinitialization = kind;
             const auto prover = truncation_conditions(*model_, run);
             const Collision& own = trial.restarted(kind).collision;
-            if (auto c = prover->hold(own)) trial.certified.push_back({run.options.truncation, true, *c});
-            if (auto c = prover->widest(own)) trial.certified.push_back({run.options.truncation, false, *c});
+            if (auto c = prover->hold(own))
+                trial.certified.push_back({run.options.truncation, true, *c, best_estimate(run, before, *c)});
+            if (auto c = prover->widest(own)) trial.certified.push_back({run.options.truncation, false, *c, {}});
         }
     }
+}
+
+// Nothing where simulate() goes on bouncing, since its guess whether a proof is worth while said no.
+std::optional<double> Trials::best_estimate(Run run, const State& before, const Certificate& certificate) const {
+    run.q = before.q;
+    run.v = before.v;
+    run.options.end_time = 2.0 * certificate.zeno_high + 1e-9;
+    run.options.max_impacts = 1;
+    const Trajectory trajectory = simulate(model_, run);
+    for (const Event& event : trajectory.events)
+        if (event.kind == Event::Kind::zeno && event.truncation->t == 0.0) return event.t;
+    return std::nullopt;
 }
 
 Trial Trials::next() {
@@ -113,10 +132,17 @@ Trial Trials::next() {
     const Point collision = motion.collision(*state);
     trial.zeno = motion.zeno(collision);
     if (!trial.zeno) return trial;
+    const auto inside = motion.inside(*trial.zeno, 1e-20 * w);
+    Reals times;
+    for (const Instant& instant : inside) times.push_back(instant.time);
     for (const auto kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
         auto& restarted = kind == Reinitialization::kinetic ? trial.kinetic : trial.euclidean;
         restarted.restart = motion.restart(collision, kind);
         restarted.at_zeno = motion.constrained(restarted.restart, trial.zeno->time, 1e-20 * w);
+        restarted.farthest = actual(distance(trial.zeno->point.q, restarted.at_zeno.q));
+        const auto drawn = motion.contact_at(restarted.restart, times, 1e-20 * w);
+        for (std::size_t i = 0; i < inside.size(); ++i)
+            restarted.farthest = std::max(restarted.farthest, actual(distance(inside[i].point.q, drawn[i].q)));
     }
     return trial;
 }

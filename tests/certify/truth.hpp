@@ -16,6 +16,8 @@ struct Certified {
     Truncation asked;
     bool held = false;  // the conditions hold for the tolerances; otherwise it is the widest that can be proved
     Certificate certificate;
+    // What simulate() takes for the Zeno time, from tau_k on, where it cuts at this collision.
+    std::optional<double> best;
 };
 
 // One collision with every certificate that it gets. The truth is known unless `zeno` is empty.
@@ -26,6 +28,7 @@ struct Trial {
     struct Restarted {
         Collision collision;     // as the conditions see it
         Point restart, at_zeno;  // where the constrained motion starts, and where it is at tau_inf
+        double farthest = 0.0;   // the largest |q(t) - q~(t)| of the instants looked at, q~ being that motion
     };
     Restarted kinetic, euclidean;
     const Restarted& restarted(Reinitialization kind) const {
@@ -35,7 +38,17 @@ struct Trial {
 
 // A claim is true if actual <= bound.
 struct Claim {
-    enum class About { earliest, latest, position, velocity, shadowing_position, shadowing_velocity, tolerance };
+    enum class About {
+        earliest,
+        latest,
+        position,
+        velocity,
+        shadowing_position,
+        shadowing_velocity,
+        uniform_position,
+        best_estimate,  // of the Zeno time: inside the interval
+        tolerance
+    };
     About about;
     double bound, actual;
     bool holds() const { return actual <= bound; }
@@ -59,6 +72,7 @@ class Trials {
     double uniform(double low, double high);
     std::optional<State> zeno_equilibrium(const Run& run);
     void certify(Trial& trial, const State& before);
+    std::optional<double> best_estimate(Run run, const State& before, const Certificate& certificate) const;
 
     std::shared_ptr<const Model> model_;
     std::mt19937_64 random_;
