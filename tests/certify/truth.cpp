@@ -103,15 +103,18 @@ void Trials::certify(Trial& trial, const State& before) {
     }
 }
 
-// Nothing where simulate() goes on bouncing, since its guess whether a proof is worth while said no.
+// Nothing where simulate() goes on bouncing, since its guess whether a proof is worth while said no, or refuses the
+// start, which rounding has put a little further below the surface than an input may be.
 std::optional<double> Trials::best_estimate(Run run, const State& before, const Certificate& certificate) const {
     run.q = before.q;
     run.v = before.v;
     run.options.end_time = 2.0 * certificate.zeno_high + 1e-9;
     run.options.max_impacts = 1;
-    const Trajectory trajectory = simulate(model_, run);
-    for (const Event& event : trajectory.events)
-        if (event.kind == Event::Kind::zeno && event.truncation->t == 0.0) return event.t;
+    try {
+        for (const Event& event : simulate(model_, run).events)
+            if (event.kind == Event::Kind::zeno && event.truncation->t == 0.0) return event.t;
+    } catch (const InputError&) {
+    }
     return std::nullopt;
 }
 
