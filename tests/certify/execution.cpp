@@ -45,6 +45,7 @@ TrueExecution TrueRuns::run(double end_time, double cut) {
     end_time_ = end_time;
     cut_ = cut;
     result_ = {};
+    if (contact_) result_.start_phase = Phase::Kind::constrained;
     expected_ = end_time;
     while (flight_.time < end_time_) {
         if (result_.events.size() > most_events) throw std::runtime_error("the truth about this bouncing does not end");

@@ -18,7 +18,7 @@ struct TrueEvent {
 struct TrueExecution {
     std::vector<TrueEvent> events;  // in time
     Point end;
-    Phase::Kind end_phase = Phase::Kind::hybrid;
+    Phase::Kind start_phase = Phase::Kind::hybrid, end_phase = Phase::Kind::hybrid;
 };
 
 // A dip of the gap in free motion.

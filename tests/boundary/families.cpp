@@ -1,0 +1,204 @@
+#include "boundary/families.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/impact.hpp"
+
+namespace achilles::test {
+
+double Dice::log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
+
+double Dice::dyadic(double low, double high) { return std::round(uniform(low, high) * 4096.0) / 4096.0; }
+
+std::shared_ptr<const Model> written(const std::string& coordinates, const std::string& kinetic,
+                                     const std::string& potential, const std::string& gap, double e) {
+    std::string text = "title = \"boundary\"\n";
+    for (const char name : coordinates) text += fmt::format("[[coordinate]]\nname = \"{}\"\nstart = 0\n", name);
+    text += fmt::format("[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n", kinetic, potential);
+    text += fmt::format("[[constraint]]\ngap = \"{}\"\nrestitution = {:.17g}\n", gap, e);
+    return std::make_shared<const Model>(parse_system(text, "boundary.toml"));
+}
+
+// ---- crest ----
+
+Crest::Crest() : model_(written("ab", "(a'^2 + b'^2)/2", "b", "b - 0.25*cos(a)", 0.5)) {}
+
+// Energy along the contact motion: a'^2 (1 + (0.25 sin a)^2)/2 + 0.25 cos a. At the crest -hddot = 1 - 0.25 a'^2.
+Question Crest::start(double a0, double least) const {
+    Question result{model_, model_->default_run(), true};
+    const double at_crest = 4.0 * (1.0 - least), slope = -0.25 * std::sin(a0);
+    const double speed = std::sqrt((at_crest + 0.5 * (1.0 - std::cos(a0))) / (1.0 + slope * slope));
+    result.run.q << a0, 0.25 * std::cos(a0);
+    result.run.v << speed, slope * speed;
+    // The force is below zero for about 2 sqrt(|least|)/a': the run ends well after.
+    result.run.options.end_time = 10.0;
+    result.run.options.end_time = time_to_crest(result) + 0.2;
+    return result;
+}
+
+double Crest::time_to_crest(const Question& question) const {
+    TrueMotion motion(*model_, question.run);
+    Flight contact{point_of({question.run.q, question.run.v}), 0, 0};
+    motion.stay_to_dip(contact, question.run.options.end_time, 1e-22);
+    return static_cast<double>(contact.time);
+}
+
+// Where the steps of the contact motion end, as values of a.
+std::vector<double> Crest::steps(const Question& question, Way way, double tolerance) const {
+    Run run = question.run;
+    run.options.method = way == Way::dopri5 ? Method::dopri5 : Method::taylor;
+    run.options.tolerance = tolerance;
+    const Trajectory trajectory = simulate(model_, run);
+    std::vector<double> result;
+    for (const Piece& piece : trajectory.pieces) {
+        double a = 0.0;
+        for (std::size_t k = piece.degree + 1; k-- > 0;) a += trajectory.coefficients[piece.first + 4 * k];
+        if (piece.contact) result.push_back(a);
+    }
+    return result;
+}
+
+// A run that is undecided ends before the dip, so that its steps are foretold from two with more force than there is
+// doubt.
+std::optional<Question> Crest::start_with_a_step_into(double a0, double least, double into, Way way,
+                                                      double tolerance) const {
+    const double width = std::sqrt(std::abs(least) / 2.0);  // -hddot grows like (1/2) a'^2 a^2, with a' = 2
+    const double aim = into * width, more = std::min(1000.0 * tolerance, 0.03);
+    for (int round = 0; round < 12; ++round) {
+        if (!(a0 < -0.05 && a0 > -2.5)) return std::nullopt;
+        const auto once = steps(start(a0, least + more), way, tolerance);
+        const auto twice = steps(start(a0, least + 2.0 * more), way, tolerance);
+        double off = 1e9;  // of the end nearest to the aim
+        for (std::size_t i = 0; i < std::min(once.size(), twice.size()); ++i) {
+            const double end = 2.0 * once[i] - twice[i];
+            if (std::abs(end - aim) < std::abs(off)) off = end - aim;
+        }
+        if (std::abs(off) < 0.1 * width) return start(a0, least);
+        a0 -= 0.9 * off;  // which moves the end by about as much
+    }
+    return std::nullopt;
+}
+
+// ---- bisected starts ----
+
+std::string to_text(Family family) {
+    constexpr const char* names[] = {"waves", "fine waves", "post", "bumps"};
+    return names[static_cast<std::size_t>(family)];
+}
+
+Boundaries::Boundaries(Family family, bool in_contact, unsigned seed)
+    : family_(family), in_contact_(in_contact), dice_(seed) {}
+
+void Boundaries::draw_system() {
+    const double e = dice_.one_of({0.0625, 0.0625, 0.3, 0.5, 0.8, 0.0});
+    const double c1 = dice_.dyadic(0.25, 1.0);
+    const double c2 = dice_.uniform(0.0, 1.0) < 0.5 ? c1 : dice_.dyadic(0.25, 1.0);
+    end_time_ = dice_.uniform(0.5, 2.5);
+    if (family_ == Family::waves || family_ == Family::fine_waves) {
+        const double c3 = dice_.dyadic(0.5, 2.0), c4 = dice_.dyadic(-0.5, 0.5);
+        const bool fine = family_ == Family::fine_waves;
+        const double k = fine ? dice_.dyadic(15.0, 50.0) : dice_.dyadic(1.0, 8.0);
+        const double a = fine ? dice_.dyadic(0.02, 0.5) / 64.0 : dice_.dyadic(0.02, 0.2);
+        const double b = dice_.dyadic(-0.25, 0.25), l = dice_.dyadic(0.5, 2.0);
+        model_ = written("ab", fmt::format("{}*a'^2 + {}*b'^2", c1, c2), fmt::format("{}*b - ({})*a", c3, c4),
+                         fmt::format("b - {}*sin({}*a) - ({})*cos({}*a)", a, k, b, l), e);
+        return;
+    }
+    const bool post = family_ == Family::post;
+    const double height = post ? dice_.dyadic(0.01, 0.5) : dice_.dyadic(0.1, 10.0) / 1024.0;
+    const double width = post ? 400.0 : std::round(dice_.uniform(400.0, 2000.0));
+    model_ = written("xy", fmt::format("{}*(x'^2 + y'^2)", c1), fmt::format("{}*y", dice_.dyadic(0.5, 2.0)),
+                     fmt::format("y - {}*exp(-{}*(x - 1)^2)", height, width), e);
+}
+
+Boundaries::Chart Boundaries::draw_start() {
+    const bool waves = family_ == Family::waves || family_ == Family::fine_waves;
+    const double q1 = waves ? dice_.uniform(-2.0, 2.0) : dice_.uniform(-0.5, 0.9);
+    const double v1 = waves ? dice_.uniform(-2.0, 2.0) : dice_.uniform(0.2, 2.5);
+    if (in_contact_) return {q1, 0.0, v1, 0.0};
+    return {q1, dice_.log_uniform(0.01, 1.0), v1, dice_.uniform(-1.5, 0.5)};
+}
+
+Question Boundaries::question(const Chart& chart) const {
+    Question result{model_, model_->default_run(), in_contact_};
+    result.run.options.end_time = end_time_;
+    State state{result.run.q, result.run.v};
+    state.q << chart[0], 0.0;
+    state.v << chart[2], 0.0;
+    const Contact contact = Surface(*model_, result.run).at(state);
+    result.run.q << chart[0], chart[1] - contact.h;
+    result.run.v << chart[2], in_contact_ ? -contact.hdot : chart[3];
+    return result;
+}
+
+// A bouncing that settles has infinitely many impacts, however many the truth followed.
+std::string Boundaries::true_course(const Chart& chart, double end_time) const {
+    const Question asked = question(chart);
+    if (!in_contact_ && !(chart[1] > 1e-3)) return {};
+    TrueRuns runs(*model_, asked.run);
+    const Point start = point_of({asked.run.q, asked.run.v});
+    try {
+        Course course =
+            course_of(in_contact_ ? runs.run_from_contact(start, end_time) : runs.run(start, end_time), end_time);
+        for (Stretch& stretch : course.stretches)
+            if (stretch.cut) stretch.count = 0;
+        return to_text(course);
+    } catch (const std::runtime_error&) {
+        return {};
+    }
+}
+
+std::optional<std::array<Boundaries::Chart, 2>> Boundaries::bisect(Chart low, Chart high) const {
+    const std::string left = true_course(low, end_time_);
+    std::string right = true_course(high, end_time_);
+    if (left.empty() || right.empty() || left == right) return std::nullopt;
+    const auto differ = [&](double end_time) {
+        const std::string a = true_course(low, end_time), b = true_course(high, end_time);
+        return !a.empty() && !b.empty() && a != b;
+    };
+    for (int round = 0; round < 60; ++round) {
+        Chart middle;
+        for (std::size_t i = 0; i < 4; ++i) middle[i] = 0.5 * (low[i] + high[i]);
+        if (middle == low || middle == high) break;
+        const std::string course = true_course(middle, end_time_);
+        if (course.empty()) return std::nullopt;
+        (course == left ? low : high) = middle;
+        // An event at the very end of the run is a question about the end time.
+        if (round == 20 && !(differ(0.98 * end_time_) && differ(1.02 * end_time_))) return std::nullopt;
+    }
+    return std::array<Chart, 2>{low, high};
+}
+
+std::vector<Question> Boundaries::next() {
+    for (;;) {
+        draw_system();
+        for (int tries = 0; tries < 10; ++tries) {
+            const Chart from = draw_start();
+            Chart to = from;
+            for (double& number : to)
+                if (number != 0.0) number += dice_.uniform(-0.3, 0.3);
+            if (!in_contact_ && !(to[1] > 0.01)) continue;
+            const auto boundary = bisect(from, to);
+            if (!boundary) continue;
+            double norm = 0.0;
+            for (std::size_t i = 0; i < 4; ++i) norm += (to[i] - from[i]) * (to[i] - from[i]);
+            norm = std::sqrt(norm);
+            std::vector<Question> result;
+            for (int digits = 2; digits <= 13; ++digits) {
+                for (const double side : {-1.0, 1.0}) {
+                    Chart chart = (*boundary)[side < 0.0 ? 0 : 1];
+                    for (std::size_t i = 0; i < 4; ++i)
+                        chart[i] += side * std::pow(10.0, -digits) * (to[i] - from[i]) / norm;
+                    if (!in_contact_ && !(chart[1] > 1e-3)) continue;
+                    result.push_back(question(chart));
+                }
+            }
+            return result;
+        }
+    }
+}
+
+}  // namespace achilles::test
