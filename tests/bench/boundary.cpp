@@ -14,7 +14,6 @@
 #include <string_view>
 
 #include "boundary/families.hpp"
-#include "floor/floor.hpp"
 
 namespace {
 
@@ -70,38 +69,19 @@ Verdict ask(Judge34& judge, const Question& question, Way way, double tolerance,
     return judgement.verdict;
 }
 
-// Is it held to the hill although its force dips below zero?
-bool stays(const Question& question, Way way, double tolerance, bool& undecided) {
-    Run run = question.run;
-    run.options.method = way == Way::dopri5 ? Method::dopri5 : Method::taylor;
-    run.options.tolerance = tolerance;
-    const Trajectory trajectory = way == Way::eight ? by_eight(question.model, run) : simulate(question.model, run);
-    undecided = trajectory.outcome.kind == Outcome::Kind::undecided;
-    const auto hybrid = std::count_if(trajectory.phases.begin() + 1, trajectory.phases.end(),
-                                      [](const Phase& phase) { return phase.kind == Phase::Kind::hybrid; });
-    return !undecided && hybrid == 0;
-}
-
 long crest(long count) {
     fmt::print("crest: {} starts for each way, least force -0.3 of the tolerance\n", count);
     const Crest crest;
     Faults faults;
     for (const Way way : ways) {
         Dice dice(15);
-        std::map<double, std::array<long, 3>> counts;  // released, undecided, false contact
+        std::map<double, std::array<long, 3>> counts;  // by Hold
         for (long i = 0; i < count; ++i) {
-            const double tolerance = tolerances[i % 5], least = -0.3 * tolerance;
-            // Every other start is such that a step ends in the dip; of which way's steps, takes turns.
-            std::optional<Question> question;
-            const double a0 = dice.uniform(-2.0, -0.3), into = dice.uniform(-1.5, 1.5);
-            if (i % 2 == 0)
-                question =
-                    crest.start_with_a_step_into(a0, least, into, i % 4 == 0 ? Way::taylor : Way::dopri5, tolerance);
-            if (!question) question = crest.start(a0, least);
-            bool undecided = false;
-            const bool stayed = stays(*question, way, tolerance, undecided);
-            ++counts[tolerance][undecided ? 1 : stayed ? 2 : 0];
-            if (stayed) faults.add("false contact", repeat(*question, way, tolerance));
+            const double tolerance = tolerances[i % 5];
+            const Question question = crest.attack(dice, i / 5, tolerance);
+            const Hold held = hold(question, way, tolerance);
+            ++counts[tolerance][static_cast<std::size_t>(held)];
+            if (held == Hold::held) faults.add("false contact", repeat(question, way, tolerance));
         }
         for (const auto& [tolerance, numbers] : counts)
             fmt::print("  {:<7} {:>6.0e}:  {} released  {} undecided  {} FALSE CONTACT\n", to_text(way), tolerance,
@@ -120,16 +100,9 @@ long known() {
         Faults faults;
         look(known.question, known.way, known.tolerance, faults);
         std::string told = judgement.told;
-        if (judgement.verdict == Verdict::undecided && known.least_end > 0.0) {
-            Run run = known.question.run;
-            run.options.method = known.way == Way::dopri5 ? Method::dopri5 : Method::taylor;
-            run.options.tolerance = known.tolerance;
-            const double end = known.way == Way::eight ? by_eight(known.question.model, run).end_time
-                                                       : simulate(known.question.model, run).end_time;
-            if (end < known.least_end) {
-                told = fmt::format("gave up at t = {:.9g}, nothing is in doubt before {}", end, known.least_end);
-                ++wrong;
-            }
+        if (judgement.verdict == Verdict::undecided && judgement.end < known.least_end) {
+            told = fmt::format("gave up at t = {:.9g}, nothing is in doubt before {}", judgement.end, known.least_end);
+            ++wrong;
         }
         const bool right = judgement.verdict == Verdict::right || judgement.verdict == Verdict::undecided;
         wrong += right ? faults.count : faults.count + 1;

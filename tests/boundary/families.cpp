@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "floor/floor.hpp"
 #include "simulate/impact.hpp"
 
 namespace achilles::test {
@@ -80,6 +81,26 @@ std::optional<Question> Crest::start_with_a_step_into(double a0, double least, d
         a0 -= 0.9 * off;  // which moves the end by about as much
     }
     return std::nullopt;
+}
+
+Question Crest::attack(Dice& dice, long i, double tolerance) const {
+    const double a0 = dice.uniform(-2.0, -0.3), into = dice.uniform(-1.5, 1.5), least = -0.3 * tolerance;
+    std::optional<Question> steered;
+    if (i % 2 == 0)
+        steered = start_with_a_step_into(a0, least, into, i % 4 == 0 ? Way::taylor : Way::dopri5, tolerance);
+    return steered ? *steered : start(a0, least);
+}
+
+Hold hold(const Question& question, Way way, double tolerance) {
+    Run run = question.run;
+    run.options.method = way == Way::dopri5 ? Method::dopri5 : Method::taylor;
+    run.options.tolerance = tolerance;
+    const Trajectory trajectory = way == Way::eight ? by_eight(question.model, run) : simulate(question.model, run);
+    if (trajectory.outcome.kind == Outcome::Kind::undecided) return Hold::undecided;
+    // Rounding may make the start a flight of no height.
+    const bool flew = std::any_of(trajectory.phases.begin() + 1, trajectory.phases.end(),
+                                  [](const Phase& phase) { return phase.kind == Phase::Kind::hybrid; });
+    return flew ? Hold::released : Hold::held;
 }
 
 // ---- bisected starts ----

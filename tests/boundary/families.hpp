@@ -45,12 +45,19 @@ class Crest {
     // where no such start is found.
     std::optional<Question> start_with_a_step_into(double a0, double least, double into, Way way,
                                                    double tolerance) const;
+    // Start number i of the attack: the least force is -0.3 of the tolerance, and every other start is such that a step
+    // of a way simulate() takes ends in the dip.
+    Question attack(Dice& dice, long i, double tolerance) const;
 
  private:
     std::vector<double> steps(const Question& question, Way way, double tolerance) const;
     double time_to_crest(const Question& question) const;
     std::shared_ptr<const Model> model_;
 };
+
+// Whether a run from contact lets go. Its force dips below zero, so it must not be held.
+enum class Hold { released, undecided, held };
+Hold hold(const Question& question, Way way, double tolerance);
 
 // ---- bisected starts ----
 

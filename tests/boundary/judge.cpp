@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "floor/floor.hpp"
 
@@ -11,6 +12,7 @@ namespace achilles::test {
 
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 2e-15;  // no state in doubles is better known
 
 Options options_of(const Question& question, Way way, double tolerance) {
@@ -43,18 +45,12 @@ std::string repeat(const Question& question, Way way, double tolerance) {
 }
 
 std::string impossible(const Trajectory& trajectory) {
-    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
     double last = 0.0;
     for (const Event& event : trajectory.events) {
         if (event.t < last) return fmt::format("an event at {:.17g} after one at {:.17g}", event.t, last);
         last = event.t;
-        if (event.kind != Event::Kind::impact) continue;
-        put(gap, {event.q, event.v_before});
-        gap.run();
-        const double terms = std::max(1.0, event.q.cwiseAbs().maxCoeff());
-        if (!(gap.output(0) >= -1e-12 * terms))
-            return fmt::format("the impact at t = {:.17g} is stored at h = {:.3g}", event.t, gap.output(0));
     }
+    if (const std::string below = below_the_floor(trajectory); !below.empty()) return below;
     last = 0.0;
     for (const Piece& piece : trajectory.pieces) {
         if (piece.start < last || piece.end < piece.start)
@@ -95,11 +91,12 @@ Judgement Judge34::judge(Way way, double tolerance) {
     try {
         run = own_run(way, tolerance, end_time);
     } catch (const std::exception& refusal) {  // as a variant without the trajectory, eight at a time
-        return {Verdict::refused, 0.0, 0.0, refusal.what()};
+        return {Verdict::refused, 0.0, 0.0, refusal.what(), 0.0};
     }
     const bool undecided = run->outcome.kind == Outcome::Kind::undecided;
     if (!undecided && run->outcome.kind != Outcome::Kind::end_time)
-        return {Verdict::failed, 0.0, 0.0, run->outcome.message};
+        return {Verdict::failed, 0.0, 0.0, run->outcome.message, run->end_time};
+    result.end = run->end_time;
     Course own = course_of(*run, question_.in_contact), truth = course_;
     if (undecided) {
         result.verdict = Verdict::undecided;
@@ -240,21 +237,31 @@ void Judge34::measure(const Difference& difference, const Course& own, Way way, 
 // The Zeno time of the truth and the one to which it goes on from the run's own state, before the run cuts.
 bool Judge34::measure_zeno(const Difference& difference, const Course& own, Way way, double tolerance,
                            Judgement& judgement) {
-    const double before = difference.last + 0.9 * (difference.t - difference.last);
     const Stretch &claimed = own.stretches[difference.stretch], &truth = course_.stretches[difference.stretch];
+    // Where it was cut is not known of runs whose ends are kept: before the first impact it was not.
+    const double before_cut = own.timed || truth.impacts.empty() ? difference.t : truth.impacts[0];
+    const double before = difference.last + 0.9 * (before_cut - difference.last);
     const Trajectory its = own_run(way, tolerance, before);
     if (its.outcome.kind != Outcome::Kind::end_time) return false;
     const bool ended = difference.stretch + 1 < own.stretches.size();
-    const double low = ended ? claimed.zeno_low : own.end, high = ended ? claimed.zeno_high : own.end;
+    const double estimate = ended ? own.stretches[difference.stretch + 1].start : own.end;
+    const bool interval = ended && own.timed;
+    const double low = interval ? claimed.zeno_low : estimate, high = interval ? claimed.zeno_high : estimate;
     judgement.distance = std::max(low - truth.zeno_low, truth.zeno_low - high);
+    // The impact at which it is cut ends a step, whose own error no certificate covers: it moves the time by more, the
+    // lower the speed.
+    double speed = 1.0;
+    for (const TrueEvent& event : truth_.events)
+        if (event.kind != Event::Kind::release && event.t < difference.t + 1e-6)
+            speed = static_cast<double>(event.speed);
+    judgement.error = (rounding + tolerance) / std::min(1.0, speed);
     const TrueExecution rest = runs_.run(point_of(its.end), 2.0 * (truth.zeno_low - before));
-    for (const TrueEvent& event : rest.events) {
-        if (event.kind != Event::Kind::zeno) continue;
-        const double off = std::abs(before + static_cast<double>(event.t) - truth.zeno_low);
-        judgement.error = std::max(judgement.error, off);
-        return true;
-    }
-    return false;
+    double off = infinity;  // where its state does not lead to a Zeno point at all
+    for (const TrueEvent& event : rest.events)
+        if (event.kind == Event::Kind::zeno)
+            off = std::min(off, std::abs(before + static_cast<double>(event.t) - truth.zeno_low));
+    judgement.error = std::max(judgement.error, off);
+    return true;
 }
 
 // The truth goes on from its own state and from the run's, both at `before`, to where it is decided.
@@ -288,6 +295,14 @@ bool Judge34::measure_at(double before, const Difference& difference, Way way, d
     if (decisive->is_dip)
         its = near(dips(start, before, contact, decisive->t + reach), decisive->t, 0.5 * (decisive->t - before));
     if (!its) its = at(start, before, contact, decisive->t);
+    // What has no dip is decided at the end, to which the run has been.
+    const double end_time = question_.run.options.end_time;
+    if (missed && !decisive->is_dip) {
+        const Trajectory whole = own_run(way, tolerance, end_time);
+        const Real value = quantity(point_of(whole.end), contact);
+        if (whole.end_time == end_time)
+            judgement.error = std::max(judgement.error, std::abs(static_cast<double>(value - decisive->value)));
+    }
     judgement.distance = std::abs(static_cast<double>(decisive->value));
     judgement.error = std::max(judgement.error, std::abs(static_cast<double>(its->value - decisive->value)));
     return true;

@@ -43,6 +43,7 @@ struct Judgement {
     // the truth goes on from the run's own state shortly before: the run's global error, in the same unit.
     double distance = 0.0, error = 0.0;
     std::string told;  // what is wrong, for a person; empty if nothing is
+    double end = 0.0;  // how far the run came
 };
 
 class Judge34 {

@@ -154,12 +154,27 @@ std::string start_of(const Trajectory& trajectory) {
                               options.truncation.eps_v);
 }
 
+std::string below_the_floor(const Trajectory& trajectory) {
+    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
+    for (const Event& event : trajectory.events) {
+        if (event.kind != Event::Kind::impact) continue;
+        put(gap, {event.q, event.v_before});
+        gap.run();
+        const double terms = std::max(1.0, event.q.cwiseAbs().maxCoeff());
+        if (!(gap.output(0) >= -1e-12 * terms))
+            return fmt::format("the impact at t = {:.17g} is stored at h = {:.3g}", event.t, gap.output(0));
+    }
+    return {};
+}
+
 std::string fault(const Trajectory& trajectory, double between) {
     if (trajectory.outcome.kind != Outcome::Kind::end_time)
         return fmt::format("{}: {}", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     if (!(trajectory.statistics.least_gap >= -1e-12))
         return fmt::format("least gap {} at the end of a step", trajectory.statistics.least_gap);
     auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
+    const std::string stored = below_the_floor(trajectory);
+    if (!stored.empty()) return stored;
     const auto n = static_cast<std::size_t>(trajectory.model->n());
     for (const Piece& piece : trajectory.pieces) {
         if (piece.contact) continue;  // a sample is projected

@@ -28,8 +28,12 @@ class Starts {
     std::mt19937_64 random_;
 };
 
-// What is wrong with a trajectory by itself: an outcome other than the end time, or a gap below -1e-12 at the end of a
-// step, or below -`between` inside one, where dense output is an interpolation. Empty if nothing is.
+// An impact stored at a gap below -1e-12, relative to the coordinates where they are larger than 1. Empty if none is.
+std::string below_the_floor(const Trajectory& trajectory);
+
+// What is wrong with a trajectory by itself: an impact stored so, an outcome other than the end time, or a gap below
+// -1e-12 at the end of a step, or below -`between` inside one, where dense output is an interpolation. Empty if nothing
+// is.
 std::string fault(const Trajectory& trajectory, double between);
 
 // The end of a run that is simulated beside others.
