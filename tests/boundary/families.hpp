@@ -51,7 +51,6 @@ class Crest {
 
  private:
     std::vector<double> steps(const Question& question, Way way, double tolerance) const;
-    double time_to_crest(const Question& question) const;
     std::shared_ptr<const Model> model_;
 };
 
