@@ -59,23 +59,30 @@ std::optional<Question> Crest::start_with_a_step_into(double a0, double least, d
                                                       double tolerance) const {
     const double width = std::sqrt(std::abs(least) / 2.0);  // -hddot grows like (1/2) a'^2 a^2, with a' = 2
     const double aim = into * width, more = std::min(1000.0 * tolerance, 0.03);
-    for (int round = 0; round < 12; ++round) {
+    double moved = 0.0, before = 0.0;
+    std::size_t step = 0;
+    for (int round = 0; round < 20; ++round) {
         if (!(a0 < -0.05 && a0 > -2.5)) return std::nullopt;
         const auto once = steps(start(a0, least + more), way, tolerance);
         const auto twice = steps(start(a0, least + 2.0 * more), way, tolerance);
-        double off = 1e9;  // of the end nearest to the aim
-        for (std::size_t i = 0; i < std::min(once.size(), twice.size()); ++i) {
-            const double end = 2.0 * once[i] - twice[i];
-            if (std::abs(end - aim) < std::abs(off)) off = end - aim;
-        }
-        if (std::abs(off) < 0.1 * width) return start(a0, least);
-        a0 -= 0.9 * off;  // which moves the end by about as much
+        const std::size_t count = std::min(once.size(), twice.size());
+        const auto off_by = [&](std::size_t i) { return 2.0 * once[i] - twice[i] - aim; };
+        if (round == 0)  // the end nearest to the aim is the one to be moved there
+            for (std::size_t i = 1; i < count; ++i) step = std::abs(off_by(i)) < std::abs(off_by(step)) ? i : step;
+        if (step >= count) return std::nullopt;
+        const double off = off_by(step);
+        if (std::abs(off) < width) return start(a0, least);
+        // The secant method, where it can be believed.
+        const double slope = moved != 0.0 ? (off - before) / moved : 1.0;
+        moved = -off / (std::abs(slope) > 0.1 ? slope : 1.0);
+        before = off;
+        a0 += moved;
     }
     return std::nullopt;
 }
 
 Question Crest::attack(Dice& dice, long i, double tolerance) const {
-    const double a0 = dice.uniform(-2.0, -0.3), into = dice.uniform(-1.5, 1.5), least = -0.3 * tolerance;
+    const double a0 = dice.uniform(-2.0, -0.3), into = dice.uniform(-20.0, 20.0), least = -0.3 * tolerance;
     std::optional<Question> steered;
     if (i % 2 == 0)
         steered = start_with_a_step_into(a0, least, into, i % 4 == 0 ? Way::taylor : Way::dopri5, tolerance);

@@ -41,12 +41,12 @@ class Crest {
  public:
     Crest();
     Question start(double a0, double least) const;
-    // The same, but so that a step of the way ends within the dip, `into` of its half width past the crest. Nothing
+    // The same, but so that a step of the way ends `into` half widths of the dip past the crest, to within one. Nothing
     // where no such start is found.
     std::optional<Question> start_with_a_step_into(double a0, double least, double into, Way way,
                                                    double tolerance) const;
     // Start number i of the attack: the least force is -0.3 of the tolerance, and every other start is such that a step
-    // of a way simulate() takes ends in the dip.
+    // of a way simulate() takes ends near the dip, where the force is within what the integration knows of it.
     Question attack(Dice& dice, long i, double tolerance) const;
 
  private:
