@@ -68,7 +68,7 @@ std::string impossible(const Trajectory& trajectory) {
 Judge34::Judge34(const Question& question)
     : question_(question),
       motion_(*question.model, question.run),
-      runs_(*question.model, question.run),
+      runs_(*question.model, question.run, most_true_events),
       start_(point_of({question.run.q, question.run.v})),
       truth_(true_run(question.run.options.end_time)),
       course_(course_of(truth_, question.run.options.end_time)) {}
@@ -105,13 +105,24 @@ Judgement Judge34::judge(Way way, double tolerance) {
         own = until(std::move(own), limit);
         truth = until(std::move(truth), limit);
     }
+    try {
+        compare(own, truth, way, tolerance, result);
+    } catch (const std::runtime_error& unknown) {  // of the truth that goes on from the run's state
+        result.verdict = Verdict::unmeasured;
+        result.told += fmt::format("; {}", unknown.what());
+    }
+    if (!result.told.empty() && undecided) result.told += ", then undecided";
+    return result;
+}
+
+void Judge34::compare(const Course& own, const Course& truth, Way way, double tolerance, Judgement& result) {
     Impacts same;
     auto difference = first_difference(own, truth, same);
     while (difference && difference->own_time && is_its_own(*difference, way, tolerance)) {
         same.insert({difference->stretch, difference->impact});
         difference = first_difference(own, truth, same);
     }
-    if (!difference) return result;
+    if (!difference) return;
     result.told = fmt::format("{}: {} for {}", to_text(difference->kind), to_text(own), to_text(truth));
     difference = located(*difference, way, tolerance);
     if (difference) {
@@ -120,8 +131,6 @@ Judgement Judge34::judge(Way way, double tolerance) {
     } else {
         result.verdict = Verdict::unmeasured;
     }
-    if (undecided) result.told += ", then undecided";
-    return result;
 }
 
 // ---- how far it was ----
@@ -145,7 +154,8 @@ Judge34::Decisive Judge34::at(const Point& from, double time, bool contact, doub
 // The dips of the gap in free flight, whatever the floor, or of the force in contact, whatever the force: the first
 // after `enough` is the last.
 std::vector<Judge34::Decisive> Judge34::dips(const Point& from, double time, bool contact, double enough) {
-    constexpr double past = 1e-7;  // s, beyond a dip, which would be found again
+    // s, beyond a dip, which would be found again. Where the floor is flat, rounding makes dips without end.
+    double past = 1e-7;
     std::vector<Decisive> result;
     Flight flight{from, time, 0};
     const double end = question_.run.options.end_time;
@@ -160,6 +170,7 @@ std::vector<Judge34::Decisive> Judge34::dips(const Point& from, double time, boo
         flight.point = contact ? motion_.contact_at(flight.point, next, 1e-26)[0]
                                : motion_.flight_at(flight.point, next, 1e-26)[0];
         flight.time += past;
+        past = std::min(2.0 * past, 1e-3);
     }
     return result;
 }

@@ -14,6 +14,7 @@ namespace achilles::test {
 enum class Way { taylor, dopri5, eight };
 constexpr Way ways[] = {Way::taylor, Way::dopri5, Way::eight};
 std::string to_text(Way way);
+constexpr std::size_t most_true_events = 500;  // a longer truth is not waited for
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-13};
 
 // A start, and what happens from it in 34 digits.
@@ -57,6 +58,7 @@ class Judge34 {
     struct Decisive;
     TrueExecution true_run(double end_time);
     Trajectory own_run(Way way, double tolerance, double end_time) const;
+    void compare(const Course& own, const Course& truth, Way way, double tolerance, Judgement& result);
     std::optional<Difference> located(Difference difference, Way way, double tolerance) const;
     void measure(const Difference& difference, const Course& own, Way way, double tolerance, Judgement& judgement);
     bool measure_at(double before, const Difference& difference, Way way, double tolerance, Judgement& judgement);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "certify/roots.hpp"
 
@@ -149,7 +150,8 @@ Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, st
 // Every event is where a quantity comes down through zero.
 bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double expected, double tolerance) {
     Real left = longest;
-    for (; left > 0; flight.known = 0) {
+    for (int steps = 0; left > 0; flight.known = 0) {
+        if (++steps > 3000) throw std::runtime_error("the truth about this motion takes too many steps");
         const double reach = std::min(expected, static_cast<double>(left));
         const bool in_contact = until == Until::release || until == Until::least_force;
         const Coefficients path = expand(in_contact ? contact_motion_ : flight_, flight.point, reach, tolerance);
@@ -166,6 +168,7 @@ bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double e
         flight.point = sum(path, taken);
         left -= taken;
         if (event) return true;
+        expected *= 2.0;  // or a flight that lasts a million times as long as expected takes a million steps
     }
     return false;
 }

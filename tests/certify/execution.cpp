@@ -15,8 +15,9 @@ Point point_of(const State& state) {
     return point;
 }
 
-TrueRuns::TrueRuns(const Model& model, const Run& run)
+TrueRuns::TrueRuns(const Model& model, const Run& run, std::size_t most_events)
     : n_(static_cast<std::size_t>(model.n())),
+      most_events_(most_events),
       motion_(model, run),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
     if (!(e_ >= 0 && e_ <= 1)) throw std::invalid_argument("true runs need 0 <= e <= 1");
@@ -48,7 +49,8 @@ TrueExecution TrueRuns::run(double end_time, double cut) {
     if (contact_) result_.start_phase = Phase::Kind::constrained;
     expected_ = end_time;
     while (flight_.time < end_time_) {
-        if (result_.events.size() > most_events) throw std::runtime_error("the truth about this bouncing does not end");
+        if (result_.events.size() > most_events_)
+            throw std::runtime_error("the truth about this bouncing does not end");
         if (contact_) {
             stay();
         } else {
@@ -68,7 +70,7 @@ bool TrueRuns::settles(const Point& slid, const Real& acceleration, const Real& 
 void TrueRuns::fly() {
     // The lower a flight, the less it may err.
     const double rise = flight_.known == 1 ? static_cast<double>(motion_.contact(flight_.point).hdot) : 1.0;
-    const double tolerance = precision * std::min(1.0, rise);
+    const double tolerance = precision * std::clamp(rise, 1e-12, 1.0);
     if (!motion_.fly(flight_, end_time_ - flight_.time, expected_, tolerance)) {
         flight_.time = end_time_;
         return;

@@ -29,11 +29,11 @@ struct Dip {
 
 Point point_of(const State& state);
 
-// Throws std::runtime_error where a bouncing does not settle.
+// Throws std::runtime_error where there are more events than that: bouncing that does not settle.
 class TrueRuns {
  public:
     // 0 <= e <= 1.
-    TrueRuns(const Model& model, const Run& run);
+    TrueRuns(const Model& model, const Run& run, std::size_t most_events = 5000);
 
     // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut` and hddot no longer changes in
     // what is left, which is a geometric series and the plastic restart and errs by O(cut^3).
@@ -46,13 +46,12 @@ class TrueRuns {
 
  private:
     static constexpr double precision = 1e-26;  // of a step
-    static constexpr std::size_t most_events = 20000;
     TrueExecution run(double end_time, double cut);
     bool settles(const Point& slid, const Real& acceleration, const Real& rest);
     void fly();
     void stay();
 
-    std::size_t n_;
+    std::size_t n_, most_events_;
     TrueMotion motion_;
     Real e_, end_time_;
     Real cut_;
