@@ -11,21 +11,36 @@ namespace achilles {
 
 namespace {
 
-// The distance of a node from its edge; nothing where it has none.
-std::optional<Expression> distance_of(Expression function) {
+// The distances of a node from its edge and from where it shows; none where it has none. A power has both.
+std::vector<Edge> edges_of(Expression function, const char* place) {
+    Graph& graph = function.graph();
     const Graph::Node node = Builder::node(function);  // a copy: what follows makes nodes
-    const Expression argument(&function.graph(), node.a);
+    const Expression argument(&graph, node.a), half = graph.number(-1, 2);
+    const auto edge = [&](Expression distance) { return Edge{function, argument, distance, place, Edge::Kind::edge}; };
+    const auto hiding = [&](Expression u, Expression distance) {
+        return Edge{function, u, distance, place, Edge::Kind::hiding};
+    };
     switch (node.operation) {
         case Operation::sqrt:
-            return function;
-        case Operation::real_power:
+            return {edge(function)};
+        case Operation::real_power: {
+            const Expression exponent(&graph, node.b);
+            const Expression hidden = apply(Operation::exp, half * exponent * apply(Operation::log, argument));
+            return {edge(apply(Operation::sqrt, argument)), hiding(exponent, hidden)};
+        }
         case Operation::log:
-            return apply(Operation::sqrt, argument);
+            return {edge(apply(Operation::sqrt, argument))};
         case Operation::asin:
         case Operation::acos:
-            return apply(Operation::sqrt, function.graph().number(1) - power(argument, 2));
+            return {edge(apply(Operation::sqrt, graph.number(1) - power(argument, 2)))};
+        case Operation::exp:
+            return {hiding(argument, apply(Operation::exp, half * argument))};
+        case Operation::sinh:
+        case Operation::cosh:
+        case Operation::tanh:
+            return {hiding(argument, apply(Operation::cosh, argument))};
         default:
-            return std::nullopt;
+            return {};
     }
 }
 
@@ -44,12 +59,11 @@ std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
             if (!needed[id]) continue;
             const Expression function(&whole.graph(), id);
             if (is_leaf(Builder::node(function).operation)) continue;
-            const Expression argument = Builder::first(function);
-            if (!depends_on(argument, moving)) continue;
-            const auto distance = distance_of(function);
-            const auto is_known = [&](const Edge& edge) { return edge.distance == *distance; };
-            if (!distance || std::any_of(edges.begin(), edges.end(), is_known)) continue;
-            edges.push_back({function, argument, *distance, place});
+            for (const Edge& edge : edges_of(function, place)) {
+                const auto is_known = [&](const Edge& known) { return known.distance == edge.distance; };
+                if (depends_on(edge.argument, moving) && std::none_of(edges.begin(), edges.end(), is_known))
+                    edges.push_back(edge);
+            }
         }
     }
     return edges;

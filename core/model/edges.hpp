@@ -1,4 +1,4 @@
-// Functions that end at an edge, where they are not smooth: roots, logarithms, arcsines.
+// Functions that end at an edge, where they are not smooth: roots, logarithms, arcsines. And those that hide.
 //
 // sqrt(u) is smooth as long as u > 0. Where u falls below zero it has no value, which shows. Where u touches zero it
 // has a kink that no formula shows: sqrt(x^2) is |x|, and the Taylor series of it at x = -1 is that of -x, which goes
@@ -9,6 +9,14 @@
 //     asin(u), acos(u)                        d = sqrt(1 - u^2)
 //
 // The series of d changes its sign where u touches the edge, and comes close to zero where u nearly does.
+//
+// In the same way a function may hide: exp(-400 (x - 1)^2) is nothing at x = 0.6, in all the digits of the terms that a
+// series keeps, and one at x = 1. What would be a distance from where it shows falls to an eighth as soon as the
+// function has grown by a factor of 64:
+//
+//     exp(u)                        d = exp(-u/2)
+//     a^u                           d = a^(-u/2)
+//     sinh(u), cosh(u), tanh(u)     d = cosh(u)
 #pragma once
 
 #include <vector>
@@ -18,10 +26,12 @@
 namespace achilles {
 
 struct Edge {
+    enum class Kind { edge, hiding };
     Expression function;  // as it stands in T, V or h
     Expression argument;
     Expression distance;  // d: above zero where the function is smooth
     const char* place;    // "the gap", for messages
+    Kind kind;
 };
 
 // Those of T, V and h whose argument moves; derivatives have no others. Each distance once. Makes nodes in the graph of
