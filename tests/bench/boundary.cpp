@@ -3,8 +3,8 @@
 // simulating, may not stay in contact. Starts on either side of bisected boundaries, in the air and in contact, 1e-2 to
 // 1e-13 from them: each is asked by Taylor series, by dopri5 and eight at a time, at tolerances from 1e-4 to 1e-13. An
 // answer may be right, undecided, or wrong where the run's own error explains it; what is wrong though the distance to
-// the decision is more than ten times that error is printed with what repeats it, and the program exits with 1. SHARE
-// (1) scales the numbers of starts.
+// the decision is more than ten times that error, or a first impact that is off by a thousand tolerances, is printed
+// with what repeats it, and the program exits with 1. SHARE (1) scales the numbers of starts.
 #include <fmt/format.h>
 
 #include <algorithm>

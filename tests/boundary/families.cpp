@@ -143,6 +143,8 @@ Boundaries::Chart Boundaries::draw_start() {
 
 Question Boundaries::question(const Chart& chart) const {
     Question result{model_, model_->default_run(), in_contact_};
+    // A post is 0.02 to 0.05 wide, and the speed below 3.
+    if (family_ == Family::post || family_ == Family::bumps) result.longest_true_step = 0.01;
     result.run.options.end_time = end_time_;
     State state{result.run.q, result.run.v};
     state.q << chart[0], 0.0;
@@ -157,7 +159,7 @@ Question Boundaries::question(const Chart& chart) const {
 std::string Boundaries::true_course(const Chart& chart, double end_time) const {
     const Question asked = question(chart);
     if (!in_contact_ && !(chart[1] > 1e-3)) return {};
-    TrueRuns runs(*model_, asked.run, most_true_events);
+    TrueRuns runs(*model_, asked.run, most_true_events, asked.longest_true_step);
     const Point start = point_of({asked.run.q, asked.run.v});
     try {
         Course course =

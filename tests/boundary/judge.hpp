@@ -22,6 +22,7 @@ struct Question {
     std::shared_ptr<const Model> model;
     Run run;  // its tolerance and method are chosen when it is asked
     bool in_contact = false;
+    double longest_true_step = 1e300;  // s, so that the truth sees what is thin
 };
 
 // The system, the start in digits that give the same bits back, and the options.

@@ -56,6 +56,20 @@ std::vector<KnownCase> known_cases() {
     for (const Way way : ways)
         add("no force yet, but it grows", asked(growing, {0, 0}, {1, 0}, 1.0, true), way, 1e-10, 1.0);
 
+    // What a step sees of a post from afar.
+    auto post = asked(
+        written("xy", "0.783447265625*(x'^2 + y'^2)", "0.8310546875*y", "y - 0.433837890625*exp(-400*(x - 1)^2)", 0.0),
+        {0.64387333732184582, 0.075524473986082988}, {0.56605409931475426, 0.56683650087298454}, 1.5355790056475376);
+    auto short_post =
+        asked(written("xy", "0.574951171875*(x'^2 + y'^2)", "1.47705078125*y", "y - 0.0888671875*exp(-400*(x - 1)^2)",
+                      0.0625),
+              {0.33713213844737661, 0.61312292785043887}, {0.8220358199025013, -0.47686400326187373}, 0.8);
+    for (Question* question : {&post, &short_post}) {
+        question->longest_true_step = 0.01;
+        for (const Way way : ways)
+            for (const double tolerance : tolerances) add("a thin post", *question, way, tolerance);
+    }
+
     for (const char* gap : {"(2 + sin(x))*y", "y/(1 + x^2)", "exp(x)*y", "(2 + sin(x))*(y + 1)*y"}) {
         const auto flat = written("xy", "(x'^2 + y'^2)/2", "y", gap, 0.5);
         add("a gap that is a product", asked(flat, {0.3, 1.0}, {0.5, 0.0}, 6.0), Way::taylor, 1e-10, 6.0);

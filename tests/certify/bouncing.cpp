@@ -52,8 +52,9 @@ Real distance(const Reals& a, const Reals& b) {
     return sqrt(total);
 }
 
-TrueMotion::TrueMotion(const Model& model, const Run& run)
+TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step)
     : n_(static_cast<std::size_t>(model.n())),
+      longest_step_(longest_step),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)),
       flight_(model.flight(), model.layout(), run.parameters),
       contact_motion_(model.contact(), model.layout(), run.parameters),
@@ -152,7 +153,7 @@ bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double e
     Real left = longest;
     for (int steps = 0; left > 0; flight.known = 0) {
         if (++steps > 3000) throw std::runtime_error("the truth about this motion takes too many steps");
-        const double reach = std::min(expected, static_cast<double>(left));
+        const double reach = std::min({expected, static_cast<double>(left), longest_step_});
         const bool in_contact = until == Until::release || until == Until::least_force;
         const Coefficients path = expand(in_contact ? contact_motion_ : flight_, flight.point, reach, tolerance);
         double step = safe_step(path, reach, tolerance);
@@ -272,8 +273,9 @@ std::vector<Point> TrueMotion::follow(Evaluator<Series>& motion, Point point, co
             result.resize(times.size(), point);
             break;
         }
-        const Coefficients path = expand(motion, point, left, tolerance);
-        const double length = safe_step(path, left, tolerance);
+        const double reach = std::min(left, longest_step_);
+        const Coefficients path = expand(motion, point, reach, tolerance);
+        const double length = safe_step(path, reach, tolerance);
         const Real end = length < left ? Real(from + length) : times.back();
         for (; result.size() < times.size() && times[result.size()] <= end;)
             result.push_back(sum(path, times[result.size()] - from));

@@ -47,7 +47,8 @@ struct Flight {
 
 class TrueMotion {
  public:
-    TrueMotion(const Model& model, const Run& run);
+    // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that long.
+    TrueMotion(const Model& model, const Run& run, double longest_step = 1e300);
 
     // The collision that a computed state stands for: q moved along n until h = 0 to working precision, v as it is.
     Point collision(const State& before);
@@ -95,6 +96,7 @@ class TrueMotion {
     std::vector<Point> follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance);
 
     std::size_t n_;
+    double longest_step_;
     Real e_;
     Evaluator<Series> flight_, contact_motion_, gap_, release_;
     Evaluator<Real> surface_, acceleration_;

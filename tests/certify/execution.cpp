@@ -15,10 +15,10 @@ Point point_of(const State& state) {
     return point;
 }
 
-TrueRuns::TrueRuns(const Model& model, const Run& run, std::size_t most_events)
+TrueRuns::TrueRuns(const Model& model, const Run& run, std::size_t most_events, double longest_step)
     : n_(static_cast<std::size_t>(model.n())),
       most_events_(most_events),
-      motion_(model, run),
+      motion_(model, run, longest_step),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
     if (!(e_ >= 0 && e_ <= 1)) throw std::invalid_argument("true runs need 0 <= e <= 1");
 }

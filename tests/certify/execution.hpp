@@ -33,7 +33,7 @@ Point point_of(const State& state);
 class TrueRuns {
  public:
     // 0 <= e <= 1.
-    TrueRuns(const Model& model, const Run& run, std::size_t most_events = 5000);
+    TrueRuns(const Model& model, const Run& run, std::size_t most_events = 5000, double longest_step = 1e300);
 
     // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut` and hddot no longer changes in
     // what is left, which is a geometric series and the plastic restart and errs by O(cut^3).
