@@ -160,7 +160,7 @@ int main(int count, char** arguments) {
     if (only.empty() || only == "crest") faults += crest(scaled(6000));
     for (const Family family : families) {
         if (!only.empty() && to_text(family).substr(0, 4) != only.substr(0, 4)) continue;
-        for (const bool in_contact : {false, true}) faults += boundaries(family, in_contact, scaled(100));
+        for (const bool in_contact : {false, true}) faults += boundaries(family, in_contact, scaled(25));
     }
     fmt::print("{} faults\n", faults);
     return faults == 0 ? 0 : 1;

@@ -156,13 +156,13 @@ Course course_of(const TrueExecution& truth, double end_time) {
             ++stretch.count;
             continue;
         }
-        const bool zeno = event.kind == Event::Kind::zeno;
-        if (zeno) {
+        const bool settles = event.kind == Event::Kind::zeno;
+        if (settles) {
             stretch.cut = true;
             stretch.zeno_low = stretch.zeno_high = t;
         }
         Stretch next;
-        next.kind = zeno ? Phase::Kind::constrained : Phase::Kind::hybrid;
+        next.kind = settles ? Phase::Kind::constrained : Phase::Kind::hybrid;
         next.start = t;
         course.stretches.push_back(next);
     }
@@ -234,7 +234,7 @@ std::optional<Difference> first_difference(const Course& own, const Course& trut
         if (auto found = own.timed ? difference_in_flight(a, b, i, truth, same) : difference_in_count(a, b, i))
             return found;
         if (!own_ends && !truth_ends) return std::nullopt;
-        if (auto found = difference_of_zeno(own, truth, i)) return found;
+        if (auto found = difference_of_zeno(own, truth, i); found && !same.contains({i, zeno})) return found;
         // Cut, but the end came before the Zeno point.
         if (!own_ends || !truth_ends) return std::nullopt;
     }

@@ -48,7 +48,9 @@ struct Difference {
 };
 std::string to_text(Difference::Kind kind);
 
-// `same`: impacts (stretch, number) known to be the same one although their times differ.
+// `same`: impacts (stretch, number) known to be the same one although their times differ; number `zeno` is the Zeno
+// point of a stretch.
+constexpr std::size_t zeno = static_cast<std::size_t>(-1);
 using Impacts = std::set<std::pair<std::size_t, std::size_t>>;
 std::optional<Difference> first_difference(const Course& own, const Course& truth, const Impacts& same);
 

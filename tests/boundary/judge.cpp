@@ -129,8 +129,18 @@ void Judge34::compare(const Course& own, const Course& truth, Way way, double to
     }
     Impacts same;
     auto difference = first_difference(own, truth, same);
-    while (difference && difference->own_time && is_its_own(*difference, way, tolerance)) {
-        same.insert({difference->stretch, difference->impact});
+    while (difference) {
+        if (difference->own_time && is_its_own(*difference, way, tolerance)) {
+            same.insert({difference->stretch, difference->impact});
+        } else if (difference->kind == Difference::Kind::zeno_time && own.timed) {
+            // What is certified is about the run's own state, so that the interval is as wide as that is wrong.
+            Judgement off;
+            if (!measure_zeno(*difference, own, way, tolerance, off) || !(off.distance <= off.error)) break;
+            if (off.error == infinity) break;
+            same.insert({difference->stretch, zeno});
+        } else {
+            break;
+        }
         difference = first_difference(own, truth, same);
     }
     if (!difference) return;
