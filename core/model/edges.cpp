@@ -11,22 +11,18 @@ namespace achilles {
 
 namespace {
 
-// The distances of a node from its edge and from where it shows; none where it has none. A power has both.
+// What is watched of a node; nothing of most. A power has an edge and may hide.
 std::vector<Edge> edges_of(Expression function, const char* place) {
     Graph& graph = function.graph();
     const Graph::Node node = Builder::node(function);  // a copy: what follows makes nodes
-    const Expression argument(&graph, node.a), half = graph.number(-1, 2);
-    const auto edge = [&](Expression distance) { return Edge{function, argument, distance, place, Edge::Kind::edge}; };
-    const auto hiding = [&](Expression u, Expression distance) {
-        return Edge{function, u, distance, place, Edge::Kind::hiding};
-    };
+    const Expression argument(&graph, node.a);
+    const auto edge = [&](Expression d) { return Edge{function, argument, d, place, Edge::Kind::edge}; };
     switch (node.operation) {
         case Operation::sqrt:
             return {edge(function)};
         case Operation::real_power: {
-            const Expression exponent(&graph, node.b);
-            const Expression hidden = apply(Operation::exp, half * exponent * apply(Operation::log, argument));
-            return {edge(apply(Operation::sqrt, argument)), hiding(exponent, hidden)};
+            const Expression exponent(&graph, node.b), u = exponent * apply(Operation::log, argument);
+            return {edge(apply(Operation::sqrt, argument)), {function, exponent, u, place, Edge::Kind::exponential}};
         }
         case Operation::log:
             return {edge(apply(Operation::sqrt, argument))};
@@ -34,11 +30,11 @@ std::vector<Edge> edges_of(Expression function, const char* place) {
         case Operation::acos:
             return {edge(apply(Operation::sqrt, graph.number(1) - power(argument, 2)))};
         case Operation::exp:
-            return {hiding(argument, apply(Operation::exp, half * argument))};
+            return {{function, argument, argument, place, Edge::Kind::exponential}};
         case Operation::sinh:
         case Operation::cosh:
         case Operation::tanh:
-            return {hiding(argument, apply(Operation::cosh, argument))};
+            return {{function, argument, argument, place, Edge::Kind::hyperbolic}};
         default:
             return {};
     }
@@ -60,7 +56,9 @@ std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
             const Expression function(&whole.graph(), id);
             if (is_leaf(Builder::node(function).operation)) continue;
             for (const Edge& edge : edges_of(function, place)) {
-                const auto is_known = [&](const Edge& known) { return known.distance == edge.distance; };
+                const auto is_known = [&](const Edge& known) {
+                    return known.watched == edge.watched && known.kind == edge.kind;
+                };
                 if (depends_on(edge.argument, moving) && std::none_of(edges.begin(), edges.end(), is_known))
                     edges.push_back(edge);
             }

@@ -11,12 +11,9 @@
 // The series of d changes its sign where u touches the edge, and comes close to zero where u nearly does.
 //
 // In the same way a function may hide: exp(-400 (x - 1)^2) is nothing at x = 0.6, in all the digits of the terms that a
-// series keeps, and one at x = 1. What would be a distance from where it shows falls to an eighth as soon as the
-// function has grown by a factor of 64:
-//
-//     exp(u)                        d = exp(-u/2)
-//     a^u                           d = a^(-u/2)
-//     sinh(u), cosh(u), tanh(u)     d = cosh(u)
+// series keeps, and one at x = 1. So its growth is watched: no step is longer than what lets u rise by `growth` (for
+// a^b it is u = b log a), or |u| fall by half of it where it is large in sinh(u), cosh(u), tanh(u), whose differences
+// from their asymptotes are exp(-2|u|).
 #pragma once
 
 #include <vector>
@@ -26,11 +23,12 @@
 namespace achilles {
 
 struct Edge {
-    enum class Kind { edge, hiding };
+    enum class Kind { edge, exponential, hyperbolic };
+    static constexpr double growth = 4.0;
     Expression function;  // as it stands in T, V or h
     Expression argument;
-    Expression distance;  // d: above zero where the function is smooth
-    const char* place;    // "the gap", for messages
+    Expression watched;  // d, above zero where the function is smooth; or u
+    const char* place;   // "the gap", for messages
     Kind kind;
 };
 

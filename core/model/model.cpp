@@ -66,7 +66,7 @@ void Model::compile() {
     if (by_force.inner_sums() < contact_series_.inner_sums()) contact_series_ = std::move(by_force);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
-    for (const Edge& edge : edges_) distances.push_back(edge.distance);
+    for (const Edge& edge : edges_) distances.push_back(edge.watched);
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), distances.size());
 }
 

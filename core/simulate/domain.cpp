@@ -25,8 +25,8 @@ std::string undefined_among(const Model& model, const Run& run, std::span<const 
 // The first function that may come to its edge in the box, where it has a value and is not smooth; or "".
 std::string first_edge(const Model& model, const Run& run, const State& state, const Values& box) {
     for (const Edge& edge : model.edges()) {
-        if (edge.kind == Edge::Kind::hiding) continue;
-        const Program program(std::span(&edge.distance, 1), model.layout().slots());
+        if (edge.kind != Edge::Kind::edge) continue;
+        const Program program(std::span(&edge.watched, 1), model.layout().slots());
         auto distance = model.evaluator<Interval>(program, run.parameters);
         for (std::size_t i = 0; i < box.size(); ++i) distance.input(i) = box[i];
         distance.run();

@@ -22,9 +22,18 @@ double tail(const Polynomial& p) {
 }  // namespace
 
 EdgeWatch::EdgeWatch(const Model& model, const Run& run)
-    : block_(2 * static_cast<std::size_t>(model.n())),
+    : edges_(model.edges()),
+      block_(2 * static_cast<std::size_t>(model.n())),
       series_(model.edge_series(), run.parameters),
-      distances_(model.edges().size()) {}
+      distances_(edges_.size()),
+      signs_(edges_.size()) {}
+
+// What hides has a distance of its own: how much its u may still rise, or |u| fall. Small |u| hide nothing.
+double EdgeWatch::sign_of(const Edge& edge, double start) const {
+    if (edge.kind == Edge::Kind::edge) return 1.0;
+    if (edge.kind == Edge::Kind::exponential) return -1.0;
+    return std::abs(start) < Edge::growth ? 0.0 : std::copysign(2.0, start);
+}
 
 // The motion of a step is a polynomial in theta, whatever the method; so the distances are series in theta. They need
 // as many orders as it takes them to become small.
@@ -33,14 +42,18 @@ double EdgeWatch::safe_part(const Stepper& stepper) {
     const std::size_t degree = stepper.coefficients(motion_);
     motion_.resize(motion_.size() + block_, 0.0);
     series_.begin(motion_.data());
-    for (std::size_t i = 0; i < distances_.size(); ++i) distances_[i].c[0] = series_.start(i);
+    for (std::size_t i = 0; i < distances_.size(); ++i) {
+        const double start = series_.start(i);
+        signs_[i] = sign_of(edges_[i], start);
+        distances_[i].c[0] = edges_[i].kind == Edge::Kind::edge ? start : Edge::growth;
+    }
     bool known = false;
     for (int k = 1; k <= highest && !known; ++k) {
         series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree + 1) * block_);
         known = k >= lowest;
         for (std::size_t i = 0; i < distances_.size(); ++i) {
             Polynomial& distance = distances_[i];
-            distance.c[static_cast<std::size_t>(k)] = series_.output(i);
+            distance.c[static_cast<std::size_t>(k)] = signs_[i] * series_.output(i);
             distance.degree = k;
             known = known && tail(distance) < 0x1p-10 * distance.c[0];
         }
