@@ -90,7 +90,7 @@ bool Execution::stay_step(double until) {
         case Descent::Kind::open:
             // As in flight: a dip that holds the end of a step lies inside the next one.
             asked_again = !hold_.asked_again && end_step_at(descent.theta);
-            if (!asked_again && !(is_exact() && flow().end_time() >= until)) return doubt_force(descent.theta);
+            if (!asked_again && !(knows_its_start() && flow().end_time() >= until)) return doubt_force(descent.theta);
             break;
         case Descent::Kind::undecided:
             return doubt_force(descent.theta);

@@ -71,7 +71,7 @@ bool Execution::find_impact() {
             // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
             asked_again = !takeoff_.asked_again && end_step_at(descent.theta);
             if (asked_again) h = gap_along();
-            if (!asked_again && !(is_exact() && flow().end_time() >= run_.options.end_time))
+            if (!asked_again && !(knows_its_start() && flow().end_time() >= run_.options.end_time && h(1.0) >= 0.0))
                 return doubt_gap(descent.theta);
             break;
         case Descent::Kind::undecided:
