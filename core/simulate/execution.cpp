@@ -276,12 +276,11 @@ bool Execution::knows_its_start() const { return run_.options.tolerance <= least
 double Execution::state_error() const { return 0.1 * run_.options.tolerance * static_cast<double>(record_.steps()); }
 
 Execution::Beginning Execution::beginning() const {
-    return {state_, contact_, takeoff_, hold_, record_.mark(), t_, last_step_, first_step_, state_error(), stalled_};
+    return {state_, takeoff_, hold_, record_.mark(), t_, last_step_, first_step_, state_error(), stalled_};
 }
 
 void Execution::go_back(const Beginning& to) {
     state_ = to.state;
-    contact_ = to.contact;
     takeoff_ = to.takeoff;
     hold_ = to.hold;
     record_.go_back(to.recorded);

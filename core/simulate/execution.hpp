@@ -60,7 +60,6 @@ class Execution {
     // Where a stretch of motion began.
     struct Beginning {
         State state;
-        Contact contact;
         Takeoff takeoff;
         Hold hold;
         Recorder::Mark recorded;
