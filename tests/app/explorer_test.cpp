@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "app/hands.hpp"
@@ -126,12 +127,41 @@ TEST(Explorer, fits_any_window_and_shows_messages) {
     }
 }
 
-// tests/app/window_test.sh asks this where to put the mouse.
+// tests/app/window_test.sh asks this where to put the mouse in a window of this size: it holds the button down a third
+// of the way along and drags to the right by tenths of the width. So does a hand here, at the very numbers that are
+// told: g follows the mouse, and nothing else does.
 TEST(Explorer, tells_where_the_slider_of_g_is) {
-    const Hands hands("ball_on_sine");
+    Hands hands("ball_on_sine", test::surface(1280, 800));
+    ASSERT_TRUE(hands.state.places.contains("set g"));
     const Rectangle r = hands.state.places.at("set g");
-    std::printf("slider %d %d %d\n", static_cast<int>(r.x), static_cast<int>(r.y + 0.5F * r.height),
-                static_cast<int>(r.width));
+    const int x = static_cast<int>(r.x), y = static_cast<int>(r.y + 0.5F * r.height), width = static_cast<int>(r.width);
+    std::printf("slider %d %d %d\n", x, y, width);
+    ASSERT_GE(x, 0);
+    ASSERT_LE(x + width, 1280);
+    ASSERT_GE(width, 50);  // tenths of it are a drag
+
+    hands.hand.mouse_x = x + width / 3;
+    hands.hand.mouse_y = y;
+    hands.rest(2);
+    hands.hand.left = true;
+    hands.rest(2);
+    std::vector<double> followed{hands.session.run().parameters[1]};
+    for (int step = 1; step <= 4; ++step) {
+        hands.hand.mouse_x = x + width / 3 + step * width / 10;
+        hands.rest(2);
+        followed.push_back(hands.session.run().parameters[1]);
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    for (std::size_t i = 1; i < followed.size(); ++i) EXPECT_GT(followed[i], followed[i - 1]);
+    for (const Command& command : hands.all) EXPECT_EQ(to_text(command).rfind("set g ", 0), 0U) << to_text(command);
+
+    // The told width is that of the slider: from end to end g goes through its range, which is logarithmic here. The
+    // grab takes a part of the width, so it goes a little faster.
+    const auto& range = hands.session.description().parameters[1].range;
+    const double share = std::log(followed[4] / followed[1]) / std::log(range[1] / range[0]);
+    EXPECT_GE(share, 0.27);
+    EXPECT_LE(share, 0.45);
 }
 
 TEST(ExplorerOnDisplay, the_window_shows_the_bytes_of_the_picture) {

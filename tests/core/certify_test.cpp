@@ -56,6 +56,34 @@ TEST(Ranges, AreNearlyExactOverSmallBoxesAndUsableOverLargeOnes) {
     }
 }
 
+// An expression that turns back just before the end of a box is not monotone on it, however little it turns: x^2 - 2 d
+// x has its least value -d^2 at x = d, inside [0, 1], where its slope at the end is only -2 d. The same upside down and
+// mirrored. Around 0 the value changes by more than itself, so no mean-value form takes a short way.
+TEST(Ranges, KnowAnExtremumCloseToTheEndOfTheBox) {
+    Graph graph;
+    const Expression x = graph.symbol(0), d = graph.symbol(1);
+    for (const double turn : {1e-1, 1e-4, 1e-7, 1e-10})
+        for (const bool mirrored : {false, true})
+            for (const bool upside_down : {false, true}) {
+                const Expression along = mirrored ? -x : x, dip = along * along - graph.number(2) * d * along;
+                const Expression value = upside_down ? -dip : dip;
+                const std::uint32_t slot = 0;
+                const std::vector<Expression> gradient = achilles::gradient(value, std::span(&slot, 1));
+                const Slots slots{2, 1, 2};
+                const Program value_program(std::span(&value, 1), slots), gradient_program(gradient, slots);
+                Evaluator<Interval> values(value_program), slopes(gradient_program);
+                for (Evaluator<Interval>* one : {&values, &slopes}) {
+                    one->input(1) = Interval(turn);
+                    one->fix();
+                }
+                Range range(values, slopes, {slot});
+                const Interval enclosure = range.over({mirrored ? Interval(-1.0, 0.0) : Interval(0.0, 1.0)});
+                EXPECT_TRUE(enclosure.contains((upside_down ? 1.0 : -1.0) * turn * turn))
+                    << turn << mirrored << upside_down << ": [" << enclosure.lo() << ", " << enclosure.hi() << "]";
+                EXPECT_TRUE(enclosure.contains((upside_down ? -1.0 : 1.0) * (1.0 - 2.0 * turn)));
+            }
+}
+
 // Slope of log(error of the state at a fixed later time) against log(w), truncating at each impact of the first phase
 // in turn.
 double order(const std::string& system, Reinitialization kind, double later, double least_speed) {

@@ -1,6 +1,5 @@
 // Events that were decided wrongly once, or not at all: releases in a dip of the contact force, low impacts, impacts
 // under the floor, doubts told at the wrong place, and surfaces that a state could not be moved onto.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,19 +11,7 @@
 namespace achilles {
 namespace {
 
-struct Plane {
-    std::string kinetic = "1/2*(a'^2 + b'^2)", potential = "b", gap = "b", e = "0.5";
-    double a = 0.0, b = 0.0, a_rate = 0.0, b_rate = 0.0, end = 10.0;
-};
-
-std::shared_ptr<const Model> model_of(const Plane& plane) {
-    return test::typed(fmt::format(
-        "title = \"two coordinates\"\n[[coordinate]]\nname = \"a\"\nstart = {}\nrate = {}\n[[coordinate]]\nname = "
-        "\"b\"\n"
-        "start = {}\nrate = {}\n[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n[[constraint]]\ngap = \"{}\"\n"
-        "restitution = \"{}\"\n[run]\nend_time = {}\n",
-        plane.a, plane.a_rate, plane.b, plane.b_rate, plane.kinetic, plane.potential, plane.gap, plane.e, plane.end));
-}
+using test::model_of, test::Plane;
 
 Run with(const Model& model, Method method, double tolerance) {
     Run run = model.default_run();
@@ -136,6 +123,23 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
             const Trajectory trajectory = simulate(model, run);
             EXPECT_GE(count(trajectory, Event::Kind::impact), 3u);
             for (const Event& event : trajectory.events) EXPECT_GE(event.q[1], -1e-15) << to_text(method) << tolerance;
+            // Nor does a step end there, where the integrated gap is wrong by as much as the tolerance allows.
+            EXPECT_GE(trajectory.statistics.least_gap, -1e-15) << to_text(method) << tolerance;
+        }
+}
+
+// A post so thin that the series at the start does not see it: one step leads from a = 0 into it, where h(q) < 0
+// although the series of the gap says 1/2. That is no end of a step: something was met before, or cannot be told.
+TEST(Decisions, NorDoesAStepEndInsideAThinPost) {
+    for (const char* post : {"exp(-400*(a - 1)^2)", "exp(-200*(a - 1)^2)"})
+        for (const double end : {0.97, 0.99, 1.0}) {
+            const auto model =
+                model_of({.potential = "0", .gap = std::string("b - ") + post, .b = 0.5, .a_rate = 1.0, .end = end});
+            const Trajectory trajectory = simulate(model, model->default_run());
+            EXPECT_GE(trajectory.statistics.least_gap, -1e-12) << post << ", " << end;
+            EXPECT_TRUE(trajectory.outcome.kind == Outcome::Kind::undecided ||
+                        count(trajectory, Event::Kind::impact) > 0)
+                << post << ", " << end << ": " << trajectory.outcome.message;
         }
 }
 
@@ -192,6 +196,29 @@ TEST(Decisions, TimeNeverRunsBack) {
             EXPECT_LE(trajectory.end_time, trajectory.run.options.end_time) << system;
         }
     }
+}
+
+// A ball that stays where it lands, at t, and the end of the run: t + (end - t) may be the double after the end, or
+// before it. Of the heights and ends here some are rounded up, some down; the run ends at the end.
+TEST(Decisions, NorByARounding) {
+    const auto model = model_of({.e = "0", .b = 1.0});
+    auto run = model->default_run();
+    int past = 0, before = 0;
+    for (int i = 60; i <= 180; ++i)
+        for (const double end : {3.9, std::nextafter(3.9, 4.0)}) {
+            run.q[1] = 0.01 * i;
+            run.options.end_time = end;
+            const Trajectory trajectory = simulate(model, run);
+            ASSERT_EQ(trajectory.events.size(), 2u);
+            const double t = trajectory.events[1].t, sum = t + (end - t);
+            if (sum > end) ++past;
+            if (sum < end) ++before;
+            EXPECT_EQ(trajectory.end_time, end) << run.q[1];
+            ASSERT_FALSE(trajectory.pieces.empty());
+            EXPECT_EQ(trajectory.pieces.back().end, end) << run.q[1];
+        }
+    EXPECT_GE(past, 5);
+    EXPECT_GE(before, 5);
 }
 
 // dh vanishes on none of these surfaces.

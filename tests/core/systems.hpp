@@ -1,6 +1,8 @@
 // Systems and reference results for the tests.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -41,6 +43,21 @@ inline std::shared_ptr<const Model> drop() {
         "title = \"drop\"\n[[coordinate]]\nname = \"x\"\nstart = 0\n[[parameter]]\nname = \"g\"\nvalue = 1\n"
         "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"g*x\"\n"
         "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
+}
+
+// A system of two coordinates, its parts as text.
+struct Plane {
+    std::string kinetic = "1/2*(a'^2 + b'^2)", potential = "b", gap = "b", e = "0.5";
+    double a = 0.0, b = 0.0, a_rate = 0.0, b_rate = 0.0, end = 10.0;
+};
+
+inline std::shared_ptr<const Model> model_of(const Plane& plane) {
+    return typed(fmt::format(
+        "title = \"two coordinates\"\n[[coordinate]]\nname = \"a\"\nstart = {}\nrate = {}\n[[coordinate]]\nname = "
+        "\"b\"\n"
+        "start = {}\nrate = {}\n[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n[[constraint]]\ngap = \"{}\"\n"
+        "restitution = \"{}\"\n[run]\nend_time = {}\n",
+        plane.a, plane.a_rate, plane.b, plane.b_rate, plane.kinetic, plane.potential, plane.gap, plane.e, plane.end));
 }
 
 inline nlohmann::json reference(const std::string& name) {

@@ -148,6 +148,8 @@ TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
         EXPECT_GT(slope(*large, *small, &Cut::estimate_error), 2.8) << problem.key;
         EXPECT_NEAR(slope(*large, *small, &Cut::first_order_half_width), 2.0, 0.5) << problem.key;
         EXPECT_LT(small->half_width, 0.1 * small->first_order_half_width) << problem.key;
+        // The estimate is not an end of the interval but far inside.
+        EXPECT_LT(small->estimate_error, 0.1 * small->half_width) << problem.key;
     }
 }
 
@@ -159,6 +161,44 @@ TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
     const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
     EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
+}
+
+// The enclosure of third order is THEORY-truncation section 4's, evaluated here from what is printed there: with none
+// of the six terms of rho (0), with each of them alone, so that no other hides it, and with all of them (7).
+TEST(Truncation, TheThirdOrderIntervalIsThatOfTheTheory) {
+    const Trend trend{2.0, 0.3, 0.7};
+    const double e = 0.5, w = 1e-2, a_min = 1.9, a_max = 2.2, T = 0.03, a = trend.a, b = trend.b, c = trend.c;
+    const double K = (1 + e) / (1 - e), h_m = e * w * e * w / (2 * a_min);
+    const double cA = -b / (a * a), cB = -b * K / (2 * a * a), cE = cB, cC = -(b / (a * a) + c / a) / (2 * a);
+    const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
+    const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
+    const double e2 = e * std::sqrt(a_max / a_min);  // e''
+    const double z_m = w * std::sqrt(std::max(e, e2) * std::max(e, e2) + e * e * a / a_min);
+    const double d_m = std::max(std::abs(a_max - a), std::abs(a - a_min));
+    const double S = T * (std::abs(cA) + 1.09 * std::abs(cB) + std::abs(cE)) +
+                     2 * z_m * (std::abs(cC) + std::abs(cD) + std::abs(cF) + std::abs(cG));
+    for (int term = 0; term <= 7; ++term) {
+        const auto size = [&](int of) { return term == of || term == 7 ? 0.4 + 0.1 * of : 0.0; };
+        const double start = size(1), by_sigma = size(2), P = size(3), phi_mid = size(4), phi_rad = size(5),
+                     xi = size(6);
+        const Drift drift{Interval(a - start, a + 0.5 * start), Interval(c - 0.5 * by_sigma, c + by_sigma),
+                          Interval(b - P, b + 0.5 * P), Interval(-phi_mid - phi_rad, -phi_mid + phi_rad),
+                          Interval(-xi, 0.5 * xi)};
+        const double rho = start + by_sigma * w + P * T + phi_mid * h_m + phi_rad * w * T + xi * w * w * T;
+        const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), centre = estimated_wait(trend, e, w);
+        const Interval wait = third_order_wait(trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w),
+                                               Interval(0.0, T));
+        // 1e-3 for 1.09, which is rounded up. Terms that are less than that beside S are seen where b, c and d_m are 0.
+        EXPECT_LE(wait.lo(), centre - off) << term;
+        EXPECT_GE(wait.hi(), centre + off) << term;
+        EXPECT_NEAR(wait.hi() - centre, off, 1e-3 * off) << term;
+        const Interval alone = third_order_wait(
+            {a, 0.0, 0.0}, {drift.start, drift.by_sigma - Interval(c), drift.P - Interval(b), drift.Phi, drift.Xi},
+            Interval(e), Interval(a), Interval(a), Interval(w), Interval(0.0, T));
+        const double h_alone = e * w * e * w / (2 * a), T0 = 2 * e * w / (a * (1 - e));
+        const double rho_alone = rho + phi_mid * (h_alone - h_m);
+        EXPECT_NEAR(alone.hi() - T0, T * 2 * rho_alone / (a * (1 - e)), 1e-9 * T * rho_alone + 1e-15) << term;
+    }
 }
 
 }  // namespace

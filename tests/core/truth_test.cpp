@@ -282,4 +282,64 @@ TEST(Truth, EveryLieIsCaught) {
     }
 }
 
+// ---- what a certificate holds for ----
+
+// A collision at rest on the floor b = 0 of a system of two coordinates, but for the speed w, and what the sharp
+// conditions prove of it.
+struct FloorCollision {
+    FloorCollision(const Plane& plane, double w) : model(model_of(plane)), run(model->default_run()) {
+        state = {run.q, run.v};
+        state.v[1] = -w;
+        Vector s = run.v;
+        s[1] = 0.0;
+        certificate = truncation_conditions(*model, run)->widest({0.0, state, w, s, s});
+    }
+    std::shared_ptr<const Model> model;
+    Run run;
+    State state;
+    std::optional<Certificate> certificate;
+};
+
+// THEORY section 6, rounding: the certificate holds for every exact state that the computed one may stand for. Its box
+// reaches 2^-50 of a number to either side: four ulps of 1. Here hddot = -1 - 1e6 (a - 1): an ulp of a changes the Zeno
+// time by 2e-10 of itself, and a certificate of the computed state alone, whose difference a - 1 is exact, would be
+// 1e-14 of it wide.
+TEST(Truth, HoldsForEveryStateThatTheComputedOneMayStandFor) {
+    const FloorCollision floor({.potential = "b*(1 + 1000000*(a - 1))", .a = 1.0}, 1e-9);
+    ASSERT_TRUE(floor.certificate);
+    TrueMotion motion(*floor.model, floor.run);
+    for (const double ulps : {0.0, 1.0, -1.0, 4.0, -4.0}) {
+        Point start = point_of(floor.state);
+        start.q[0] += ulps * 0x1p-52;
+        const auto zeno = motion.zeno(start);
+        ASSERT_TRUE(zeno);
+        EXPECT_NEAR(static_cast<double>(zeno->time), 2e-9 * (1.0 - 1e6 * ulps * 0x1p-52), 1e-25);
+        EXPECT_GE(zeno->time, floor.certificate->zeno_low) << ulps;
+        EXPECT_LE(zeno->time, floor.certificate->zeno_high) << ulps;
+    }
+}
+
+// THEORY section 5 in closed form. Of V = b + k a b - 25 a^2 with the gap b at a = a' = 0, and k so small that hddot is
+// -1: I_h = 2 e^3 w^3/(3 (1 - e^3)), c = (0, k I_h), kap = 50, T = 2 e w/(1 - e), and so E_q = K k I_h (1, 1) and
+// E_s = E_q + k I_h (1, 0) with K = exp(kap T) - 1. T = 0.12 makes K 402; to first order it would be 6. Gronwall gives
+// so much away that no motion comes near, so it is the number that is asked for, and the truth that it is not below.
+TEST(Truth, TheShadowingBoundIsGronwalls) {
+    constexpr double k = 1e-6, w = 0.06, e = 0.5, kap = 50.0;
+    const FloorCollision floor({.potential = "b + 0.000001*a*b - 25*a^2"}, w);
+    ASSERT_TRUE(floor.certificate);
+    const double T = 2 * e * w / (1 - e), K = std::exp(kap * T) - 1;
+    const double c = k * 2 * e * e * e * w * w * w / (3 * (1 - e * e * e));
+    EXPECT_NEAR(*floor.certificate->shadowing_position, c * std::hypot(K, K), 1e-3 * c * K);
+    EXPECT_NEAR(*floor.certificate->shadowing_velocity, c * std::hypot(1 + K, K), 1e-3 * c * K);
+
+    TrueMotion motion(*floor.model, floor.run);
+    const Point collision = motion.collision(floor.state);
+    const auto zeno = motion.zeno(collision);
+    ASSERT_TRUE(zeno);
+    const Point shadow = motion.constrained(motion.restart(collision, Reinitialization::kinetic), zeno->time, 1e-25);
+    EXPECT_LE(distance(zeno->point.q, shadow.q), *floor.certificate->shadowing_position);
+    EXPECT_LE(distance(zeno->point.v, shadow.v), *floor.certificate->shadowing_velocity);
+    EXPECT_GE(distance(zeno->point.v, shadow.v), c);  // it is no less than what starts it
+}
+
 }  // namespace achilles::test
