@@ -72,6 +72,9 @@ class Execution {
     void meet_end(Polynomial& h, const Contact& contact);
     bool find_impact();
     bool end_step_at(double theta);
+    bool end_step_after(double duration);
+    bool land_under();
+    bool end_flight();
     bool doubt_gap(double theta);
     bool land_here();
     bool locate_impact(double theta);

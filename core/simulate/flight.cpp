@@ -80,11 +80,7 @@ bool Execution::find_impact() {
     const Contact contact = surface_.at(flow().end());
     Gap gap{h(1.0), h.slope(1.0) / flow().duration()};
     if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow().end())) {
-        if (contact.h < 0.0) {  // h(q) came down where the series of the gap, as good as the tolerance, did not
-            meet_end(h, contact);
-            const Descent under = first_descent(h, takeoff_.multiplicity, 0.0);
-            return under.kind == Descent::Kind::root && under.theta > 0.0 ? locate_impact(under.theta) : doubt_gap(0.0);
-        }
+        if (contact.h < 0.0) return land_under();
         gap = {contact.h, contact.hdot};
     }
     flow().add_error(h, gap);
@@ -96,8 +92,10 @@ bool Execution::find_impact() {
 
 // Makes the last step end at a part of its length, if that is a step.
 bool Execution::end_step_at(double theta) {
-    return theta > 0.0 && theta < 1.0 && flow().retake(theta * flow().duration()) == Obstacle::none;
+    return theta > 0.0 && theta < 1.0 && end_step_after(theta * flow().duration());
 }
+
+bool Execution::end_step_after(double duration) { return flow().retake(duration) == Obstacle::none; }
 
 // Whether the gap closes cannot be told from theta on: the motion goes there, and ends in doubt. Always true.
 bool Execution::doubt_gap(double theta) {
@@ -123,6 +121,20 @@ bool Execution::land_here() {
     return true;
 }
 
+// h(q) came down where the series of the gap, as good as the tolerance, did not: where it did, by bisection of the
+// step. True but where a step is too short.
+bool Execution::land_under() {
+    const double duration = flow().duration();
+    double above = 0.0, under = 1.0;
+    while (under - above > 0x1p-50) {
+        const double middle = 0.5 * (above + under);
+        if (!end_step_after(middle * duration)) break;
+        (surface_.at(flow().end()).h > 0.0 ? above : under) = middle;
+    }
+    if (!end_step_after(under * duration)) return doubt_gap(0.0);
+    return end_flight();
+}
+
 // Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. False if there is no
 // impact in the step after all (it was the dense output that dipped).
 bool Execution::locate_impact(double theta) {
@@ -144,6 +156,11 @@ bool Execution::locate_impact(double theta) {
         }
         duration = std::max(duration + correction, 0.5 * duration);
     }
+    return end_flight();
+}
+
+// The last step ends on the surface. Always true.
+bool Execution::end_flight() {
     const auto landed = surface_.project(flow().moved_end(), true);
     take(landed ? *landed : surface_.at(flow().end()));
     if (!landed) leave_contact(t_, state_);

@@ -137,6 +137,16 @@ class Search {
     }
 
  private:
+    // Where it comes down into the remainder in a piece that starts above it. The piece may end where it leaves the
+    // remainder again, to within rounding: then its end tells nothing, and the middles are asked.
+    double entry(double low, double high) const {
+        for (int i = 0; i < 50 && !(value_and_slope(p_, high).value < remainder_); ++i) {
+            const double middle = 0.5 * (low + high);
+            (value_and_slope(p_, middle).value > remainder_ ? low : high) = middle;
+        }
+        return polish(p_, remainder_, low, high);
+    }
+
     bool find(Descent::Kind kind, double theta) {
         found_ = {kind, theta};
         return true;
@@ -160,7 +170,7 @@ class Search {
             if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, 0.0, low, high));
             if (crossings_below == 0) {
                 inside_ = true;
-                since_ = polish(p_, remainder_, low, high);
+                since_ = entry(low, high);
                 return false;
             }
         }

@@ -128,19 +128,50 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
         }
 }
 
-// A post so thin that the series at the start does not see it: one step leads from a = 0 into it, where h(q) < 0
-// although the series of the gap says 1/2. That is no end of a step: something was met before, or cannot be told.
-TEST(Decisions, NorDoesAStepEndInsideAThinPost) {
-    for (const char* post : {"exp(-400*(a - 1)^2)", "exp(-200*(a - 1)^2)"})
-        for (const double end : {0.97, 0.99, 1.0}) {
-            const auto model =
-                model_of({.potential = "0", .gap = std::string("b - ") + post, .b = 0.5, .a_rate = 1.0, .end = end});
+// A wall so steep that a series at the start, cut where its terms are small, does not see it: one step leads into it,
+// where h(q) < 0 although the series of the gap says 1/2. The impact is where h(q) = 0: a^20 = 1/2.
+TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
+    for (const double end : {0.9, 0.95, 1.0}) {
+        const auto model =
+            model_of({.potential = "0", .gap = "b - a^20", .e = "0.1", .a = 0.1, .b = 0.5, .a_rate = 1.0, .end = end});
+        const Trajectory trajectory = simulate(model, model->default_run());
+        EXPECT_GE(trajectory.statistics.least_gap, -1e-12) << end;
+        ASSERT_GE(count(trajectory, Event::Kind::impact), 1u) << end << ": " << trajectory.outcome.message;
+        EXPECT_NEAR(trajectory.events[0].t, std::pow(0.5, 0.05) - 0.1, 1e-9) << end;
+        EXPECT_NEAR(trajectory.events[0].q[1], 0.5, 1e-9) << end;
+    }
+}
+
+// So is a post that a series from afar does not see, which is watched (Edge): exp(-400 (a - 1)^2) = 1/2.
+TEST(Decisions, NorInsideAThinPost) {
+    for (const double steep : {400.0, 200.0})
+        for (const double end : {0.97, 0.99, 1.0, 1.02, 3.0}) {
+            const auto model = model_of({.potential = "0",
+                                         .gap = fmt::format("b - exp(-{}*(a - 1)^2)", steep),
+                                         .b = 0.5,
+                                         .a_rate = 1.0,
+                                         .end = end});
             const Trajectory trajectory = simulate(model, model->default_run());
-            EXPECT_GE(trajectory.statistics.least_gap, -1e-12) << post << ", " << end;
-            EXPECT_TRUE(trajectory.outcome.kind == Outcome::Kind::undecided ||
-                        count(trajectory, Event::Kind::impact) > 0)
-                << post << ", " << end << ": " << trajectory.outcome.message;
+            ASSERT_GE(count(trajectory, Event::Kind::impact), 1u) << end << ": " << trajectory.outcome.message;
+            EXPECT_NEAR(trajectory.events[0].t, 1.0 - std::sqrt(std::log(2.0) / steep), 1e-9) << end;
+            EXPECT_NEAR(trajectory.events[0].q[1], 0.5, 1e-9) << end;
         }
+}
+
+// A dip that leaves the remainder at the end of a step, to within rounding, begins where it enters it.
+TEST(Decisions, ADipUpToTheEndOfAStepIsNotPassedOver) {
+    for (const double place : {4.9390187770179645, 4.9390187796429652}) {
+        const auto model = model_of({.potential = "0",
+                                     .gap = fmt::format("b + (2*(1 - cos(a - {})) - 2.9999999999999998e-15)", place),
+                                     .a_rate = 1.0,
+                                     .end = 8.0});
+        const Trajectory trajectory = simulate(model, with(*model, Method::taylor, 1e-14));
+        if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+            EXPECT_NEAR(trajectory.end_time, place, 1e-3);
+        } else {
+            EXPECT_EQ(count(trajectory, Event::Kind::impact), 1u) << place << ": " << trajectory.outcome.message;
+        }
+    }
 }
 
 // A dip to 1e-12 at t = 1: told there, or decided where 1e-14 decides it.
