@@ -96,13 +96,12 @@ ValueAndSlope value_and_slope(const Terms& p, double x) {
     return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
 }
 
-// Where p = level, between an end above and an end below, from a guess: Newton's method, kept inside the shrinking
-// bracket. After so many rounds a small step is taken to be near the root.
-double newton(const Terms& p, double level, double low, double high, double x, int rounds) {
+// The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
+// After so many rounds a small step is taken to be near the root.
+double newton(const Terms& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
-        const auto [height, slope] = value_and_slope(p, x);
-        const double value = height - level;
+        const auto [value, slope] = value_and_slope(p, x);
         if (value == 0.0) return x;
         (value > 0.0 ? low : high) = x;
         const double newtons = x - value / slope;
@@ -115,11 +114,11 @@ double newton(const Terms& p, double level, double low, double high, double x, i
     return x;
 }
 
-double polish(const Terms& p, double level, double low, double high) {
-    const double at_low = value_and_slope(p, low).value - level, at_high = value_and_slope(p, high).value - level;
+double polish(const Terms& p, double low, double high) {
+    const double at_low = value_and_slope(p, low).value, at_high = value_and_slope(p, high).value;
     if (!(at_low > 0.0)) return low;
     if (!(at_high < 0.0)) return high;
-    return newton(p, level, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
+    return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
 }
 
 // Looks through the step from left to right, in pieces that are halved until each says one thing.
@@ -137,14 +136,14 @@ class Search {
     }
 
  private:
-    // Where it comes down into the remainder in a piece that starts above it. The piece may end where it leaves the
-    // remainder again, to within rounding: then its end tells nothing, and the middles are asked.
+    // Where it comes down into the remainder in a piece that starts above it. By bisection: the piece may end where it
+    // leaves the remainder again, to within rounding, and Newton's method would as soon go there.
     double entry(double low, double high) const {
-        for (int i = 0; i < 50 && !(value_and_slope(p_, high).value < remainder_); ++i) {
+        for (int i = 0; i < 52; ++i) {
             const double middle = 0.5 * (low + high);
             (value_and_slope(p_, middle).value > remainder_ ? low : high) = middle;
         }
-        return polish(p_, remainder_, low, high);
+        return low;
     }
 
     bool find(Descent::Kind kind, double theta) {
@@ -167,7 +166,7 @@ class Search {
         }
         if (!inside_ && rises_and_falls == 0 && starts_above) return false;
         if (!inside_ && rises_and_falls == 1 && starts_above) {
-            if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, 0.0, low, high));
+            if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, low, high));
             if (crossings_below == 0) {
                 inside_ = true;
                 since_ = entry(low, high);
@@ -177,7 +176,7 @@ class Search {
         if (inside_ && !starts_above) {
             if (rises_and_falls == 0 && crossings_below == 0) return below && find(Descent::Kind::root, low);
             if (rises_and_falls == 0 && crossings_below == 1 && below)
-                return find(Descent::Kind::root, polish(p_, 0.0, since_, high));
+                return find(Descent::Kind::root, polish(p_, since_, high));
             if (rises_and_falls == 1 && crossings_below == 0) {
                 if (!starts_inside_) return find(Descent::Kind::undecided, since_);
                 inside_ = starts_inside_ = false;
@@ -221,7 +220,7 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
         const bool steady = least_slope > 3.0 * largest_slope;  // the slope changes by a factor of three at most
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * p.c[2]));
         return {Descent::Kind::root,
-                newton(p, 0.0, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
+                newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
     }
     return Search(p, remainder).run();
 }
