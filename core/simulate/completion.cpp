@@ -15,6 +15,7 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     state_ = {collision.before.q, collision.restart};
     record_.stretch(state_);
     hold_ = {};
+    cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
     event.t = certificate.zeno_time;

@@ -43,7 +43,7 @@ bool Execution::restart(const Run& run) {
     run_ = run;
     if (conditions_) conditions_->forget();
     record_.restart(model_, run_);
-    t_ = last_step_ = first_step_ = proving_ = 0.0;
+    t_ = last_step_ = first_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = 0;
     other_evaluations_ = -flow_.evaluations() - (exact_ ? exact_->evaluations() : 0);
     state_ = {run.q, run.v};
@@ -272,8 +272,10 @@ bool Execution::is_exact() const { return exactly_ || knows_its_start(); }
 bool Execution::knows_its_start() const { return run_.options.tolerance <= least_tolerance; }
 
 // What the steps so far may have made the state wrong by, relative to its size: a tenth of the tolerance each, as
-// measured.
-double Execution::state_error() const { return 0.1 * run_.options.tolerance * static_cast<double>(record_.steps()); }
+// measured; and what the cuts of bouncings have, as certified.
+double Execution::state_error() const {
+    return 0.1 * run_.options.tolerance * static_cast<double>(record_.steps()) + cut_error_;
+}
 
 Execution::Beginning Execution::beginning() const {
     return {state_, takeoff_, hold_, record_.mark(), t_, last_step_, first_step_, state_error(), stalled_};

@@ -133,6 +133,7 @@ class Execution {
     double last_step_ = 0.0;      // s
     double first_step_ = 0.0;     // of the next flight: the predicted flight; 0: not known
     double proving_ = 0.0;        // s, the clock's
+    double cut_error_ = 0.0;      // of the state, by the cuts so far: what is certified at their Zeno times
     long other_evaluations_ = 0;  // than those of the flow since it was made
     State state_;
     Contact contact_;  // at state_, in flight and where it ends

@@ -1,5 +1,6 @@
 #include "simulate/simulate.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "number/ground.hpp"
@@ -28,8 +29,8 @@ Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Wa
 
 }  // namespace
 
-// What is undecided may be so since the state had become wrong before: then the whole run is made once more, as exactly
-// as double precision allows.
+// What is undecided may be so since the state had become wrong before, by steps or by a cut: then the whole run is made
+// once more, as exactly as double precision allows.
 Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
     const Ground ground;
     model->check(run);
@@ -40,6 +41,8 @@ Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* w
     if (trajectory.outcome.kind == Outcome::Kind::undecided && used.options.tolerance > Execution::least_tolerance) {
         Run exact = used;
         exact.options.tolerance = Execution::least_tolerance;
+        for (double* eps : {&exact.options.truncation.eps_q, &exact.options.truncation.eps_v})
+            *eps = std::min(*eps, 1e-12);
         trajectory = execute(model, exact, watch, keep);
         trajectory.run = used;
     }
