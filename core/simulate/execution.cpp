@@ -27,13 +27,13 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep)
     : model_(std::move(model)),
-      run_(run),
       watch_(watch),
+      run_(run),
+      state_{run.q, run.v},
       flow_(*model_, run_),
-      surface_(*model_, run_),
       record_(model_, run_, keep),
-      restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)),
-      state_{run.q, run.v} {}
+      surface_(*model_, run_),
+      restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)) {}
 
 bool Execution::restart(const Run& run) {
     const Options &now = run_.options, &next = run.options;

@@ -121,13 +121,16 @@ class Execution {
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
-    Run run_;
     Watch* watch_;
+    Run run_;
+    State state_;
+    Contact contact_;  // at state_, in flight and where it ends
     Flow flow_;
-    std::unique_ptr<Flow> exact_;  // made where a stretch is first in doubt
-    Surface surface_;
-    std::unique_ptr<TruncationConditions> conditions_;
     Recorder record_;
+    std::optional<Event> completion_;  // the Zeno event that the run is on its way to
+    std::unique_ptr<Flow> exact_;      // made where a stretch is first in doubt
+    std::unique_ptr<TruncationConditions> conditions_;
+    Surface surface_;
     double restitution_;
     double t_ = 0.0;
     double last_step_ = 0.0;      // s
@@ -135,16 +138,13 @@ class Execution {
     double proving_ = 0.0;        // s, the clock's
     double cut_error_ = 0.0;      // of the state, by the cuts so far: what is certified at their Zeno times
     long other_evaluations_ = 0;  // than those of the flow since it was made
-    State state_;
-    Contact contact_;  // at state_, in flight and where it ends
     Takeoff takeoff_;
-    Hold hold_;
-    std::optional<Event> completion_;  // the Zeno event that the run is on its way to
     std::optional<Outcome> outcome_;
     std::optional<std::string> doubt_;  // what cannot be told in the stretch that is made
-    bool exactly_ = false;              // it is made for the second time
-    bool asks_again_ = true;            // whether it may be
-    int stalled_ = 0;                   // steps in a row that were as short as the resolution of t
+    Hold hold_;
+    int stalled_ = 0;         // steps in a row that were as short as the resolution of t
+    bool exactly_ = false;    // the stretch is made for the second time
+    bool asks_again_ = true;  // whether it may be
     bool constrained_ = false;
     bool at_impact_ = false;  // the next flight has length zero: the run starts in a collision
 };

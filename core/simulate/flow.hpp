@@ -63,13 +63,13 @@ class Flow {
     const Model* model_;
     std::vector<double> parameters_;
     std::array<std::optional<Evaluator<double>>, 2> acceleration_;  // of a Motion, at the end of a step
+    double t_ = 0.0, span_ = 0.0, end_ = 0.0;                       // end: t + span, as it is rounded
+    double first_ = 0.0;                                            // bound on the next step; 0: none
+    mutable State to_;                                              // the end of the last step,
+    Gap gap_;                                                       // in flight, at `to`
     Motion motion_ = Motion::flight;
-    double t_ = 0.0, span_ = 0.0, end_ = 0.0;  // end: t + span, as it is rounded
-    double first_ = 0.0;                       // bound on the next step; 0: none
-    mutable State to_;                         // the end of the last step,
-    mutable bool fetched_ = true;              // once it has been asked for
-    Gap gap_;                                  // in flight, at `to`
-    bool moved_ = false;                       // the end is not where the stepper left it
+    mutable bool fetched_ = true;  // the end has been asked for
+    bool moved_ = false;           // it is not where the stepper left it
 };
 
 }  // namespace achilles
