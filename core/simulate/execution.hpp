@@ -69,7 +69,6 @@ class Execution {
 
     void start_in_contact(const Surface::Normal& normal);
     Polynomial gap_along();
-    void meet_end(Polynomial& h, const Contact& contact);
     bool find_impact();
     bool end_step_at(double theta);
     bool end_step_after(double duration);

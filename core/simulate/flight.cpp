@@ -23,17 +23,6 @@ void Execution::fly_to_impact() {
     if (!outcome_) land();
 }
 
-// Makes the polynomial of the gap end where h(q) does. Added is theta^m (value - b + b theta), with the value and slope
-// that it lacks at 1, and nothing below theta^m.
-void Execution::meet_end(Polynomial& h, const Contact& contact) {
-    const double value = contact.h - h(1.0), slope = contact.hdot * flow().duration() - h.slope(1.0);
-    const int m = std::max(2, takeoff_.multiplicity);
-    const double b = slope - m * value;
-    while (h.degree < m + 1) h.c[static_cast<std::size_t>(++h.degree)] = 0.0;
-    h.c[static_cast<std::size_t>(m)] += value - b;
-    h.c[static_cast<std::size_t>(m + 1)] += b;
-}
-
 // The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
 // leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
 // better (the difference is above its rounding), the polynomial is made to end there.
@@ -42,7 +31,14 @@ Polynomial Execution::gap_along() {
     for (int j = 0; j < takeoff_.multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
     if (flow().is_expansion()) return h;
     const Contact contact = surface_.at(flow().end());
-    if (!surface_.within_gap_error(contact.h - h(1.0), 4.0, contact, flow().end())) meet_end(h, contact);
+    const double value = contact.h - h(1.0), slope = contact.hdot * flow().duration() - h.slope(1.0);
+    if (!surface_.within_gap_error(value, 4.0, contact, flow().end())) {
+        // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
+        const int m = std::max(2, takeoff_.multiplicity);
+        const double b = slope - m * value;
+        h.c[static_cast<std::size_t>(m)] += value - b;
+        h.c[static_cast<std::size_t>(m + 1)] += b;
+    }
     return h;
 }
 
