@@ -19,6 +19,7 @@ struct SimulateArguments {
     std::string system, json, csv;
     std::vector<std::string> settings;
     OptionOverrides overrides;
+    bool verbose = false;
     int width = 0, height = 0;  // common options (INTERFACE section 2) that mean nothing here
     double scale = 1.0;
 };
@@ -42,6 +43,10 @@ int run(const SimulateArguments& arguments) {
         files.put("-", summary(trajectory));
     }
     files.commit();
+    // Not in the files: the same run gives the same bytes.
+    if (arguments.verbose)
+        fmt::print(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
+                   trajectory.statistics.certificate_seconds);
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
@@ -58,6 +63,7 @@ void add_simulate(CLI::App& program, int& status) {
     command->add_option("--json", arguments->json, "where to write the trajectory as JSON; - is standard output")
         ->type_name("F");
     command->add_option("--csv", arguments->csv, "where to write it as CSV")->type_name("F");
+    command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
     add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures; no effect here");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = run(*arguments); });

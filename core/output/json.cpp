@@ -128,8 +128,7 @@ std::string to_json(const Trajectory& trajectory) {
           {"evaluations", s.evaluations},
           {"impacts", s.impacts},
           {"energy_drift", number(s.energy_drift)},
-          {"least_gap", number(s.least_gap)},
-          {"seconds", number(s.seconds)}}},
+          {"least_gap", number(s.least_gap)}}},
         {"assumed",  // by the certificates
          {{"arithmetic", "IEEE 754 double, round to nearest"},
           {"ulps", rounding::libm},

@@ -239,6 +239,16 @@ TEST(Cli, JsonHasTheContractsKeys) {
     FAIL() << "no Zeno event";
 }
 
+// How long a run took is told to a person who asks, not to its files.
+TEST(Cli, TheSameRunGivesTheSameBytes) {
+    const Folder folder;
+    const Answer first = folder.run("simulate double_pendulum --json -");
+    const Answer second = folder.run("simulate double_pendulum --json - --verbose");
+    EXPECT_EQ(first.out, second.out);
+    EXPECT_EQ(first.err, "");
+    EXPECT_NE(second.err.find(" s, of these "), std::string::npos) << second.err;
+}
+
 TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     const Folder folder;
     folder.put("drop.toml", drop + "[run]\nend_time = 3.0\n[truncation]\neps_q = 1e-5\neps_v = 1e-5\n");
