@@ -97,6 +97,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     const auto [begin, end] = strings[random() % strings.size()];
     std::vector<std::uint8_t> inner(data + begin, data + end);
     inner.resize(inner.size() + (most - size));
+    if (inner.empty()) return LLVMFuzzerMutate(data, size, most);  // an empty string, and no room for it to grow
     inner.resize(LLVMFuzzerMutate(inner.data(), end - begin, inner.size()));
     constexpr std::string_view words = "+-*/^()'. 0123456789";
     for (std::uint8_t& byte : inner)
