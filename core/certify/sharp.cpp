@@ -251,14 +251,21 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     }
     c.position_bound = sqrt(q).hi();
     c.velocity_bound = sqrt(v).hi();
-    c.shadowing_position = norm(shadow_.E_q).hi();
-    c.shadowing_velocity = norm(shadow_.E_s).hi();
-    c.uniform_position = norm(shadow_.uniform).hi();
+    const Interval position = norm(shadow_.E_q), velocity = norm(shadow_.E_s), uniform = norm(shadow_.uniform);
+    // A derivative without a value somewhere in X is in one of them, though the largest of several may have lost it:
+    // then nothing is claimed of the shadowing.
+    const bool shadowed = position.is_defined() && velocity.is_defined() && uniform.is_defined();
+    if (shadowed) {
+        c.shadowing_position = position.hi();
+        c.shadowing_velocity = velocity.hi();
+        c.uniform_position = uniform.hi();
+    }
+    constexpr double none = std::numeric_limits<double>::infinity();
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
     c.inequalities = {{"time bound", time.half_width(), truncation_.eps_t},
-                      {"position bound", *c.uniform_position, truncation_.eps_q},
-                      {"velocity bound", *c.shadowing_velocity, truncation_.eps_v},
+                      {"position bound", c.uniform_position.value_or(none), truncation_.eps_q},
+                      {"velocity bound", c.shadowing_velocity.value_or(none), truncation_.eps_v},
                       {"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0},
                       {"normal acceleration", -c.a_min, 0.0}};
     name_decisive(c);
@@ -267,7 +274,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
 
 std::optional<Certificate> SharpConditions::certify(const Collision& collision) {
     auto certificate = prove(collision);
-    if (!certificate) return std::nullopt;
+    if (!certificate || !certificate->uniform_position) return std::nullopt;
     const double time = certificate->inequalities[0].left / truncation_.eps_t;
     const double position = *certificate->uniform_position / truncation_.eps_q;
     const double velocity = *certificate->shadowing_velocity / truncation_.eps_v;

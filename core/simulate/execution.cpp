@@ -266,8 +266,6 @@ void Execution::leave_contact(double t, const State& state) {
 // What the flow integrates with: the run's tolerance, or the least that there is where a stretch is made again.
 Flow& Execution::flow() { return exactly_ ? *exact_ : flow_; }
 
-bool Execution::is_exact() const { return exactly_ || knows_its_start(); }
-
 // As well as can be: all that led there was as exact.
 bool Execution::knows_its_start() const { return run_.options.tolerance <= least_tolerance; }
 
@@ -294,7 +292,7 @@ void Execution::go_back(const Beginning& to) {
 
 // The stretch that was made since is in doubt: true if it may be made again, as exactly as double precision allows.
 bool Execution::try_exactly(const Beginning& since) {
-    if (is_exact() || !asks_again_) return false;
+    if (exactly_ || knows_its_start() || !asks_again_) return false;
     if (!exact_) {
         Run run = run_;
         run.options.tolerance = least_tolerance;

@@ -104,7 +104,6 @@ class Execution {
     void release();
 
     Flow& flow();
-    bool is_exact() const;
     bool knows_its_start() const;
     double state_error() const;
     Beginning beginning() const;

@@ -91,6 +91,30 @@ TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
     }
 }
 
+// After a bouncing that was cut, the contact force dips to less than the cut has made wrong (1e-10): the true motion is
+// released for an instant at t = 0.74854, and the one that is drawn would stay until 0.92694.
+TEST(Decisions, WhatACutMadeWrongDecidesNothing) {
+    const auto model =
+        model_of({.kinetic = "0.5498046875*a'^2 + 0.482421875*b'^2",
+                  .potential = "1.462890625*b - 0.30517578125*a",
+                  .gap = "b - 0.00121307373046875*sin(34.666259765625*a) - 0.2373046875*cos(1.49609375*a)",
+                  .e = "0.0625",
+                  .a = -0.35020769547921282,
+                  .b = 0.24183519816013632,
+                  .a_rate = 0.85542267914520842,
+                  .b_rate = -0.91234390916457708,
+                  .end = 1.3823409117317282});
+    for (const double tolerance : tolerances) {
+        const Trajectory trajectory = simulate(model, with(*model, Method::taylor, tolerance));
+        const auto releases = test::events_of(trajectory, Event::Kind::release);
+        if (releases.empty()) {
+            EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::undecided) << tolerance;
+        } else {
+            EXPECT_NEAR(releases[0].t, 0.7485, 1e-4) << tolerance;
+        }
+    }
+}
+
 // The last step ends under the floor, by more than a run at 1e-4 knows of it: in doubt until the run is made again.
 TEST(Decisions, ARunDoesNotEndUnderTheFloor) {
     const auto model = model_of({.kinetic = "0.604248046875*(a'^2 + b'^2)",

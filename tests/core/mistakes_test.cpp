@@ -4,9 +4,12 @@
 #include <ostream>
 
 #include "model/model.hpp"
+#include "systems.hpp"
 
 namespace achilles {
 namespace {
+
+using test::told;
 
 const std::string good = R"toml(title = "drop"
 [[coordinate]]
@@ -48,17 +51,6 @@ std::string changed(std::string text, const std::vector<std::pair<std::string, s
         text.replace(at, from.size(), to);
     }
     return text;
-}
-
-// What is told about a text, from the reading to the start of a run; "" if nothing is wrong.
-std::string told(const std::string& text) {
-    try {
-        const Model model(parse_system(text, "f.toml"));
-        model.check(model.default_run());
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 TEST(GoodText, HasNoMistake) { EXPECT_EQ(told(good), ""); }

@@ -10,21 +10,13 @@
 namespace achilles {
 namespace {
 
+using test::told;
+
 std::string text_with(const std::string& mass, const std::string& kinetic, const std::string& potential,
                       const std::string& gap) {
     return "title = \"edge\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[parameter]]\nname = \"m\"\nvalue = " + mass +
            "\n[lagrangian]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential +
            "\"\n[[constraint]]\ngap = \"" + gap + "\"\nrestitution = 0.5\n";
-}
-
-std::string told(const std::string& text) {
-    try {
-        const Model model(parse_system(text, "f.toml"));
-        model.check(model.default_run());
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 // ---- small parameters ----

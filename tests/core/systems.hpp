@@ -37,6 +37,17 @@ inline std::shared_ptr<const Model> typed(const std::string& text) {
     return std::make_shared<const Model>(parse_system(text, "typed.toml"));
 }
 
+// What is told about a text, from the reading to the start of a run; "" if nothing is wrong.
+inline std::string told(const std::string& text) {
+    try {
+        const Model model(parse_system(text, "f.toml"));
+        model.check(model.default_run());
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
 // A drop onto the floor x = 0: hddot = -g.
 inline std::shared_ptr<const Model> drop() {
     return typed(

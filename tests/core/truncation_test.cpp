@@ -153,6 +153,22 @@ TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
     }
 }
 
+// So small in its units that a_min^2 is nothing: the time and the place of the Zeno point are bounded, the shadowing is
+// not, and then nothing is claimed of it and nothing is cut for it.
+TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
+    const auto model = test::drop();
+    auto run = model->default_run();
+    run.parameters[0] = 1e-290;
+    const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
+    const Collision collision{0.0, {q, v}, 1e-295, s, s};
+    const auto conditions = truncation_conditions(*model, run);
+    EXPECT_FALSE(conditions->hold(collision));
+    const auto widest = conditions->widest(collision);
+    ASSERT_TRUE(widest);
+    EXPECT_GT(widest->position_bound, 0.0);
+    EXPECT_FALSE(widest->shadowing_position || widest->shadowing_velocity || widest->uniform_position);
+}
+
 // (E) is what the exact identity gives: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
 TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     const Trend trend{2.0, 0.3, 0.7};
