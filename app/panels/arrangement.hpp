@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "figure/sheet.hpp"
-#include "scene.hpp"
+#include "session/scene.hpp"
 
 namespace achilles {
 

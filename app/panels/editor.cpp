@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/input_error.hpp"
 #include "panels/widgets.hpp"
 #include "surface/interface.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 

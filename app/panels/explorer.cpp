@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include "history.hpp"
 #include "panels/arrangement.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
+#include "session/history.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "paint/paint.hpp"
-#include "session.hpp"
+#include "session/session.hpp"
 
 namespace achilles {
 

@@ -11,6 +11,7 @@
 #include "paint/label.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

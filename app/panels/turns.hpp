@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "expression/program.hpp"
 #include "model/derive.hpp"
+#include "program/program.hpp"
 
 namespace achilles {
 

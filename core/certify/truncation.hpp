@@ -7,7 +7,7 @@
 #include "certify/zeno_time.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

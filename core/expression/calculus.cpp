@@ -1,7 +1,12 @@
 // Derivatives and substitution: one pass over the nodes below an expression, in the order of their ids.
+#include <algorithm>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
 
+#include "expression/functions.hpp"
 #include "expression/graph.hpp"
+#include "expression/scalar.hpp"
 
 namespace achilles {
 
@@ -170,6 +175,54 @@ bool is_constant(Expression expression) {
     for (std::uint32_t id = 0; id < needed.size(); ++id)
         if (needed[id] && expression.graph().node(id).operation == Op::symbol) return false;
     return true;
+}
+
+double value_of_constant(Expression expression) {
+    const Graph& graph = expression.graph();
+    const std::vector<bool> needed = reachable(std::span(&expression, 1));
+    std::vector<double> values(needed.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::uint32_t id = 0; id < needed.size(); ++id) {
+        if (!needed[id]) continue;
+        const Graph::Node& node = graph.node(id);
+        const double a = is_leaf(node.operation) ? 0.0 : values[node.a];
+        const double b = is_binary(node.operation) ? values[node.b] : 0.0;
+        switch (node.operation) {
+            case Op::number:
+                values[id] = graph.constant(id).nearest;
+                break;
+            case Op::pi:
+                values[id] = std::numbers::pi;
+                break;
+            case Op::symbol:
+                break;
+            case Op::add:
+                values[id] = a + b;
+                break;
+            case Op::subtract:
+                values[id] = a - b;
+                break;
+            case Op::multiply:
+                values[id] = a * b;
+                break;
+            case Op::divide:
+                values[id] = a / b;
+                break;
+            case Op::negate:
+                values[id] = -a;
+                break;
+            case Op::power:
+                values[id] = integer_power(a, node.exponent);
+                break;
+            case Op::real_power:
+                values[id] = std::pow(a, b);
+                break;
+            default:
+                values[id] = std::find_if(functions.begin(), functions.end(), [&](const Function& f) {
+                                 return f.operation == node.operation;
+                             })->value(a);
+        }
+    }
+    return values.back();
 }
 
 }  // namespace achilles

@@ -133,6 +133,8 @@ bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
 
 // True if the value depends on no symbol at all.
 bool is_constant(Expression expression);
+// The value of such an expression in doubles, not a number for any other.
+double value_of_constant(Expression expression);
 
 // The expression as text that parse() reads back; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);

@@ -4,9 +4,8 @@
 #include <array>
 #include <cctype>
 
-#include "expression/function_names.hpp"
+#include "expression/functions.hpp"
 #include "expression/nearest.hpp"
-#include "expression/program.hpp"
 
 namespace achilles {
 
@@ -134,20 +133,13 @@ class Parser {
     }
 
     Expression raise(Expression base, Expression exponent, std::size_t where) {
-        if (!is_constant(exponent) && !(is_constant(base) && value_of(base) > 0.0))
+        if (!is_constant(exponent) && !(value_of_constant(base) > 0.0))
             throw ParseError(where, "the exponent of '^' must be a number, or its base a positive number");
         try {
             return real_power(base, exponent);
         } catch (const std::domain_error&) {
             throw ParseError(where, "division by zero: a negative power of 0");
         }
-    }
-
-    static double value_of(Expression e) {
-        const Program program(std::span(&e, 1), Slots{});
-        Evaluator<double> evaluator(program);
-        evaluator.fix();
-        return evaluator.output(0);
     }
 
     Expression atom() {
@@ -206,8 +198,8 @@ class Parser {
         while (peek() == '\'') ++at_;
         const std::string_view full = text_.substr(begin, at_ - begin);
         skip_space();
-        for (const auto& [word, function] : functions)
-            if (word == full) return call(word, function, begin);
+        for (const Function& function : functions)
+            if (function.name == full) return call(function.name, function.operation, begin);
         if (full == "pi") return graph_.pi();
         const auto found = scope_.allowed.find(full);
         if (found != scope_.allowed.end()) {
@@ -237,7 +229,7 @@ class Parser {
                 in_quotes(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
                 bare);
         std::vector<std::string> known;
-        for (const auto& [word, function] : functions) known.emplace_back(word);
+        for (const Function& function : functions) known.emplace_back(function.name);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
             const std::string hint = bare == "ln" ? "; did you mean 'log'?" : did_you_mean(bare, known);
             throw ParseError(begin, "unknown function " + in_quotes(full) + hint);
@@ -267,7 +259,7 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
 }
 
 bool is_reserved(std::string_view name) {
-    const auto is_name_of = [&](const auto& entry) { return entry.first == name; };
+    const auto is_name_of = [&](const auto& entry) { return entry.name == name; };
     return std::find(reserved.begin(), reserved.end(), name) != reserved.end() ||
            std::find(not_smooth.begin(), not_smooth.end(), name) != not_smooth.end() ||
            std::find_if(functions.begin(), functions.end(), is_name_of) != functions.end();

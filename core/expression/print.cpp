@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "expression/function_names.hpp"
+#include "expression/functions.hpp"
 #include "expression/graph.hpp"
 #include "expression/notation.hpp"
 
@@ -122,7 +122,7 @@ Written write_real_power(const Written& base, const Written& exponent, Notation 
 }
 
 Written write_function(Operation function, const Written& argument, Notation notation) {
-    for (const auto& [name, operation] : functions) {
+    for (const auto& [name, operation, value] : functions) {
         if (operation != function) continue;
         if (notation == Notation::text) return {fmt::format("{}({})", name, argument.text), 5, {}};
         if (function == Op::sqrt) return {fmt::format("\\sqrt{{{}}}", argument.text), 5, {}};

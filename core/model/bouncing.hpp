@@ -8,8 +8,8 @@
 // In every program here the slots of v hold s, and the slot sigma holds hdot.
 #pragma once
 
-#include "expression/program.hpp"
 #include "model/derive.hpp"
+#include "program/program.hpp"
 
 namespace achilles {
 

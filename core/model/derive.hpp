@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "expression/program.hpp"
+#include "program/program.hpp"
 
 namespace achilles {
 

@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
-#include "model/mistakes.hpp"
 #include "model/read_expressions.hpp"
 #include "number/ground.hpp"
+#include "system/mistakes.hpp"
 
 namespace achilles {
 

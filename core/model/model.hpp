@@ -16,13 +16,14 @@
 #include <vector>
 
 #include "expression/parse.hpp"
-#include "expression/program.hpp"
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
-#include "model/description.hpp"
 #include "model/edges.hpp"
+#include "program/program.hpp"
+#include "run/trajectory.hpp"
+#include "series/lane_stepper.hpp"
 #include "series/series.hpp"
-#include "trajectory.hpp"
+#include "system/description.hpp"
 
 namespace achilles {
 
@@ -52,6 +53,7 @@ class Model {
     // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
     const SeriesProgram& flight_series() const { return flight_series_; }
     const SeriesProgram& contact_series() const { return contact_series_; }
+    LanePrograms lane_programs() const { return {layout_.n, flight_series_, contact_series_, surface_}; }
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "expression/expression.hpp"
-#include "vector.hpp"
+#include "run/state.hpp"
 
 namespace achilles {
 

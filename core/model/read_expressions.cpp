@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "expression/graph.hpp"
-#include "expression/program.hpp"
-#include "model/input_error.hpp"
 #include "model/rate_polynomial.hpp"
+#include "program/program.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -246,26 +246,13 @@ void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& mak
 // A restitution that no parameter changes. One that parameters change is looked at when a run starts.
 void check_restitution(const Text& text, Expression restitution) {
     if (!is_constant(restitution)) return;
-    const Program program(std::span(&restitution, 1), Slots{});
-    Evaluator<double> evaluator(program);
-    evaluator.fix();
-    const double e = evaluator.output(0);
+    const double e = value_of_constant(restitution);
     if (!(e >= 0.0 && e <= 1.0))
         throw Mistake{text.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e),
                       "0 is plastic, 1 is elastic"};
 }
 
 }  // namespace
-
-Location place_in(const Text& text, std::size_t offset) {
-    Location at = text.at;
-    for (std::size_t i = 0; i < offset && i < text.text.size(); ++i) {
-        if ((static_cast<unsigned char>(text.text[i]) & 0xC0) == 0x80) continue;  // inside a UTF-8 character
-        ++at.column;
-        if (text.text[i] == '\n') at = {at.line + 1, 1};
-    }
-    return at;
-}
 
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {
     std::vector<std::string> names(layout.count());

@@ -2,26 +2,16 @@
 // ingredients T, V, h, e and M (THEORY section 1).
 #pragma once
 
-#include <map>
-#include <set>
 #include <string>
+#include <vector>
 
 #include "expression/parse.hpp"
 #include "model/derive.hpp"
-#include "model/description.hpp"
-#include "model/mistakes.hpp"
+#include "system/description.hpp"
+#include "system/mistakes.hpp"
+#include "system/read_tables.hpp"
 
 namespace achilles {
-
-// The names of the coordinates and parameters of a file that may have mistakes.
-struct Names {
-    std::map<std::string, Location> places;
-    bool complete = true;           // false: there may be names that could not be read, so none can be called unknown
-    std::set<std::string> excused;  // refused or unknown, and told once: they may stand for anything
-};
-
-// The place of a byte inside a text that starts at `text.at`.
-Location place_in(const Text& text, std::size_t offset);
 
 // Which names may stand in a view (t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy: with values
 // from the equations), and in a drawing (coordinates and parameters; a drawn curve's own is for the caller to add).

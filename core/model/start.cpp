@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "model/input_error.hpp"
-#include "model/mistakes.hpp"
 #include "model/model.hpp"
 #include "model/undefined.hpp"
 #include "number/ground.hpp"
 #include "number/subnormal.hpp"
+#include "system/input_error.hpp"
+#include "system/mistakes.hpp"
 
 namespace achilles {
 

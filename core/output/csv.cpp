@@ -6,6 +6,7 @@
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/output.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <tuple>
 
-#include "expression/machine.hpp"
+#include "program/machine.hpp"
 #include "series/series.hpp"
 
 namespace achilles {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <span>
 
-#include "expression/machine.hpp"
+#include "program/machine.hpp"
 #include "series/order.hpp"
 #include "series/rule_code.hpp"
 

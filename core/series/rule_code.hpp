@@ -1,7 +1,7 @@
 // A rule as machine code, whatever the width.
 #pragma once
 
-#include "expression/machine.hpp"
+#include "program/machine.hpp"
 #include "series/order.hpp"
 
 namespace achilles {

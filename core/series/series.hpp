@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "expression/program.hpp"
+#include "program/program.hpp"
 #include "series/order.hpp"
 
 namespace achilles {

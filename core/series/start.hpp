@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "expression/sine.hpp"
+#include "number/sine.hpp"
 #include "series/series.hpp"
 
 namespace achilles {

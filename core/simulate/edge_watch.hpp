@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "number/polynomial.hpp"
 #include "series/series.hpp"
-#include "simulate/polynomial.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {

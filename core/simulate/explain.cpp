@@ -4,6 +4,7 @@
 
 #include "certify/truncation.hpp"
 #include "simulate/impact.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

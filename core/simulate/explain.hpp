@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

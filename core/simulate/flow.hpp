@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "number/polynomial.hpp"
+#include "run/trajectory.hpp"
 #include "simulate/edge_watch.hpp"
-#include "simulate/polynomial.hpp"
 #include "simulate/stepper.hpp"
-#include "trajectory.hpp"
 
 namespace achilles {
 

@@ -5,7 +5,7 @@
 
 #include "model/model.hpp"
 #include "number/interval.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

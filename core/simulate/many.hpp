@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "model/description.hpp"
 #include "simulate/simulate.hpp"
+#include "system/description.hpp"
 
 namespace achilles {
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "model/model.hpp"
+#include "run/trajectory.hpp"
 #include "simulate/flow.hpp"
 #include "simulate/simulate.hpp"
-#include "trajectory.hpp"
 
 namespace achilles {
 

@@ -17,7 +17,12 @@ constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter 
 SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
                        const std::function<Run(std::size_t)>& run_of,
                        const std::function<void(std::size_t, Attempt&&)>& take)
-    : step_(*model), model_(model), count_(count), next_(next), run_of_(run_of), take_(take) {}
+    : step_(model->lane_programs().coordinates),
+      model_(model),
+      count_(count),
+      next_(next),
+      run_of_(run_of),
+      take_(take) {}
 
 void SideBySide::work() {
     const Ground ground;
@@ -135,7 +140,7 @@ LaneStepper& SideBySide::prepare() {
     const double tolerance = members_.front()->execution.run_.options.tolerance;
     auto found = steppers_.find(tolerance);
     if (found == steppers_.end())
-        found = steppers_.emplace(tolerance, Prepared{make_lane_stepper(*model_, tolerance), {}}).first;
+        found = steppers_.emplace(tolerance, Prepared{make_lane_stepper(model_->lane_programs(), tolerance), {}}).first;
     Prepared& prepared = found->second;
     std::array<std::size_t, Eight::count> sets{};
     for (std::size_t lane = 0; lane < Eight::count; ++lane) sets[lane] = member_in(lane).set;

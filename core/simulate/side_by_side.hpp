@@ -4,7 +4,7 @@
 #include <atomic>
 #include <map>
 
-#include "lanes/stepper.hpp"
+#include "series/lane_stepper.hpp"
 #include "simulate/execution.hpp"
 #include "simulate/many.hpp"
 

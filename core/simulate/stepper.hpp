@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "model/model.hpp"
-#include "simulate/polynomial.hpp"
-#include "trajectory.hpp"
+#include "number/polynomial.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

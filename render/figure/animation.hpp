@@ -6,6 +6,7 @@
 #include "figure/compose.hpp"
 #include "figure/drawing.hpp"
 #include "figure/sheet.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "figure/mechanism.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

@@ -8,6 +8,7 @@
 
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

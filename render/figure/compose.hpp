@@ -9,6 +9,7 @@
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
 #include "model/model.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

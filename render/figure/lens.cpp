@@ -6,6 +6,7 @@
 
 #include "figure/ticks.hpp"
 #include "model/model.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

@@ -7,7 +7,7 @@
 
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

@@ -7,6 +7,7 @@
 #include "figure/drawing.hpp"
 #include "figure/palette.hpp"
 #include "model/model.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "figure/figure.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
 

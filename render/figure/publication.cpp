@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "simulate/sampler.hpp"
+
 namespace achilles {
 
 namespace {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "journal.hpp"
+#include "journal/journal.hpp"
 
 namespace achilles {
 namespace {

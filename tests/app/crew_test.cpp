@@ -1,5 +1,5 @@
 // Work shared by processes, and how it is told.
-#include "crew.hpp"
+#include "pictures/crew.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "app/program.hpp"
-#include "model/description.hpp"
-#include "progress.hpp"
+#include "pictures/progress.hpp"
+#include "system/description.hpp"
 
 namespace achilles::test {
 namespace {

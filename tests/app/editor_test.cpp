@@ -3,7 +3,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "journal.hpp"
+#include "journal/journal.hpp"
 
 namespace achilles {
 namespace {

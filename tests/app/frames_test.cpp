@@ -16,7 +16,7 @@
 
 #include "app/program.hpp"
 #include "image/image.hpp"
-#include "origin.hpp"
+#include "pictures/origin.hpp"
 
 namespace achilles::test {
 namespace {

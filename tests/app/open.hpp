@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "surface/offscreen.hpp"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/hands.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {

@@ -6,8 +6,8 @@
 #include "app/program.hpp"
 #include "image/image.hpp"
 #include "image/png_notes.hpp"
-#include "origin.hpp"
 #include "paint/svg.hpp"
+#include "pictures/origin.hpp"
 
 namespace achilles::test {
 namespace {

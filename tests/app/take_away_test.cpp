@@ -1,5 +1,5 @@
 // What a session gives away leads back to it: figures, data, journals, command lines.
-#include "take_away.hpp"
+#include "pictures/take_away.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,11 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
-#include "journal.hpp"
-#include "origin.hpp"
-#include "recipe.hpp"
-#include "worker.hpp"
+#include "journal/journal.hpp"
+#include "model/read_system.hpp"
+#include "pictures/origin.hpp"
+#include "session/recipe.hpp"
+#include "session/worker.hpp"
 
 namespace achilles {
 namespace {

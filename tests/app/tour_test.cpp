@@ -1,5 +1,5 @@
 // Tours: journals of the assets, which end in the same state at any pace, and in the same pixels.
-#include "tour.hpp"
+#include "journal/tour.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "journal.hpp"
+#include "journal/journal.hpp"
 
 namespace achilles {
 namespace {

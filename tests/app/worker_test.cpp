@@ -1,5 +1,5 @@
 // Runs on a thread of their own. This file alone also passes under -fsanitize=thread.
-#include "worker.hpp"
+#include "session/worker.hpp"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

@@ -9,6 +9,7 @@
 
 #include "bench/certificates.hpp"
 #include "bench/measure.hpp"
+#include "model/read_system.hpp"
 
 namespace {
 

@@ -79,6 +79,7 @@
 #include "bench/certificates.hpp"
 #include "bench/measure.hpp"
 #include "certify/execution.hpp"
+#include "model/read_system.hpp"
 #include "simulate/many.hpp"
 
 namespace achilles::bench {

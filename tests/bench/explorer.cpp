@@ -12,6 +12,7 @@
 
 #include "app/open.hpp"
 #include "bench/measure.hpp"
+#include "model/read_system.hpp"
 #include "surface/interface.hpp"
 #include "surface/window.hpp"
 

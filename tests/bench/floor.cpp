@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "floor/floor.hpp"
+#include "model/read_system.hpp"
 #include "simulate/many.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "assets.hpp"
+#include "cli/assets.hpp"
 #include "golden/comparer.hpp"
 #include "golden/lies.hpp"
 #include "golden/pictures.hpp"

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "core/interval_cases.hpp"
+#include "core/number/interval_cases.hpp"
 
 namespace achilles::cases {
 namespace {

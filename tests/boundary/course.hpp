@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "certify/execution.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles::test {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "floor/floor.hpp"
+#include "model/read_system.hpp"
 #include "simulate/impact.hpp"
 
 namespace achilles::test {

@@ -7,7 +7,7 @@
 
 #include "certify/taylor.hpp"
 #include "model/model.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles::test {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "expression/program.hpp"
 #include "model/derive.hpp"
+#include "program/program.hpp"
 
 namespace achilles::test {
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "model/model.hpp"
+#include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 
 int main(int, char** argv) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles::test {

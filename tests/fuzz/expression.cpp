@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "expression/parse.hpp"
-#include "expression/program.hpp"
 #include "number/interval.hpp"
+#include "program/program.hpp"
 #include "require.hpp"
 
 namespace {

@@ -13,11 +13,13 @@
 #include <utility>
 #include <vector>
 
-#include "model/description.hpp"
 #include "model/model.hpp"
+#include "model/read_system.hpp"
 #include "output/output.hpp"
 #include "require.hpp"
+#include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
+#include "system/description.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "assets.hpp"
+#include "cli/assets.hpp"
 #include "figure/layout.hpp"
 #include "golden/pictures.hpp"
 #include "paint/label.hpp"

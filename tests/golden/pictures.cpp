@@ -6,12 +6,13 @@
 #include <stdexcept>
 
 #include "app/program.hpp"
-#include "assets.hpp"
-#include "commands/commands.hpp"
+#include "cli/assets.hpp"
+#include "cli/commands/commands.hpp"
 #include "figure/compose.hpp"
-#include "figure/paper.hpp"
-#include "journal.hpp"
-#include "session.hpp"
+#include "journal/journal.hpp"
+#include "model/read_system.hpp"
+#include "pictures/paper.hpp"
+#include "session/session.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles::golden {

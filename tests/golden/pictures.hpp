@@ -4,7 +4,7 @@
 
 #include "figure/publication.hpp"
 #include "golden/goldens.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles::golden {
 

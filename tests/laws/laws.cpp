@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "simulate/impact.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles::test {
 

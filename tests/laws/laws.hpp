@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "model/model.hpp"
-#include "trajectory.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles::test {
 

@@ -1,5 +1,6 @@
 // The laws, told lies: a falsified execution must violate the law it breaks.
 #include "laws/laws.hpp"
+#include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles::test {

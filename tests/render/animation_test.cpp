@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/systems.hpp"
+#include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {

@@ -9,6 +9,8 @@
 #include "core/systems.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
+#include "model/read_system.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "core/systems.hpp"
 #include "figure/figure.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "figure/publication.hpp"
 #include "image/xml.hpp"
+#include "model/read_system.hpp"
 #include "paint/paint.hpp"
 #include "render/samples.hpp"
 #include "render/support.hpp"

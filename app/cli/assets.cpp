@@ -1,0 +1,74 @@
+#include "cli/assets.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "expression/nearest.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+fs::path assets() {
+    std::error_code problem;
+    if (const char* given = std::getenv("ACHILLES_ASSETS"); given != nullptr && *given != '\0') {
+        if (!fs::is_directory(given, problem))
+            throw InputError("ACHILLES_ASSETS", {}, fmt::format("'{}' is no folder", given));
+        return given;
+    }
+    const fs::path binary = fs::read_symlink("/proc/self/exe", problem);
+    const fs::path places[] = {binary.parent_path() / "assets", binary.parent_path().parent_path() / "share/achilles"};
+    for (const fs::path& place : places)
+        if (fs::is_directory(place, problem)) return place;
+    throw InputError({}, {},
+                     fmt::format("the assets are neither in {} nor in {}", places[0].string(), places[1].string()),
+                     "set ACHILLES_ASSETS to the folder that holds systems/ and fonts/");
+}
+
+namespace {
+
+std::vector<fs::path> files_in(const char* folder, const char* extension) {
+    std::vector<fs::path> files;
+    std::error_code problem;
+    for (const fs::directory_entry& entry : fs::directory_iterator(assets() / folder, problem))
+        if (entry.path().extension() == extension && entry.is_regular_file(problem)) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+// A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
+// to tell.
+fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const char* kind, const char* extension) {
+    std::error_code problem;
+    const fs::path path{std::string(wanted)};
+    if (path.has_parent_path() || path.extension() == extension || fs::is_regular_file(path, problem)) return path;
+    std::vector<std::string> names;
+    for (const fs::path& file : files) {
+        if (file.stem() == path) return file;
+        names.push_back(file.stem().string());
+    }
+    throw InputError({}, {}, fmt::format("there is no {} '{}'{}", kind, wanted, did_you_mean(wanted, names)),
+                     fmt::format("a {} is a path to a {} file or one of: {}", kind, extension, fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+std::vector<fs::path> system_files() { return files_in("systems", ".toml"); }
+
+std::vector<fs::path> journal_files() { return files_in("journals", ".journal"); }
+
+std::vector<std::string> system_names() {
+    std::vector<std::string> names;
+    for (const fs::path& file : system_files()) names.push_back(file.stem().string());
+    return names;
+}
+
+fs::path find_system(std::string_view system) { return find(system, system_files(), "system", ".toml"); }
+
+fs::path find_journal(std::string_view journal) { return find(journal, journal_files(), "journal", ".journal"); }
+
+}  // namespace achilles

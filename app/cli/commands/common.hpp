@@ -1,0 +1,42 @@
+// Options that several commands share.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/overrides.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace achilles {
+
+// SYSTEM, which must be given.
+void add_system_argument(CLI::App& command, std::string& system);
+
+// --format png|svg.
+void add_format_option(CLI::App& command, std::string& format, const std::string& about);
+
+// --view NAME, as often as wished for.
+void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about);
+// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
+// Throws InputError for a name that is none.
+std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names);
+
+// --set and everything that goes over a system's options.
+void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
+
+// --scale S.
+// --do COMMAND, a line of a journal; may be given again.
+void add_step_option(CLI::App& command, std::vector<std::string>& steps);
+void add_scale_option(CLI::App& command, double& scale, const std::string& about = "of text and strokes (default 1)");
+
+// --size WxH and --scale S. `about` replaces what they say of themselves.
+void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});
+
+// A decimal number, all of it; strtod and with it CLI11 would take more (hexadecimal, "nan"). Throws InputError.
+double number_from(const std::string& option, std::string_view text);
+
+}  // namespace achilles

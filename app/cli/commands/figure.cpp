@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "cli/commands/commands.hpp"
+#include "cli/commands/common.hpp"
+#include "figure/publication.hpp"
+#include "journal/journal.hpp"
+#include "model/model.hpp"
+#include "pictures/studio.hpp"
+#include "pictures/take_away.hpp"
+#include "session/open_session.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+namespace {
+
+struct FigureArguments {
+    std::string system, out, format;
+    std::vector<std::string> views, settings, steps;
+    std::string journal;
+    OptionOverrides overrides;
+    PublicationStyle style;
+    PictureSize size;
+};
+
+// By --format, else by the ending of --out.
+bool wants_svg(const FigureArguments& arguments) {
+    if (!arguments.format.empty()) return arguments.format == "svg";
+    const std::string ending = std::filesystem::path(arguments.out).extension().string();
+    if (ending == ".svg" || ending == ".SVG") return true;
+    if (ending == ".png" || ending == ".PNG" || arguments.out == "-") return false;
+    throw InputError("--out " + arguments.out, {}, "this name says neither PNG nor SVG",
+                     "end it in .png or .svg, or add --format png or --format svg");
+}
+
+// Puts a figure of a finished run where it belongs.
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg,
+        Studio& studio) {
+    PictureSize size = arguments.size;
+    size.scale *= publication_scale;
+    studio.put(arguments.out, "", {{arguments.system, &trajectory}},
+               [&](const Notes& notes) { return as_svg ? svg_of(figure, size, notes) : png_of(figure, size, notes); });
+    studio.commit();
+    if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
+    fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    return stopped_early;
+}
+
+// The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
+int draw_session(const FigureArguments& arguments, bool as_svg, Studio& studio) {
+    if (!arguments.views.empty())
+        throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
+                         "leave --view out, or --journal and --do");
+    std::vector<Command> steps;
+    if (!arguments.journal.empty())
+        steps = parse_journal(studio.inputs().journal(arguments.journal), arguments.journal);
+    const std::vector<Command> more = parse_steps(arguments.steps);
+    steps.insert(steps.end(), more.begin(), more.end());
+    Session session = open_session(arguments.system, studio.inputs().system(arguments.system), arguments.settings,
+                                   arguments.overrides, library_of(studio), {});
+    studio.add(arguments.out);
+    for (const Command& step : steps) {
+        session.apply(step);
+        if (!session.error().empty()) throw InputError(to_text(step), {}, session.error());
+        if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
+    }
+    PublicationStyle style = arguments.style;
+    if (style.columns == 0) style.columns = session.plotted().columns();
+    return put(arguments, session.trajectory(), figure_of(session, style), as_svg, studio);
+}
+
+int draw(const FigureArguments& arguments, Studio& studio) {
+    const bool as_svg = wants_svg(arguments);
+    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, studio);
+    const auto model = std::make_shared<const Model>(
+        adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
+    const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
+    const Run run = model->default_run();
+    model->check(run);
+    warn(run.options);
+    studio.add(arguments.out);
+
+    const Trajectory trajectory = simulate(model, run);
+    return put(arguments, trajectory, publication(trajectory, views, arguments.style), as_svg, studio);
+}
+
+void take_columns(const std::string& text, int& columns) {
+    const double number = number_from("--columns", text);
+    if (!(number >= 1.0 && number <= 20.0 && number == static_cast<int>(number)))
+        throw InputError("--columns " + text, {}, "the panels stand in 1 to 20 columns");
+    columns = static_cast<int>(number);
+}
+
+}  // namespace
+
+void add_figure(CLI::App& program, int& status, Studio& studio) {
+    const auto arguments = std::make_shared<FigureArguments>();
+    CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG or SVG");
+    add_system_argument(*command, arguments->system);
+    command->add_option("--out", arguments->out, "the picture; - is standard output")
+        ->required()
+        ->type_name("F.png|F.svg");
+    add_view_option(*command, arguments->views, "a view of the system; may be given again (default: all)");
+    command
+        ->add_option("--journal", arguments->journal,
+                     "a journal to replay in the explorer first: then its plots are drawn")
+        ->type_name("F");
+    add_step_option(*command, arguments->steps);
+    add_format_option(*command, arguments->format, "where the name of --out does not tell");
+    command
+        ->add_option_function<std::string>(
+            "--columns", [arguments](const std::string& text) { take_columns(text, arguments->style.columns); },
+            "of panels (default: by their number)")
+        ->type_name("N");
+    command->add_flag("--transparent", arguments->style.transparent, "no background");
+    add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
+    add_run_options(*command, arguments->settings, arguments->overrides);
+    command->callback([arguments, &status, &studio] { status = draw(*arguments, studio); });
+}
+
+}  // namespace achilles

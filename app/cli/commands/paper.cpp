@@ -1,0 +1,81 @@
+#include "pictures/paper.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+
+#include "cli/commands/commands.hpp"
+#include "cli/commands/common.hpp"
+#include "figure/publication.hpp"
+#include "model/model.hpp"
+#include "pictures/output_folder.hpp"
+#include "pictures/studio.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+Trajectory run(Inputs& inputs, const std::string& system) {
+    const auto model = std::make_shared<const Model>(adjusted(inputs.system(system), {}, {}));
+    Run paper = model->default_run();
+    paper.options.truncation.conditions = Conditions::paper;  // its figures show its truncation
+    return simulate(model, paper);
+}
+
+int draw_paper(const fs::path& folder, const std::string& format, double scale, Studio& studio) {
+    std::optional<OutputFolder> made;
+    if (!studio.reproduces()) made.emplace(folder);
+    const Trajectory ball = run(studio.inputs(), "ball_on_sine"), pendulum = run(studio.inputs(), "double_pendulum");
+    const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
+    const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";
+    const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + "." + format)).string(); };
+    for (const NamedFigure& figure : figures) studio.add(file_of(figure));
+    studio.add(table_file);
+    for (const NamedFigure& figure : figures) {
+        const PictureSize size{static_cast<int>(std::lround(figure.width * scale)),
+                               static_cast<int>(std::lround(figure.height * scale)), scale * publication_scale};
+        studio.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
+                   [&](const Notes& notes) {
+                       return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
+                   });
+    }
+    studio.put_text(table_file, table);
+    studio.commit();
+    if (studio.reproduces()) return reached_end;
+
+    fmt::print("{}\n", table);
+    for (const NamedFigure& figure : figures) fmt::print("{}\n", fs::absolute(file_of(figure)).string());
+    fmt::print("{}\n", fs::absolute(table_file).string());
+    for (const Trajectory* trajectory : {&ball, &pendulum}) {
+        if (trajectory->outcome.kind == Outcome::Kind::end_time) continue;
+        fmt::print(stderr, "achilles: a run stopped early: {}\n", trajectory->outcome.message);
+        return stopped_early;
+    }
+    return reached_end;
+}
+
+}  // namespace
+
+void add_paper(CLI::App& program, int& status, Studio& studio) {
+    struct Arguments {
+        std::string out = "achilles-paper", format = "png";
+        double scale = 1.0;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        program.add_subcommand("paper", "Figure 4 (a)-(f) of the paper, its numbers beside ours, and the proofs");
+    command->add_option("--out", arguments->out, "the folder for the pictures (default ./achilles-paper)")
+        ->type_name("DIR");
+    add_format_option(*command, arguments->format, "of the pictures (default png)");
+    add_scale_option(*command, arguments->scale);
+    command->callback([arguments, &status, &studio] {
+        status = draw_paper(arguments->out, arguments->format, arguments->scale, studio);
+    });
+}
+
+}  // namespace achilles

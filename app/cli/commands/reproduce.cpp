@@ -1,0 +1,91 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "cli/commands/commands.hpp"
+#include "output/output.hpp"
+#include "pictures/studio.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
+
+// What is wrong with a picture is told with its name.
+template <class Work>
+auto with_name(const std::string& picture, const Work& work) {
+    try {
+        return work();
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::runtime_error& error) {
+        throw InputError(picture, {}, error.what());
+    }
+}
+
+// Runs the command that an origin tells; leaves what it made in the studio. Only commands that make pictures run here.
+int run_again(const std::string& picture, const Origin& origin, bool png, Studio& studio) {
+    CLI::App program("what makes pictures", "achilles");
+    program.require_subcommand(1);
+    int status = bad_input;
+    add_pictures(program, status, studio);
+    std::vector<std::string> words = words_of(origin.command);
+    words.insert(words.end(), {"--out", png ? "picture.png" : "picture.svg"});
+    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+    try {
+        program.parse(words);
+    } catch (const CLI::ParseError& error) {
+        throw InputError(picture, {}, fmt::format("its command cannot be run here: {}", error.what()), origin.command);
+    }
+    if (!studio.made())
+        throw InputError(picture, {}, fmt::format("its command makes no picture '{}'", origin.picture), origin.command);
+    return status;
+}
+
+int reproduce(const std::string& picture, const std::string& out) {
+    OutputFiles files;
+    if (!out.empty()) files.add(out);
+    const std::string before = read_text(picture, largest_picture);
+    if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
+    const Origin origin = with_name(picture, [&] { return origin_of(before); });
+    Studio studio(origin);
+    const int status = with_name(picture, [&] { return run_again(picture, origin, is_png(before), studio); });
+    const std::string& after = *studio.made();
+    if (!out.empty()) files.put(out, after);
+    files.commit();
+    if (out != "-") fmt::print("{}\n", origin.command);
+    if (after == before) return status;
+    const std::string here = "Achilles " + version();
+    fmt::print(stderr, "achilles: {}: made again it has other bytes{}\n", picture,
+               origin.software == here ? "" : fmt::format(" (it was made by {}, this is {})", origin.software, here));
+    return made_differently;
+}
+
+}  // namespace
+
+void add_pictures(CLI::App& program, int& status, Studio& studio) {
+    add_figure(program, status, studio);
+    add_frames(program, status, studio);
+    add_paper(program, status, studio);
+    add_screenshot(program, status, studio);
+}
+
+void add_reproduce(CLI::App& program, int& status) {
+    struct Arguments {
+        std::string picture, out;
+    };
+    const auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = program.add_subcommand(
+        "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
+    command->add_option("PICTURE", arguments->picture, "a PNG or SVG file of figure, frames, paper or screenshot")
+        ->required()
+        ->type_name("");
+    command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")
+        ->type_name("F");
+    command->callback([arguments, &status] { status = reproduce(arguments->picture, arguments->out); });
+}
+
+}  // namespace achilles

@@ -1,0 +1,266 @@
+// The explorer's two surfaces: a window that lives by the clock, and a picture that knows no clock.
+#include "cli/explore.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "cli/assets.hpp"
+#include "cli/commands/commands.hpp"
+#include "image/png_notes.hpp"
+#include "journal/journal.hpp"
+#include "journal/tour.hpp"
+#include "model/read_system.hpp"
+#include "panels/panels.hpp"
+#include "panels/print.hpp"
+#include "session/open_session.hpp"
+#include "surface/offscreen.hpp"
+#include "surface/window.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::vector<SystemEntry> known_systems() {
+    std::vector<SystemEntry> entries;
+    for (const std::filesystem::path& file : system_files()) {
+        const std::string name = file.stem().string();
+        try {
+            entries.push_back({name, read_system(file).title});
+        } catch (const InputError&) {
+            // It stays in the list: choosing it shows what is wrong with it.
+            entries.push_back({name, name});
+        }
+    }
+    return entries;
+}
+
+// What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
+// hand; the others are shown when they are there.
+constexpr double frame_patience = 1.0 / 40.0;
+
+// What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
+// line.
+std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
+    std::vector<Command> commands{command::Open{session.system()}};
+    const Options& run = session.run().options;
+    const OptionOverrides& given = options.overrides;
+    if (given.end_time) commands.emplace_back(command::End{run.end_time});
+    if (given.method) commands.emplace_back(command::UseMethod{run.method});
+    if (given.max_impacts) commands.emplace_back(command::MaxImpacts{run.max_impacts});
+    if (given.tolerance) commands.emplace_back(command::Tolerance{run.tolerance});
+    if (given.eps || given.eps_q || given.eps_v || given.eps_t)
+        commands.emplace_back(command::Eps{run.truncation.eps_q, run.truncation.eps_v, run.truncation.eps_t});
+    if (given.conditions) commands.emplace_back(command::UseConditions{*given.conditions});
+    if (given.reinitialization) commands.emplace_back(command::UseReinitialization{*given.reinitialization});
+    for (const std::string& setting : options.settings) {
+        std::string name = setting.substr(0, setting.find('='));
+        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+        if (const auto value = session.value(name)) commands.emplace_back(command::Set{name, *value});
+    }
+    return commands;
+}
+
+SurfaceOptions surface_options(const ExploreOptions& options) {
+    SurfaceOptions surface;
+    surface.width = options.width;
+    surface.height = options.height;
+    surface.scale = options.scale;
+    surface.figure_text_size = screen_text_size;
+    surface.fonts = assets() / "fonts";
+    return surface;
+}
+
+// "The paper's ball" for a journal that begins with the comment "# The paper's ball".
+std::vector<SystemEntry> known_tours() {
+    std::vector<SystemEntry> entries;
+    for (const std::filesystem::path& file : journal_files()) {
+        const std::string name = file.stem().string();
+        try {
+            const std::string text = journal_file(file);
+            const std::string line = text.substr(0, text.find('\n'));
+            entries.push_back({name, line.rfind("# ", 0) == 0 ? line.substr(2) : name});
+        } catch (const InputError&) {
+            entries.push_back({name, name});  // choosing it tells what is wrong with it
+        }
+    }
+    return entries;
+}
+
+PanelState panel_state(bool in_window) {
+    PanelState state;
+    state.systems = known_systems();
+    state.tours = known_tours();
+    state.in_window = in_window;
+    return state;
+}
+
+// What the files dropped on the window ask for: to replay a journal, or to open a system, once changes of the text are
+// saved or given up.
+std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
+    std::vector<Command> commands;
+    for (const std::string& file : window.dropped()) {
+        const bool is_journal = std::filesystem::path(file).extension() == ".journal";
+        request(session, state, is_journal ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
+    }
+    return commands;
+}
+
+// Seconds since it was last asked, none the first time.
+class Clock {
+ public:
+    double elapsed() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = last_ ? std::chrono::duration<double>(now - *last_).count() : 0.0;
+        last_ = now;
+        return seconds;
+    }
+    void stop() { last_.reset(); }
+
+ private:
+    std::optional<std::chrono::steady_clock::time_point> last_;
+};
+
+// One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
+class Explorer {
+ public:
+    Explorer(Session& session, Window& window, const ExploreOptions& options)
+        : session_(session), window_(window), state_(panel_state(true)) {
+        if (!options.record.empty()) record_.emplace(options.record);
+        for (const Command& command : opening(session, options)) keep(command);
+    }
+
+    void begin(const std::vector<Command>& journal) {
+        tour_.begin(journal);
+        session_.set_patience({});  // a journal tells what was done after each run: every run is waited for
+    }
+
+    bool may_close() { return request_close(session_, state_); }
+
+    void frame() {
+        session_.update();
+        state_.on_tour = tour_.runs();
+        pass_time();
+        std::vector<Command> commands = explorer(session_, state_);
+        for (Command& command : dropped(window_, session_, state_)) commands.push_back(std::move(command));
+        if (!commands.empty()) lead_on(PanelState::OnTour::stop);  // the hand takes over
+        for (const Command& command : commands) take(command);
+        lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
+        if (state_.editor.may_close) window_.close();
+        window_.keep_drawing(session_.playing() || tour_.runs() || is_typing(state_));
+    }
+
+    // Tells the record what is not told yet.
+    void finish() { keep_wait(); }
+
+ private:
+    void pass_time() {
+        if (!session_.playing() && !tour_.runs()) return clock_.stop();
+        const double seconds = clock_.elapsed();
+        // Playing is seeking, by the clock; nothing a journal would keep.
+        if (!tour_.runs()) return play_on(session_, seconds);
+        for (const Command& command : tour_.advance(seconds)) take(command);
+        if (!tour_.runs()) stop_tour();
+    }
+
+    void take(const Command& command) {
+        const auto* replay = std::get_if<command::Replay>(&command);
+        if (replay == nullptr) {
+            keep(command);
+            session_.apply(command);
+            return;
+        }
+        try {
+            begin(read_journal(find_journal(replay->journal)));
+        } catch (const InputError& problem) {
+            stop_tour();
+            session_.refuse(problem);
+        }
+    }
+
+    void lead_on(PanelState::OnTour wanted) {
+        if (wanted == PanelState::OnTour::next)
+            for (const Command& command : tour_.next()) take(command);
+        if (wanted == PanelState::OnTour::stop && tour_.runs()) {
+            stop_tour();
+            take(command::Say{""});
+        }
+    }
+
+    void stop_tour() {
+        tour_.stop();
+        session_.set_patience(frame_patience);
+    }
+
+    // The pieces of a wait are one wait to the record.
+    void keep(const Command& command) {
+        if (const auto* wait = std::get_if<command::Wait>(&command)) {
+            waited_ += wait->seconds;
+            return;
+        }
+        keep_wait();
+        if (record_) record_->append(command);
+    }
+    void keep_wait() {
+        if (record_ && waited_ > 0.0) record_->append(command::Wait{waited_});
+        waited_ = 0.0;
+    }
+
+    Session& session_;
+    Window& window_;
+    PanelState state_;
+    std::optional<JournalFile> record_;
+    Tour tour_;
+    Clock clock_;
+    double waited_ = 0.0;
+};
+
+}  // namespace
+
+int explore(const ExploreOptions& options) {
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = read_journal(find_journal(options.journal));
+    const std::vector<Command> more = parse_steps(options.steps);
+    journal.insert(journal.end(), more.begin(), more.end());
+    const std::string name = options.system ? *options.system : first_system();
+    Library library;
+    library.find = find_system;
+    library.journal = [](const std::string& wanted) { return journal_file(find_journal(wanted)); };
+    Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
+                                   std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
+    Window window(surface_options(options), "Achilles");
+    // After everything that can fail: a journal that is there already is not lost to a missing display.
+    Explorer explorer(session, window, options);
+    session.set_patience(frame_patience);
+    if (!journal.empty()) explorer.begin(journal);
+    session.on_ready(Window::wake);
+    window.on_close([&] { return explorer.may_close(); });
+    window.run([&] { explorer.frame(); });
+    explorer.finish();
+    return reached_end;
+}
+
+int screenshot(const ScreenshotOptions& options, Studio& studio) {
+    studio.add(options.out);
+    Inputs& inputs = studio.inputs();
+    std::vector<Command> journal;
+    if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
+    const std::string name = options.system        ? *options.system
+                             : studio.reproduces() ? inputs.first_system()
+                                                   : first_system();
+    Session session =
+        open_session(name, inputs.system(name), options.settings, options.overrides, library_of(studio), {});
+    for (const Command& command : journal) session.apply(command);
+    for (const Command& command : parse_steps(options.steps)) session.apply(command);
+    PanelState state = panel_state(false);
+    studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
+        Offscreen surface(surface_options(options));
+        const Image image = surface.frame([&] { explorer(session, state); }, 3);
+        return with_notes(png_bytes(image), notes);
+    });
+    studio.commit();
+    return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
+}
+
+}  // namespace achilles

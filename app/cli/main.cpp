@@ -1,0 +1,102 @@
+// The program: reads the command line, hands over to a command, turns what is wrong into one message and exit status 2.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+
+#include "cli/assets.hpp"
+#include "cli/commands/commands.hpp"
+#include "expression/nearest.hpp"
+#include "output/output.hpp"
+#include "pictures/studio.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::vector<std::string> command_names(const CLI::App& program) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+    return names;
+}
+
+// The first word may be a command, or a system to explore, or missing.
+void put_default_command(const CLI::App& program, std::vector<std::string>& words) {
+    if (words.empty()) words.emplace_back("explore");
+    const std::string first = words.front();
+    if (first == "--help" || first == "-h" || first == "--version") return;
+    const std::vector<std::string> commands = command_names(program);
+    if (std::find(commands.begin(), commands.end(), first) != commands.end()) return;
+    if (first.empty() || first[0] != '-') {
+        std::vector<std::string> known = system_names();
+        const bool is_system = std::find(known.begin(), known.end(), first) != known.end();
+        if (!is_system && std::filesystem::path(first).extension() != ".toml" && !std::filesystem::exists(first)) {
+            known.insert(known.end(), commands.begin(), commands.end());
+            throw InputError({}, {},
+                             fmt::format("there is no command or system '{}'{}", first, did_you_mean(first, known)),
+                             fmt::format("the commands are: {}", fmt::join(commands, ", ")));
+        }
+    }
+    words.insert(words.begin(), "explore");
+}
+
+// CLI11's message, with the nearest option where one was misspelt.
+std::string told(const CLI::ParseError& error, const CLI::App& program) {
+    const auto chosen = program.get_subcommands();
+    const CLI::App& command = chosen.empty() ? program : *chosen.front();
+    const std::string hint = fmt::format("\n'achilles {}{}--help' tells more", chosen.empty() ? "" : command.get_name(),
+                                         chosen.empty() ? "" : " ");
+    const std::vector<std::string> rest = program.remaining(true);
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr || rest.empty()) return error.what() + hint;
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) options.push_back(option->get_name());
+    return fmt::format("'{}' is not expected here{}{}", rest.front(), did_you_mean(rest.front(), options), hint);
+}
+
+int run(std::vector<std::string> words) {
+    CLI::App program("Lagrangian hybrid systems, simulated past their Zeno points", "achilles");
+    program.set_version_flag("--version", "achilles " + version());
+    program.require_subcommand(1);
+    int status = reached_end;
+    add_explore(program, status);
+    add_simulate(program, status);
+    Studio studio(words);
+    add_pictures(program, status, studio);
+    add_reproduce(program, status);
+    add_check(program, status);
+    add_list(program, status);
+    try {
+        put_default_command(program, words);
+        std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+        program.parse(words);
+        if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
+        return status;
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);
+        fmt::print(stderr, "achilles: {}\n", told(error, program));
+    }
+    return bad_input;
+}
+
+}  // namespace
+
+}  // namespace achilles
+
+int main(int argc, char** argv) {
+    try {
+        return achilles::run({argv + 1, argv + argc});
+    } catch (const achilles::InputError& error) {
+        // A message about a place in a file starts with that place, so that editors find it.
+        fmt::print(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
+    } catch (const std::bad_alloc&) {
+        std::fputs("achilles: there is not enough memory for this\n", stderr);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "achilles: {}\n", error.what());
+    }
+    return achilles::bad_input;
+}

@@ -1,0 +1,185 @@
+#include "pictures/crew.hpp"
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+// What a process says through its pipe: one `task_done` for each task; after `task_failed`, until the pipe's end, the
+// file and the message of what went wrong, each ended by a zero byte.
+constexpr char task_done = '.', task_failed = '!';
+
+using Counter = std::atomic<std::size_t>;
+static_assert(Counter::is_always_lock_free);  // it is shared by processes
+
+// The number of the next task, in memory that all processes see.
+class SharedCounter {
+ public:
+    SharedCounter()
+        : memory_(::mmap(nullptr, sizeof(Counter), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) {
+        if (memory_ == MAP_FAILED) throw std::bad_alloc();
+        new (memory_) Counter(0);
+    }
+    ~SharedCounter() { ::munmap(memory_, sizeof(Counter)); }
+    SharedCounter(const SharedCounter&) = delete;
+    SharedCounter& operator=(const SharedCounter&) = delete;
+    Counter& operator*() const { return *static_cast<Counter*>(memory_); }
+
+ private:
+    void* memory_;
+};
+
+// False if nobody listens any more.
+bool say(int pipe, const char* text, std::size_t size) {
+    while (size > 0) {
+        const ssize_t count = ::write(pipe, text, size);
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) return false;
+        text += count;
+        size -= static_cast<std::size_t>(count);
+    }
+    return true;
+}
+
+void say_problem(int pipe, const std::string& file, const std::string& message) {
+    const std::string text = task_failed + file + '\0' + message + '\0';
+    say(pipe, text.data(), text.size());
+}
+
+// The life of one of the processes.
+void work(std::size_t count, Counter& next, int pipe, const std::function<std::function<void(std::size_t)>()>& begin) {
+    try {
+        std::function<void(std::size_t)> task;
+        for (std::size_t i = next++; i < count; i = next++) {
+            if (!task) task = begin();
+            task(i);
+            if (!say(pipe, &task_done, 1)) return;
+        }
+        return;
+    } catch (const InputError& error) {
+        const std::string told = error.what(), place = error.file + ": ";
+        const bool has_place = !error.file.empty() && told.rfind(place, 0) == 0;
+        say_problem(pipe, has_place ? error.file : "", has_place ? told.substr(place.size()) : told);
+    } catch (const std::bad_alloc&) {
+        say_problem(pipe, "", "there is not enough memory for this");
+    } catch (const std::exception& error) {
+        say_problem(pipe, "", error.what());
+    }
+    next = count;
+}
+
+struct Process {
+    pid_t id = 0;
+    int pipe = -1;
+    std::string said;  // after task_failed
+    bool failed = false;
+};
+
+Process fork_process(std::size_t count, Counter& next, const std::vector<Process>& others,
+                     const std::function<std::function<void(std::size_t)>()>& begin) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::bad_alloc();
+    std::fflush(nullptr);  // or what is waiting would be written by both
+    const pid_t id = ::fork();
+    if (id == 0) {
+        ::close(ends[0]);
+        for (const Process& other : others) ::close(other.pipe);
+        work(count, next, ends[1], begin);
+        ::_exit(0);  // what the parent has opened is the parent's to close
+    }
+    ::close(ends[1]);
+    if (id < 0) {
+        ::close(ends[0]);
+        throw std::bad_alloc();
+    }
+    return {id, ends[0], {}, false};
+}
+
+// Takes what a process says; counts the tasks. False at its end.
+bool listen(Process& process, std::size_t& done) {
+    char buffer[4096];
+    const ssize_t count = ::read(process.pipe, buffer, sizeof buffer);
+    if (count < 0) return errno == EINTR;
+    for (ssize_t i = 0; i < count; ++i) {
+        if (process.failed)
+            process.said += buffer[i];
+        else if (buffer[i] == task_failed)
+            process.failed = true;
+        else
+            ++done;
+    }
+    return count > 0;
+}
+
+// Until all have ended.
+std::size_t listen_to(std::vector<Process>& processes, const std::function<void(std::size_t)>& told) {
+    std::size_t done = 0;
+    std::vector<pollfd> ears;
+    for (const Process& process : processes) ears.push_back({process.pipe, POLLIN, 0});
+    for (std::size_t talking = ears.size(); talking > 0;) {
+        if (::poll(ears.data(), ears.size(), -1) < 0 && errno != EINTR) break;
+        const std::size_t before = done;
+        for (std::size_t i = 0; i < ears.size(); ++i) {
+            if (ears[i].fd < 0 || ears[i].revents == 0 || listen(processes[i], done)) continue;
+            ears[i].fd = -1;  // poll passes over it
+            --talking;
+        }
+        if (done > before) told(done);
+    }
+    return done;
+}
+
+// All of them, with the signal that ended one.
+int wait_for(const std::vector<Process>& processes) {
+    int signal = 0;
+    for (const Process& process : processes) {
+        ::close(process.pipe);
+        int status = 0;
+        while (::waitpid(process.id, &status, 0) < 0 && errno == EINTR) {
+        }
+        if (WIFSIGNALED(status)) signal = WTERMSIG(status);
+    }
+    return signal;
+}
+
+}  // namespace
+
+CrewOutcome share_work(std::size_t count, int jobs, const std::function<std::function<void(std::size_t)>()>& begin,
+                       const std::function<void(std::size_t)>& done) {
+    const SharedCounter next;
+    std::vector<Process> processes;
+    try {
+        for (int i = 0; i < jobs && static_cast<std::size_t>(i) < count; ++i)
+            processes.push_back(fork_process(count, *next, processes, begin));
+    } catch (const std::bad_alloc&) {
+        // With fewer than wished for it only takes longer.
+        if (processes.empty()) throw;
+    }
+    CrewOutcome outcome;
+    outcome.done = listen_to(processes, done);
+    outcome.signal = wait_for(processes);
+    for (const Process& process : processes) {
+        if (!process.failed) continue;
+        const std::size_t end = process.said.find('\0');
+        const std::string file = process.said.substr(0, end);
+        std::string message = end == std::string::npos ? "" : process.said.substr(end + 1);
+        if (!message.empty() && message.back() == '\0') message.pop_back();
+        throw InputError(file, {}, message);
+    }
+    return outcome;
+}
+
+}  // namespace achilles

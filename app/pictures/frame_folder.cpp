@@ -1,0 +1,127 @@
+#include "pictures/frame_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "cli/write_files.hpp"
+#include "image/png_notes.hpp"
+#include "pictures/origin.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view prefix = "frame_", ending = ".png", unfinished = ".png.part";
+constexpr std::size_t digits = 5, largest_frame = std::size_t{1} << 30;  // bytes
+
+// The number in "frame_00042.png" and what comes after the digits; nothing for another name.
+std::optional<std::pair<std::size_t, std::string>> parsed(const std::string& name) {
+    if (name.rfind(prefix, 0) != 0 || name.size() < prefix.size() + digits) return std::nullopt;
+    std::size_t number = 0;
+    for (const char c : name.substr(prefix.size(), digits)) {
+        if (c < '0' || c > '9') return std::nullopt;
+        number = 10 * number + static_cast<std::size_t>(c - '0');
+    }
+    return std::pair{number, name.substr(prefix.size() + digits)};
+}
+
+// Whether a picture is the frame with these notes; false if it is cut off or damaged, as an interrupted copy is. Throws
+// InputError if it is something else.
+bool is_frame(const fs::path& file, const Notes& notes) {
+    const std::string bytes = read_text(file, largest_frame);
+    const auto refuse = [&](const std::string& why) {
+        return InputError(file.string(), {}, why,
+                          "draw into another folder, or add --overwrite to replace what is there");
+    };
+    if (bytes.empty()) return false;
+    if (!is_png(bytes)) throw refuse("this is no picture of an animation");
+    Origin there;
+    try {
+        if (png_notes(bytes) == notes) return true;
+        there = origin_of(bytes);
+    } catch (const std::runtime_error& problem) {
+        if (std::string_view(problem.what()).find("does not tell") == std::string_view::npos) return false;
+        throw refuse("this is no picture of an animation");
+    }
+    const auto wanted = [&](std::string_view key) {
+        const auto at = std::find_if(notes.begin(), notes.end(), [&](const Note& note) { return note.keyword == key; });
+        return at == notes.end() ? std::string() : at->text;
+    };
+    if (there.command != wanted("Achilles Command"))
+        throw refuse("this picture was made by another command:\n    " + there.command);
+    if (there.software != wanted("Software")) throw refuse("this picture was made by " + there.software);
+    throw refuse("this picture was made by the same command, but from a system file that has changed since");
+}
+
+}  // namespace
+
+std::string frame_name(std::size_t number) { return fmt::format("{}{:05}", prefix, number); }
+
+FrameFolder::FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+    lock_ = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // Some file systems know no locks: then nobody is kept out.
+    if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(lock_);
+        throw InputError(folder_.path().string(), {}, "another process is drawing into this folder");
+    }
+}
+
+FrameFolder::~FrameFolder() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+std::vector<std::size_t> FrameFolder::missing(std::size_t count,
+                                              const std::function<Notes(const std::string& name)>& notes_of,
+                                              bool overwrite) const {
+    std::vector<bool> there(count, false);
+    std::vector<std::pair<std::size_t, fs::path>> frames;
+    std::vector<fs::path> waste;
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
+        const auto name = parsed(entry.path().filename().string());
+        if (!name) continue;
+        if (name->second == ending) frames.emplace_back(name->first, entry.path());
+        if (name->second.rfind(unfinished, 0) == 0) waste.push_back(entry.path());
+    }
+    std::sort(frames.begin(), frames.end());  // the first that is wrong is the one that is told
+    for (const auto& [number, path] : frames) {
+        try {
+            const bool whole = is_frame(path, notes_of(frame_name(number)));
+            if (number < count)
+                there[number] = whole;
+            else
+                waste.push_back(path);
+        } catch (const InputError&) {
+            if (!overwrite) throw;
+            if (number >= count) waste.push_back(path);
+        }
+    }
+    for (const fs::path& path : waste) fs::remove(path);
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < count; ++i)
+        if (!there[i]) numbers.push_back(i);
+    return numbers;
+}
+
+void FrameFolder::write(std::size_t number, std::string png) const {
+    OutputFiles files;
+    const std::string path = file(number).string();
+    files.add(path);
+    files.put(path, std::move(png));
+    files.commit();
+}
+
+void FrameFolder::try_to_write(std::size_t number) const { OutputFiles().add(file(number).string()); }
+
+}  // namespace achilles

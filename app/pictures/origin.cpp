@@ -1,0 +1,178 @@
+#include "pictures/origin.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "image/png_notes.hpp"
+#include "model/model.hpp"
+#include "output/output.hpp"
+#include "paint/svg.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::string_view bare_letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%^";
+
+// Takes a word that shell_word() wrote off the text's front.
+std::string take_word(std::string_view& text) {
+    const auto refuse = [] { return std::runtime_error("its origin is damaged: a word without end or beginning"); };
+    std::string word;
+    const std::size_t bare = std::min(text.find_first_not_of(bare_letters), text.size());
+    if (bare > 0) {
+        word = text.substr(0, bare);
+        text.remove_prefix(bare);
+        return word;
+    }
+    if (text.substr(0, 1) != "'") throw refuse();
+    for (;;) {
+        text.remove_prefix(1);
+        const std::size_t end = text.find('\'');
+        if (end == std::string_view::npos) throw refuse();
+        word += text.substr(0, end);
+        text.remove_prefix(end + 1);
+        if (text.substr(0, 3) != "\\''") return word;
+        word += '\'';
+        text.remove_prefix(2);
+    }
+}
+
+constexpr std::string_view software_key = "Software", title_key = "Title";  // PNG's own
+constexpr std::string_view command_key = "Achilles Command", picture_key = "Achilles Picture";
+
+std::string key_of(Source::Kind kind) {
+    switch (kind) {
+        case Source::Kind::system:
+            return "Achilles System";
+        case Source::Kind::journal:
+            return "Achilles Journal";
+        case Source::Kind::refusal:
+            return "Achilles Refusal";
+    }
+    return {};
+}
+
+// "m = 1, g = 9.81, e = 0.5" in the shortest digits that read back the same.
+std::string parameters_text(const Trajectory& trajectory) {
+    const SystemDescription& description = trajectory.model->description();
+    const Run& run = trajectory.run;
+    std::string text;
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", description.parameters[i].name, run.parameters[i]);
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        text += fmt::format("{0}{1}(0) = {2}, {1}'(0) = {3}", text.empty() ? "" : ", ", description.coordinates[i].name,
+                            run.q[at], run.v[at]);
+    }
+    return text;
+}
+
+std::string options_text(const Options& o) {
+    const Truncation& t = o.truncation;
+    return fmt::format(
+        "tolerance {}, method {}, end time {}, at most {} impacts, {} conditions, {} re-initialization, eps_q {}, "
+        "eps_v {}, eps_t {}",
+        o.tolerance, to_text(o.method), o.end_time, o.max_impacts, to_text(t.conditions), to_text(t.reinitialization),
+        t.eps_q, t.eps_v, t.eps_t);
+}
+
+std::string certificates_text(const Trajectory& trajectory) {
+    std::string text;
+    for (const Event& event : trajectory.events)
+        if (event.certificate) text += fmt::format("Zeno point at t = {}: {}\n", event.t, sentence(*event.certificate));
+    return text + fmt::format("outcome: {} ({})", to_text(trajectory.outcome.kind), trajectory.outcome.message);
+}
+
+}  // namespace
+
+std::string shell_word(const std::string& word) {
+    if (!word.empty() && word.find_first_not_of(bare_letters) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    return text + "'";
+}
+
+namespace {
+
+// Where a picture goes and how it is worked at, rather than what it shows.
+bool is_where(const std::string& option) { return option == "--out" || option == "--jobs" || option == "--overwrite"; }
+
+}  // namespace
+
+std::string shell_line(const std::vector<std::string>& words) {
+    std::string text = "achilles";
+    for (const std::string& word : words) text += " " + shell_word(word);
+    return text;
+}
+
+std::string command_line(const std::vector<std::string>& words) {
+    std::vector<std::string> kept;
+    bool options_end = false;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string name = words[i].substr(0, words[i].find('='));
+        options_end = options_end || words[i] == "--";
+        if (!options_end && is_where(name)) {
+            if (name == words[i] && name != "--overwrite") ++i;  // its value is the next word
+            continue;
+        }
+        kept.push_back(words[i]);
+    }
+    return shell_line(kept);
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+    if (take_word(text) != "achilles") throw std::runtime_error("its origin names no command of achilles");
+    std::vector<std::string> words;
+    while (!text.empty()) {
+        if (text[0] != ' ') throw std::runtime_error("its origin is damaged: words that touch");
+        text.remove_prefix(1);
+        words.push_back(take_word(text));
+    }
+    return words;
+}
+
+Notes notes(const Origin& origin, const std::vector<Shown>& runs) {
+    Notes result;
+    const auto add = [&](std::string_view key, const std::string& text) { result.push_back({std::string(key), text}); };
+    std::string title;
+    for (const Shown& run : runs) title += (title.empty() ? "" : "; ") + run.trajectory->model->description().title;
+    add(title_key, title);
+    add(software_key, origin.software);
+    add(command_key, origin.command);
+    if (!origin.picture.empty()) add(picture_key, origin.picture);
+    for (const Shown& run : runs) {
+        const std::string name = runs.size() > 1 ? run.system + ": " : "";
+        add("Achilles Parameters", name + parameters_text(*run.trajectory));
+        add("Achilles Options", name + options_text(run.trajectory->run.options));
+        add("Achilles Certificates", name + certificates_text(*run.trajectory));
+    }
+    for (const Source& source : origin.sources) add(key_of(source.kind), shell_word(source.name) + "\n" + source.text);
+    return result;
+}
+
+bool is_png(std::string_view file) { return file.substr(0, 4) == "\x89PNG"; }
+
+Origin origin_of(std::string_view file) {
+    const bool png = is_png(file);
+    if (!png && file.find("<svg") == std::string_view::npos)
+        throw std::runtime_error("this is neither a PNG nor an SVG file");
+    Origin origin;
+    for (const Note& note : png ? png_notes(file) : svg_notes(file)) {
+        if (note.keyword == software_key) origin.software = note.text;
+        if (note.keyword == command_key) origin.command = note.text;
+        if (note.keyword == picture_key) origin.picture = note.text;
+        for (const Source::Kind kind : {Source::Kind::system, Source::Kind::journal, Source::Kind::refusal}) {
+            if (note.keyword != key_of(kind)) continue;
+            std::string_view text = note.text;
+            const std::string name = take_word(text);
+            if (text.substr(0, 1) != "\n") throw std::runtime_error("its origin is damaged: a file without a name");
+            origin.sources.push_back({kind, name, std::string(text.substr(1))});
+        }
+    }
+    if (origin.command.empty()) throw std::runtime_error("this picture does not tell where it comes from");
+    return origin;
+}
+
+}  // namespace achilles

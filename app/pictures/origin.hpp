@@ -1,0 +1,44 @@
+// Where a picture comes from, carried by the picture itself: enough to make it again, and what a reader wants to know.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/inputs.hpp"
+#include "image/note.hpp"
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+struct Origin {
+    std::string software;  // "Achilles 0.1.0"
+    std::string command;   // as a shell reads it, without --out and what else does not change the picture
+    std::string picture;   // which of the command's; "" where it makes one
+    std::vector<Source> sources;
+};
+
+// A word as a shell reads it, quoted if need be.
+std::string shell_word(const std::string& word);
+// "achilles" and the words, as a shell reads them.
+std::string shell_line(const std::vector<std::string>& words);
+// The same without --out, --jobs, --overwrite and their values.
+std::string command_line(const std::vector<std::string>& words);
+// The words again. Throws std::runtime_error if the text is no such command line.
+std::vector<std::string> words_of(std::string_view command_line);
+
+// A run that a picture shows.
+struct Shown {
+    std::string system;  // by name or path
+    const Trajectory* trajectory;
+};
+// The origin, the systems' titles and, for a reader, every run's parameters, start, options and certificates.
+Notes notes(const Origin& origin, const std::vector<Shown>& runs);
+
+// The origin a PNG or SVG file carries. Throws std::runtime_error that says what is wrong: neither of both, damaged,
+// cut off, no origin in it.
+Origin origin_of(std::string_view file);
+
+bool is_png(std::string_view file);
+
+}  // namespace achilles

@@ -1,0 +1,75 @@
+#include "pictures/studio.hpp"
+
+#include <imgui.h>
+
+#include "cli/assets.hpp"
+#include "image/png_notes.hpp"
+#include "output/output.hpp"
+#include "paint/paint.hpp"
+#include "paint/svg.hpp"
+
+namespace achilles {
+
+Studio::Studio(const std::vector<std::string>& words) : command_(command_line(words)) {}
+
+Studio::Studio(const Origin& origin)
+    : inputs_(origin.sources), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
+
+void Studio::add(const std::string& path) {
+    if (!reproduces_) files_.add(path);
+}
+
+Notes Studio::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
+    return notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs);
+}
+
+void Studio::put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs,
+                 const Make& make) {
+    if (reproduces_ && picture != wanted_) return;
+    const std::string bytes = make(notes_of(picture, runs));
+    if (reproduces_)
+        made_ = bytes;
+    else
+        files_.put(path, bytes);
+}
+
+void Studio::put_text(const std::string& path, const std::string& text) {
+    if (!reproduces_) files_.put(path, text);
+}
+
+void Studio::commit() {
+    if (!reproduces_) files_.commit();
+}
+
+namespace {
+
+SurfaceOptions with_fonts(SurfaceOptions options) {
+    options.fonts = assets() / "fonts";
+    return options;
+}
+
+}  // namespace
+
+PictureSurface::PictureSurface(const SurfaceOptions& options) : surface_(with_fonts(options)) {}
+
+std::string PictureSurface::png(const FrameFunction& draw, const Notes& notes) {
+    return with_notes(png_bytes(surface_.frame(draw)), notes);
+}
+
+std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
+    SurfaceOptions options;
+    options.width = size.width;
+    options.height = size.height;
+    options.scale = size.scale;
+    options.text_size = options.figure_text_size = figure.text_size;
+    options.curve_fineness = 2;
+    options.transparent = figure.background.a < 255;
+    const Rectangle area{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
+    return PictureSurface(options).png([&] { paint(figure, ImGui::GetBackgroundDrawList(), area, size.scale); }, notes);
+}
+
+std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
+    return svg(figure, size.width, size.height, size.scale, assets() / "fonts", notes);
+}
+
+}  // namespace achilles

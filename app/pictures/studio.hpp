@@ -1,0 +1,68 @@
+// What the commands that make pictures share: where they read from and where pictures go. `reproduce` runs the same
+// commands in a studio of its own, which reads from a picture and keeps the one that is asked for.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/write_files.hpp"
+#include "figure/figure.hpp"
+#include "pictures/origin.hpp"
+#include "surface/offscreen.hpp"
+
+namespace achilles {
+
+class Studio {
+ public:
+    // For a command line: from the disk, into files.
+    explicit Studio(const std::vector<std::string>& words);
+    // For a picture made before.
+    explicit Studio(const Origin& origin);
+
+    Inputs& inputs() { return inputs_; }
+    bool reproduces() const { return reproduces_; }
+
+    // What such a picture carries.
+    Notes notes_of(const std::string& picture, const std::vector<Shown>& runs) const;
+
+    // Tried before the work: a path that cannot be written is bad input, not a loss at the end. Throws InputError.
+    void add(const std::string& path);
+    // What the file will hold. `make` is not called for a picture nobody asked for.
+    using Make = std::function<std::string(const Notes&)>;
+    void put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs, const Make& make);
+    void put_text(const std::string& path, const std::string& text);
+    // Writes all, or nothing.
+    void commit();
+
+    // What `reproduce` wants: nothing if the command made no such picture.
+    const std::optional<std::string>& made() const { return made_; }
+
+ private:
+    Inputs inputs_;
+    OutputFiles files_;
+    std::string command_, wanted_;
+    bool reproduces_ = false;
+    std::optional<std::string> made_;
+};
+
+// Pictures of one size, one after the other: whoever fills the frame draws into its background list.
+class PictureSurface {
+ public:
+    explicit PictureSurface(const SurfaceOptions& options);
+    std::string png(const FrameFunction& draw, const Notes& notes);
+
+ private:
+    Offscreen surface_;
+};
+
+// A figure as a PNG or SVG file with these notes. Throws std::runtime_error where it cannot be drawn.
+struct PictureSize {
+    int width = 1200, height = 800;  // pixels
+    double scale = 1.0;
+};
+std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes);
+std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes);
+
+}  // namespace achilles

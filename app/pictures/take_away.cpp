@@ -1,0 +1,142 @@
+#include "pictures/take_away.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+#include "journal/journal.hpp"
+#include "output/output.hpp"
+#include "pictures/origin.hpp"
+#include "pictures/studio.hpp"
+#include "session/recipe.hpp"
+
+namespace achilles {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+void add_steps(Words& words, const std::vector<Command>& steps) {
+    for (const Command& step : steps) words.insert(words.end(), {"--do", to_text(step)});
+}
+
+// The plots as views of the system's file, where they are nothing else and no pinned run stands behind them.
+std::optional<Words> views_of(const Session& session) {
+    if (session.pinned() != nullptr) return std::nullopt;
+    const auto& views = session.description().views;
+    Words words;
+    for (const Plot& plot : session.plotted().list()) {
+        const auto named = [&](const ViewDescription& view) { return view.name == plot.view.name; };
+        const auto own = std::find_if(views.begin(), views.end(), named);
+        const bool is_own = own != views.end() && own->x.text == plot.view.x.text &&
+                            std::equal(own->y.begin(), own->y.end(), plot.view.y.begin(), plot.view.y.end(),
+                                       [](const Text& a, const Text& b) { return a.text == b.text; });
+        if (!is_own || plot.framing != Framing()) return std::nullopt;
+        words.insert(words.end(), {"--view", plot.view.name});
+    }
+    return words;
+}
+
+Words figure_words(const Session& session, const std::string& name) {
+    Words words{"figure", name};
+    const Words options = run_options(session);
+    words.insert(words.end(), options.begin(), options.end());
+    if (const auto views = views_of(session))
+        words.insert(words.end(), views->begin(), views->end());
+    else
+        add_steps(words, figure_steps(session));
+    words.insert(words.end(), {"--columns", std::to_string(session.plotted().columns())});
+    return words;
+}
+
+std::string figure_bytes(const Session& session, bool as_svg) {
+    const std::string& name = session.system();
+    const Origin origin{"Achilles " + version(),
+                        command_line(figure_words(session, name)),
+                        "",
+                        {{Source::Kind::system, name, session.description().source_text}}};
+    PublicationStyle style;
+    style.columns = session.plotted().columns();
+    const Figure figure = figure_of(session, style);
+    PictureSize size;
+    size.scale *= publication_scale;
+    const Notes carried = notes(origin, {{name, &session.trajectory()}});
+    return as_svg ? svg_of(figure, size, carried) : png_of(figure, size, carried);
+}
+
+// Of what cannot be drawn here (a library that is missing) only the message matters.
+std::string drawn(const Session& session, const std::string& file, bool as_svg) {
+    try {
+        return figure_bytes(session, as_svg);
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::runtime_error& problem) {
+        throw InputError(file, {}, problem.what());
+    }
+}
+
+std::string bytes_of(const Session& session, const std::string& file) {
+    std::string ending = fs::path(file).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == ".svg" || ending == ".png") return drawn(session, file, ending == ".svg");
+    if (ending == ".json") return to_json(session.trajectory());
+    if (ending == ".csv") return to_csv(session.trajectory());
+    if (ending == ".journal") return journal_text(recipe(session));
+    throw InputError(file, {}, "this name does not say what to export",
+                     "end it in .svg or .png (the plots), .json or .csv (the run), or .journal (the session)");
+}
+
+}  // namespace
+
+Figure figure_of(const Session& session, const PublicationStyle& style) {
+    const Theme theme = light_theme();
+    const Plots& plots = session.plotted();
+    std::vector<Panel> panels = plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print);
+    const Trajectory* pinned = session.pinned();
+    const bool behind = pinned != nullptr && pinned->model == session.model();
+    if (behind) {
+        const std::vector<Panel> others = plots.compose(*pinned, plot_samples(*pinned), theme, Plots::Medium::print);
+        for (std::size_t i = 0; i < panels.size(); ++i)
+            panels[i] = with_pinned(std::move(panels[i]), others[i], plots.list()[i].framing, theme);
+    }
+    Figure figure = publication(session.trajectory(), std::move(panels), style);
+    if (behind) figure.keys.push_back({"pinned run", pinned_stroke(theme, {})});
+    return figure;
+}
+
+void take_away(const Session& session, const std::string& file, bool overwrite) {
+    if (file.empty() || file == "-") throw InputError({}, {}, "a file to export to is missing");
+    std::error_code ignored;
+    if (!overwrite && fs::exists(file, ignored))
+        throw InputError(file, {}, "there is a file already",
+                         "export under another name, or overwrite it: export FILE overwrite");
+    OutputFiles files;
+    files.add(file);  // before the work
+    files.put(file, bytes_of(session, file));
+    files.commit();
+}
+
+std::string command_for(const Session& session, const std::string& what) {
+    const std::string name = name_anywhere(session.system()), stem = fs::path(name).stem().string();
+    if (what == "figure") {
+        Words words = figure_words(session, name);
+        words.insert(words.end(), {"--out", stem + ".svg"});
+        return shell_line(words);
+    }
+    Words words{what == "run" ? "simulate" : "explore", name};
+    const Words options = run_options(session);
+    words.insert(words.end(), options.begin(), options.end());
+    if (what == "run")
+        words.insert(words.end(), {"--json", stem + ".json"});
+    else
+        add_steps(words, explorer_steps(session));
+    return shell_line(words);
+}
+
+}  // namespace achilles

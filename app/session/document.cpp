@@ -1,0 +1,167 @@
+#include "session/document.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/write_files.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* template_text =
+    R"toml(# A ball in a bowl. Change anything: what can be read takes effect when you pause.
+title = "A new system"
+
+[[coordinate]]
+name  = "x"
+start = -1.0
+rate  = 1.5
+unit  = "m"
+
+[[coordinate]]
+name  = "y"
+start = 1.5
+rate  = 0.0
+unit  = "m"
+
+[[parameter]]
+name  = "m"
+value = 1.0
+range = [0.1, 10.0]
+unit  = "kg"
+about = "mass"
+
+[[parameter]]
+name  = "g"
+value = 9.81
+range = [0.1, 20.0]
+unit  = "m/s^2"
+about = "gravity"
+
+[[parameter]]
+name  = "e"
+value = 0.6
+range = [0.0, 1.0]
+about = "restitution: normal speed after an impact over that before"
+
+# x' is the rate of x.
+[lagrangian]
+kinetic   = "m/2*(x'^2 + y'^2)"
+potential = "m*g*y"
+
+# The motion keeps the gap at zero or above; at an impact its rate is reversed and scaled.
+[[constraint]]
+gap         = "y - x^2/8"
+restitution = "e"
+
+[run]
+end_time = 6.0
+
+# The surface, and the ball.
+[[drawing]]
+shape = "curve"
+over  = ["s", -4.0, 4.0]
+at    = ["s", "s^2/8"]
+
+[[drawing]]
+shape  = "disc"
+at     = ["x", "y"]
+radius = 0.05
+
+# The plots.
+[[view]]
+name = "height"
+x = "t"
+y = ["y"]
+
+[[view]]
+name = "path"
+x = "x"
+y = ["y"]
+
+[[view]]
+name = "energy"
+x = "t"
+y = ["energy"]
+
+[[view]]
+name = "contact force"
+x = "t"
+y = ["lambda"]
+)toml";
+
+// The same file, whatever it is called.
+fs::path place_of(const std::string& file) {
+    std::error_code problem;
+    const fs::path place = fs::weakly_canonical(fs::absolute(file), problem);
+    return problem ? fs::path(file) : place;
+}
+
+}  // namespace
+
+Document new_document() { return {"untitled", "", "untitled", template_text, template_text, {}}; }
+
+Document open_document(const std::string& name, const fs::path& file) {
+    const std::string text = read_text(file);
+    return {name, file == fs::path(name) ? name : "", file.string(), text, text, {}};
+}
+
+void save(Document& document, const std::string& file, bool overwrite) {
+    if (file.empty()) throw InputError({}, {}, "a file to save to is missing");
+    if (file == "-") throw InputError({}, {}, "the text is saved to a file, not to standard output");
+    const bool is_own = !document.file.empty() && place_of(document.file) == place_of(file);
+    std::error_code ignored;
+    if (!is_own && !overwrite && fs::exists(file, ignored))
+        throw InputError(file, {}, "there is a file already",
+                         "save under another name, or overwrite it: save FILE overwrite");
+    OutputFiles files;
+    files.add(file);
+    files.put(file, document.text);
+    files.commit();
+    mark_saved(document, file);
+}
+
+void mark_saved(Document& document, const std::string& file) {
+    document.file = document.name = document.source = file;
+    document.saved = document.text;
+}
+
+Run carried_over(const SystemDescription& before, const Run& run, const Model& after) {
+    const SystemDescription& now = after.description();
+    Run result = after.default_run();
+    for (std::size_t i = 0; i < now.parameters.size(); ++i)
+        for (std::size_t j = 0; j < before.parameters.size(); ++j)
+            if (now.parameters[i].name == before.parameters[j].name &&
+                now.parameters[i].value == before.parameters[j].value)
+                result.parameters[i] = run.parameters[j];
+    for (std::size_t i = 0; i < now.coordinates.size(); ++i)
+        for (std::size_t j = 0; j < before.coordinates.size(); ++j) {
+            const CoordinateDescription &here = now.coordinates[i], &there = before.coordinates[j];
+            if (here.name != there.name) continue;
+            const auto to = static_cast<Eigen::Index>(i), from = static_cast<Eigen::Index>(j);
+            if (here.start == there.start) result.q[to] = run.q[from];
+            if (here.rate == there.rate) result.v[to] = run.v[from];
+        }
+    const auto keep = [&](auto member) {
+        if (now.options.*member == before.options.*member) result.options.*member = run.options.*member;
+    };
+    keep(&Options::end_time);
+    keep(&Options::tolerance);
+    keep(&Options::method);
+    keep(&Options::max_impacts);
+    keep(&Options::max_steps);
+    const auto keep_truncation = [&](auto member) {
+        if (now.options.truncation.*member == before.options.truncation.*member)
+            result.options.truncation.*member = run.options.truncation.*member;
+    };
+    keep_truncation(&Truncation::eps_q);
+    keep_truncation(&Truncation::eps_v);
+    keep_truncation(&Truncation::eps_t);
+    keep_truncation(&Truncation::conditions);
+    keep_truncation(&Truncation::reinitialization);
+    return result;
+}
+
+}  // namespace achilles

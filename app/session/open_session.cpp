@@ -1,0 +1,41 @@
+#include "session/open_session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/assets.hpp"
+#include "cli/overrides.hpp"
+
+namespace achilles {
+
+std::string first_system() {
+    const std::vector<std::string> names = system_names();
+    if (names.empty()) throw InputError(assets().string(), {}, "there are no systems here");
+    const std::string usual = "ball_on_sine";
+    return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
+}
+
+Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
+                     const OptionOverrides& overrides, Library library, Patience patience) {
+    library.finish = [overrides](SystemDescription& description) { apply(overrides, description.options); };
+    SystemDescription description = adjusted(std::move(first), settings, overrides);
+    warn(description.options);
+    return {name, std::move(description), std::move(library), patience};
+}
+
+Library library_of(Studio& studio) {
+    Library library;
+    library.open = [&studio](const std::string& name) {
+        const std::filesystem::path path(name);
+        const bool is_path = path.has_parent_path() || path.extension() == ".toml";
+        const std::string text = studio.inputs().text(name);
+        return Document{name, is_path ? name : "", name, text, text, {}};
+    };
+    library.journal = [&studio](const std::string& name) { return studio.inputs().journal(name); };
+    library.exports = !studio.reproduces();
+    if (studio.reproduces())
+        library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
+    return library;
+}
+
+}  // namespace achilles

@@ -1,0 +1,25 @@
+// The session that a command line asks for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pictures/studio.hpp"
+#include "session/session.hpp"
+
+namespace achilles {
+
+struct OptionOverrides;
+
+// Where none is asked for: the paper's first example, or whatever there is.
+std::string first_system();
+
+// A session on a system as the command line changes it: `settings` for this one, `overrides` for every one that is
+// opened. Throws InputError.
+Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
+                     const OptionOverrides& overrides, Library library, Patience patience);
+
+// A picture's systems and journals. What its journal writes is written only when it is made for the first time.
+Library library_of(Studio& studio);
+
+}  // namespace achilles

@@ -1,0 +1,277 @@
+#include "session/plots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/ticks.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr int most_columns = 4, most_rows = 4;
+
+// The user's hand, not a file, made the mistake.
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+ViewDescription view_of(const std::string& name, const std::string& x, const std::vector<std::string>& y) {
+    ViewDescription view{name, {x, {}}, {}};
+    for (const std::string& text : y) view.y.push_back({text, {}});
+    return view;
+}
+
+bool same_expressions(const ViewDescription& a, const ViewDescription& b) {
+    return a.x.text == b.x.text && std::equal(a.y.begin(), a.y.end(), b.y.begin(), b.y.end(),
+                                              [](const Text& p, const Text& q) { return p.text == q.text; });
+}
+
+// What a plot is called that no file names.
+std::string name_of(const ViewDescription& view) {
+    std::string name;
+    for (const Text& y : view.y) name += (name.empty() ? "" : ", ") + y.text;
+    return view.x.text == "t" ? name : name + " over " + view.x.text;
+}
+
+}  // namespace
+
+Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), choices_(model_->description().views) {
+    for (const auto& [name, y] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}, {"energy", "energy"}}) {
+        const ViewDescription view = view_of(name, "t", {y});
+        if (std::none_of(choices_.begin(), choices_.end(), [&](const auto& c) { return same_expressions(c, view); }))
+            choices_.push_back(view);
+    }
+    const std::size_t own = model_->description().views.size();
+    columns_ = own > 2 ? 2 : 1;
+    rows_ = own > 1 ? 2 : 1;
+    fill();
+}
+
+// As many plots as the grid has places, by the order of the choices.
+void Plots::fill() {
+    const auto places = static_cast<std::size_t>(columns_ * rows_);
+    if (list_.size() > places) list_.resize(places);
+    while (list_.size() < places) list_.push_back(prepared(choices_[list_.size() % choices_.size()]));
+}
+
+Plot Plots::prepared(const ViewDescription& view) const {
+    return {view, std::make_shared<const PreparedView>(*model_, view), {}};
+}
+
+Plots Plots::carried_over(const std::shared_ptr<const Model>& model) const {
+    Plots result(model);
+    const auto& before = model_->description().views;
+    const auto& after = model->description().views;
+    // Views that the text itself has changed are shown as the text has them.
+    if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), same_expressions)) return result;
+    result.columns_ = columns_;
+    result.rows_ = rows_;
+    result.linked_ = linked_;
+    result.revision_ = revision_ + 1;
+    result.list_.clear();
+    try {
+        for (const Plot& plot : list_) {
+            result.list_.push_back(result.prepared(plot.view));
+            result.list_.back().framing = plot.framing;
+        }
+    } catch (const InputError&) {  // a name is gone
+        return Plots(model);
+    }
+    return result;
+}
+
+Plot& Plots::at(int number) {
+    if (number < 1 || static_cast<std::size_t>(number) > list_.size())
+        throw refusal(fmt::format("there is no plot {}: the grid has {}", number, list_.size()));
+    return list_[static_cast<std::size_t>(number - 1)];
+}
+
+void Plots::perform(const command::Grid& command) {
+    if (command.columns < 1 || command.columns > most_columns || command.rows < 1 || command.rows > most_rows)
+        throw refusal(fmt::format("a grid of {} by {} plots cannot be shown", command.columns, command.rows),
+                      fmt::format("there can be up to {} columns and {} rows", most_columns, most_rows));
+    columns_ = command.columns;
+    rows_ = command.rows;
+    fill();
+    ++revision_;
+}
+
+void Plots::perform(const command::PlotView& command) {
+    Plot& plot = at(command.plot);
+    ViewDescription view = view_of("", command.x, command.y);
+    const auto choice = std::find_if(choices_.begin(), choices_.end(),
+                                     [&](const ViewDescription& c) { return same_expressions(c, view); });
+    view.name = choice != choices_.end() ? choice->name : name_of(view);
+    const Framing::Limits time = plot.framing.x;
+    const bool was_over_time = plot.over_time();
+    plot = prepared(view);
+    if (was_over_time && plot.over_time() && linked_) plot.framing.x = time;
+    ++revision_;
+}
+
+void Plots::perform(const command::Zoom& command) {
+    const Framing before = at(command.plot).framing;
+    perform(command::Range{command.plot, false, command.y_low, command.y_high});
+    try {
+        perform(command::Range{command.plot, true, command.x_low, command.x_high});
+    } catch (const InputError&) {
+        at(command.plot).framing = before;
+        throw;
+    }
+}
+
+void Plots::perform(const command::Range& command) {
+    Plot& plot = at(command.plot);
+    if (!(command.low < command.high) || !std::isfinite(command.high - command.low))
+        throw refusal(fmt::format("an axis cannot go from {} to {}", command.low, command.high));
+    (command.is_x ? plot.framing.x : plot.framing.y) = {command.low, command.high};
+    if (command.is_x && linked_ && plot.over_time())
+        for (Plot& other : list_)
+            if (other.over_time()) other.framing.x = plot.framing.x;
+    ++revision_;
+}
+
+void Plots::perform(const command::Fit& command) {
+    Plot& plot = at(command.plot);
+    plot.framing.x.reset();
+    plot.framing.y.reset();
+    if (linked_ && plot.over_time())
+        for (Plot& other : list_)
+            if (other.over_time()) other.framing.x.reset();
+    ++revision_;
+}
+
+void Plots::perform(const command::AxisScale& command) {
+    Framing& framing = at(command.plot).framing;
+    (command.is_x ? framing.log_x : framing.log_y) = command.logarithmic;
+    (command.is_x ? framing.x : framing.y).reset();
+    ++revision_;
+}
+
+void Plots::perform(const command::ShowCurve& command) {
+    Plot& plot = at(command.plot);
+    if (command.curve < 1 || static_cast<std::size_t>(command.curve) > plot.view.y.size())
+        throw refusal(fmt::format("plot {} has no curve {}", command.plot, command.curve));
+    const auto curve = static_cast<std::size_t>(command.curve - 1);
+    if (command.shown)
+        plot.framing.hidden.erase(curve);
+    else
+        plot.framing.hidden.insert(curve);
+    ++revision_;
+}
+
+void Plots::perform(const command::Link& command) {
+    linked_ = command.on;
+    ++revision_;
+}
+
+std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
+                                  Medium medium) const {
+    std::vector<Panel> panels;
+    // Plots over the same part of time share their samples.
+    Framing::Limits part;
+    std::vector<Sample> close;
+    for (const Plot& plot : list_) {
+        Framing framing = plot.framing;
+        framing.legend = medium == Medium::print;
+        std::span<const Sample> own = samples;
+        if (plot.over_time() && framing.x) {
+            if (part != framing.x) {
+                part = framing.x;
+                const double low = std::clamp((*part)[0], 0.0, trajectory.end_time);
+                close = plot_samples(trajectory, low, std::clamp((*part)[1], low, trajectory.end_time));
+            }
+            own = close;
+        }
+        panels.push_back(achilles::compose(trajectory, own, *plot.prepared, theme, framing));
+        if (medium == Medium::screen) panels.back().title.clear();
+    }
+    return panels;
+}
+
+Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme) {
+    std::vector<Curve> behind = pinned.curves;
+    for (Curve& curve : behind) {
+        curve.label.clear();
+        curve.stroke = pinned_stroke(theme, curve.stroke);
+    }
+    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
+    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
+    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
+    return panel;
+}
+
+namespace {
+
+// Does the steps as it notes them, so that it knows what is still missing.
+struct Steps {
+    explicit Steps(const Plots& plots) : now(plots.model()) {}
+    template <class Kind>
+    void take(const Kind& step) {
+        now.perform(step);
+        all.emplace_back(step);
+    }
+    Plots now;
+    std::vector<Command> all;
+};
+
+void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
+    const int number = static_cast<int>(at) + 1;
+    const auto framing = [&]() -> const Framing& { return steps.now.list()[at].framing; };
+    const Framing& goal = wanted.framing;
+    if (framing().log_x != goal.log_x) steps.take(command::AxisScale{number, true, goal.log_x});
+    if (framing().log_y != goal.log_y) steps.take(command::AxisScale{number, false, goal.log_y});
+    const bool x = goal.x && goal.x != framing().x, y = goal.y && goal.y != framing().y;
+    if (x && y)
+        steps.take(command::Zoom{number, (*goal.x)[0], (*goal.x)[1], (*goal.y)[0], (*goal.y)[1]});
+    else if (x || y)
+        steps.take(command::Range{number, x, (*(x ? goal.x : goal.y))[0], (*(x ? goal.x : goal.y))[1]});
+    for (const std::size_t curve : goal.hidden)
+        if (!framing().hidden.contains(curve))
+            steps.take(command::ShowCurve{number, static_cast<int>(curve) + 1, false});
+}
+
+std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_one) {
+    Steps steps(plots);
+    if (always_grid || steps.now.columns() != plots.columns() || steps.now.rows() != plots.rows())
+        steps.take(command::Grid{plots.columns(), plots.rows()});
+    for (std::size_t i = 0; i < plots.list().size(); ++i) {
+        const ViewDescription& view = plots.list()[i].view;
+        if (same_expressions(view, steps.now.list()[i].view)) continue;
+        command::PlotView step{static_cast<int>(i) + 1, view.x.text, {}};
+        for (const Text& y : view.y) step.y.push_back(y.text);
+        steps.take(step);
+    }
+    if (one_by_one || !plots.linked()) steps.take(command::Link{false});
+    for (std::size_t i = 0; i < plots.list().size(); ++i) frame_as(plots.list()[i], i, steps);
+    if (steps.now.linked() != plots.linked()) steps.take(command::Link{plots.linked()});
+    const bool done = std::equal(plots.list().begin(), plots.list().end(), steps.now.list().begin(),
+                                 [](const Plot& a, const Plot& b) { return a.framing == b.framing; });
+    // Where time was not always shared, axis by axis.
+    return done || one_by_one ? steps.all : steps_to(plots, always_grid, true);
+}
+
+}  // namespace
+
+std::vector<Command> steps_to(const Plots& plots, bool always_grid) { return steps_to(plots, always_grid, false); }
+
+std::string to_text(const Plots& plots) {
+    std::string text =
+        fmt::format("grid {} {}{}\n", plots.columns(), plots.rows(), plots.linked() ? "" : ", not linked");
+    for (const Plot& plot : plots.list()) {
+        text += fmt::format("plot {}: {}", plot.view.name, plot.view.x.text);
+        for (const Text& y : plot.view.y) text += " | " + y.text;
+        const Framing& framing = plot.framing;
+        for (const auto& [name, limits] : {std::pair{"x", framing.x}, {"y", framing.y}})
+            if (limits) text += fmt::format(", {} {:.9g} to {:.9g}", name, (*limits)[0], (*limits)[1]);
+        if (framing.log_x) text += ", log x";
+        if (framing.log_y) text += ", log y";
+        for (const std::size_t curve : framing.hidden) text += fmt::format(", without {}", curve + 1);
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace achilles

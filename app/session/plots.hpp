@@ -1,0 +1,75 @@
+// The plots of the explorer: a grid of views, and how each is looked at. A value: it knows no run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "figure/compose.hpp"
+#include "session/command.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+struct Plot {
+    ViewDescription view;
+    std::shared_ptr<const PreparedView> prepared;
+    Framing framing;
+    bool over_time() const { return prepared->quantities()[0].is_time; }
+};
+
+class Plots {
+ public:
+    // As many of the file's views as a grid of four holds, the rest to choose from.
+    explicit Plots(std::shared_ptr<const Model> model);
+    // The same choice for another text of the system, as far as its expressions mean something there.
+    Plots carried_over(const std::shared_ptr<const Model>& model) const;
+
+    const std::vector<Plot>& list() const { return list_; }  // row by row: columns() * rows() of them
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    bool linked() const { return linked_; }  // plots over time show the same time
+    // The file's views, then those that any system has: gap, contact force, energy.
+    const std::vector<ViewDescription>& choices() const { return choices_; }
+
+    // Each throws InputError and changes nothing where it makes no sense. Returns nothing; counts revision() up.
+    void perform(const command::Grid& command);
+    void perform(const command::PlotView& command);
+    void perform(const command::Zoom& command);
+    void perform(const command::Range& command);
+    void perform(const command::Fit& command);
+    void perform(const command::AxisScale& command);
+    void perform(const command::ShowCurve& command);
+    void perform(const command::Link& command);
+
+    // Of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
+    // panels; for print they are in them.
+    enum class Medium { screen, print };
+    std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
+                               Medium medium = Medium::screen) const;
+    int revision() const { return revision_; }
+    const std::shared_ptr<const Model>& model() const { return model_; }
+
+ private:
+    Plot& at(int number);
+    Plot prepared(const ViewDescription& view) const;
+    void fill();
+
+    std::shared_ptr<const Model> model_;
+    std::vector<ViewDescription> choices_;
+    std::vector<Plot> list_;
+    int columns_ = 1, rows_ = 1, revision_ = 0;
+    bool linked_ = true;
+};
+
+// A plot with a pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits hold
+// both.
+Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme);
+
+// What leads to these plots from those that their model begins with; `grid` always, or only where it is another.
+std::vector<Command> steps_to(const Plots& plots, bool always_grid = false);
+
+// The plots as text, for the session's.
+std::string to_text(const Plots& plots);
+
+}  // namespace achilles

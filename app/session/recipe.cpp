@@ -1,0 +1,204 @@
+#include "session/recipe.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/overrides.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Every value that differs, by name: a parameter, a start x, a rate x'.
+std::vector<std::pair<std::string, double>> changed_values(const SystemDescription& description, const Run& from,
+                                                           const Run& to) {
+    std::vector<std::pair<std::string, double>> changed;
+    for (std::size_t i = 0; i < to.parameters.size(); ++i)
+        if (from.parameters[i] != to.parameters[i])
+            changed.emplace_back(description.parameters[i].name, to.parameters[i]);
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        const std::string& name = description.coordinates[i].name;
+        if (from.q[at] != to.q[at]) changed.emplace_back(name, to.q[at]);
+        if (from.v[at] != to.v[at]) changed.emplace_back(name + "'", to.v[at]);
+    }
+    return changed;
+}
+
+bool same_eps(const Truncation& a, const Truncation& b) {
+    return a.eps_q == b.eps_q && a.eps_v == b.eps_v && a.eps_t == b.eps_t;
+}
+
+// From one run of a system to another.
+std::vector<Command> steps_between(const SystemDescription& description, const Run& from, const Run& to) {
+    std::vector<Command> steps;
+    // All at once: the run in between might be none.
+    const auto values = changed_values(description, from, to);
+    if (values.size() == 1) steps.emplace_back(command::Set{values[0].first, values[0].second});
+    if (values.size() > 1) steps.emplace_back(command::Start{values});
+    const Options &a = from.options, &b = to.options;
+    const Truncation& t = b.truncation;
+    if (a.end_time != b.end_time) steps.emplace_back(command::End{b.end_time});
+    if (a.tolerance != b.tolerance) steps.emplace_back(command::Tolerance{b.tolerance});
+    if (a.method != b.method) steps.emplace_back(command::UseMethod{b.method});
+    if (a.max_impacts != b.max_impacts) steps.emplace_back(command::MaxImpacts{b.max_impacts});
+    if (!same_eps(a.truncation, t)) steps.emplace_back(command::Eps{t.eps_q, t.eps_v, t.eps_t});
+    if (a.truncation.conditions != t.conditions) steps.emplace_back(command::UseConditions{t.conditions});
+    if (a.truncation.reinitialization != t.reinitialization)
+        steps.emplace_back(command::UseReinitialization{t.reinitialization});
+    return steps;
+}
+
+void append(std::vector<Command>& steps, const std::vector<Command>& more) {
+    steps.insert(steps.end(), more.begin(), more.end());
+}
+
+// Opens a system that runs this text.
+std::vector<Command> steps_to_text(const std::string& name, bool is_new, const std::string& saved,
+                                   const std::string& text) {
+    std::vector<Command> steps;
+    if (is_new)
+        steps.emplace_back(command::New{});
+    else
+        steps.emplace_back(command::Open{name_anywhere(name)});
+    if (text != saved) steps.emplace_back(command::Text{text});
+    return steps;
+}
+
+// What a file holds; nothing where there is none.
+std::string held_by(const std::string& file) {
+    try {
+        return read_text(file);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+bool is_untitled(const std::string& name) { return name == new_document().name; }
+
+std::string saved_text(const Session& session) {
+    const Document& document = session.document();
+    if (document.name == session.system()) return document.saved;
+    return held_by(session.description().file);  // another text stands in the editor, which is no system
+}
+
+bool pinned_beside(const Session& session) {
+    return session.pinned() != nullptr && session.pinned()->model == session.model();
+}
+
+// To the present run; where one of the same system is pinned, by way of that.
+std::vector<Command> run_steps(const Session& session, Run from) {
+    std::vector<Command> steps;
+    if (pinned_beside(session)) {
+        const Run& pinned = session.pinned()->run;
+        steps = steps_between(session.description(), from, pinned);
+        steps.emplace_back(command::Pin{true});
+        from = pinned;
+    }
+    append(steps, steps_between(session.description(), from, session.run()));
+    return steps;
+}
+
+// Where the present is.
+std::vector<Command> time_steps(const Session& session) {
+    std::vector<Command> steps;
+    const int selected = session.selected();
+    double time = 0.0;
+    if (selected > 0) {
+        steps.emplace_back(command::Select{selected});
+        time = session.trajectory().events[static_cast<std::size_t>(selected - 1)].t;
+    }
+    if (session.time() != time) steps.emplace_back(command::Seek{session.time()});
+    if (session.playing()) steps.emplace_back(command::Play{});
+    return steps;
+}
+
+// How the session is looked at, and when.
+std::vector<Command> sight_steps(const Session& session) {
+    std::vector<Command> steps = steps_to(session.plotted());
+    if (session.theme().dark) steps.emplace_back(command::UseTheme{true});
+    append(steps, steps_to(session.scene()));
+    append(steps, time_steps(session));
+    return steps;
+}
+
+}  // namespace
+
+std::string name_anywhere(const std::string& system) {
+    const fs::path path(system);
+    std::error_code problem;
+    const bool is_path = path.has_parent_path() || path.extension() == ".toml" || fs::is_regular_file(path, problem);
+    if (!is_path) return system;  // one of the assets
+    const fs::path absolute = fs::absolute(path, problem);
+    return problem ? system : absolute.lexically_normal().string();
+}
+
+std::vector<Command> recipe(const Session& session) {
+    const SystemDescription& description = session.description();
+    std::vector<Command> steps;
+    const Trajectory* pinned = session.pinned();
+    if (pinned != nullptr && pinned->model != session.model()) {
+        const SystemDescription& other = pinned->model->description();
+        append(steps, steps_to_text(session.pinned_system(), is_untitled(session.pinned_system()), held_by(other.file),
+                                    other.source_text));
+        append(steps, steps_between(other, run_of_text(other), pinned->run));
+        steps.emplace_back(command::Pin{true});
+    }
+    append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
+                                description.source_text));
+    append(steps, run_steps(session, session.file_run()));
+    append(steps, sight_steps(session));
+    // A text that is no system yet stands over one that runs.
+    const Document& document = session.document();
+    if (document.name != session.system()) steps.emplace_back(command::Open{name_anywhere(document.name)});
+    if (document.text != description.source_text && document.is_changed())
+        steps.emplace_back(command::Text{document.text});
+    return steps;
+}
+
+std::vector<std::string> run_options(const Session& session) {
+    const SystemDescription& description = session.description();
+    const Run &text = session.file_run(), &run = session.run();
+    std::vector<std::string> words;
+    for (const auto& [name, value] : changed_values(description, text, run))
+        words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});
+    const Options &a = text.options, &b = run.options;
+    const Truncation &s = a.truncation, &t = b.truncation;
+    const auto add = [&](const char* option, const auto& before, const auto& now) {
+        if (before != now) words.insert(words.end(), {option, fmt::format("{}", now)});
+    };
+    add("--end", a.end_time, b.end_time);
+    add("--tolerance", a.tolerance, b.tolerance);
+    add("--method", to_text(a.method), to_text(b.method));
+    add("--max-impacts", a.max_impacts, b.max_impacts);
+    if (!same_eps(s, t) && t.eps_q == t.eps_v && t.eps_v == t.eps_t) {
+        words.insert(words.end(), {"--eps", fmt::format("{}", t.eps_q)});
+    } else {
+        add("--eps-q", s.eps_q, t.eps_q);
+        add("--eps-v", s.eps_v, t.eps_v);
+        add("--eps-t", s.eps_t, t.eps_t);
+    }
+    add("--conditions", to_text(s.conditions), to_text(t.conditions));
+    add("--reinitialization", to_text(s.reinitialization), to_text(t.reinitialization));
+    return words;
+}
+
+std::vector<Command> figure_steps(const Session& session) {
+    std::vector<Command> steps;
+    if (pinned_beside(session)) steps = run_steps(session, session.run());
+    append(steps, steps_to(session.plotted(), true));
+    return steps;
+}
+
+std::vector<Command> explorer_steps(const Session& session) {
+    std::vector<Command> steps;
+    if (pinned_beside(session)) steps = run_steps(session, session.run());
+    append(steps, sight_steps(session));
+    return steps;
+}
+
+}  // namespace achilles

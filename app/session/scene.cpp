@@ -1,0 +1,93 @@
+#include "session/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "expression/nearest.hpp"
+
+namespace achilles {
+
+namespace {
+
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+}  // namespace
+
+void Scene::perform(const command::Look& command) {
+    if (!(command.width > 0.0) || !std::isfinite(command.x) || !std::isfinite(command.y) ||
+        !std::isfinite(command.width))
+        throw refusal(fmt::format("a part of the world {} wide cannot be shown", command.width));
+    look_ = command;
+}
+
+void Scene::perform(const command::LookAll&) { look_.reset(); }
+
+void Scene::perform(const command::Show& command) {
+    const auto& things = command::shown_things;
+    if (std::find(things.begin(), things.end(), command.what) == things.end())
+        throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
+    if (command.on)
+        shown_.insert(command.what);
+    else
+        shown_.erase(command.what);
+}
+
+void Scene::perform(const command::Speed& command) {
+    if (!(command.value >= command::slowest && command.value <= command::fastest))
+        throw refusal(fmt::format("a run is played at {} to {} times its speed, not at {}", command::slowest,
+                                  command::fastest, command.value));
+    speed_ = command.value;
+}
+
+void Scene::perform(const command::Loop& command) { loops_ = command.on; }
+
+void Scene::perform(const command::Lens& command) { lens_ = std::clamp(command.from, -100.0, 1e9); }
+
+double Scene::share(const std::string& panel) const {
+    const auto found = shares_.find(panel);
+    return found == shares_.end() ? 0.0 : found->second;
+}
+
+void Scene::perform(const command::Size& command) {
+    if (!(command.share >= 0.0 && command.share < 1.0))
+        throw refusal(fmt::format("a panel cannot take {} of the window", command.share));
+    shares_[command.panel] = command.share;
+}
+
+void Scene::perform(const command::Say& command) { caption_ = command.text; }
+
+std::vector<Command> steps_to(const Scene& scene) {
+    std::vector<Command> steps;
+    if (scene.look()) steps.emplace_back(*scene.look());
+    for (const std::string& thing : command::shown_things)
+        if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
+    if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
+    if (scene.loops()) steps.emplace_back(command::Loop{true});
+    if (scene.lens()) steps.emplace_back(command::Lens{*scene.lens()});
+    for (const std::string& panel : command::sized_panels)
+        if (scene.share(panel) > 0.0) steps.emplace_back(command::Size{panel, scene.share(panel)});
+    if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
+    return steps;
+}
+
+std::string to_text(const Scene& scene) {
+    std::string text;
+    if (const auto& look = scene.look())
+        text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
+    // The editor stands in the session's text as what it does to it.
+    for (const std::string& thing : command::shown_things)
+        if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
+            text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
+    for (const std::string& panel : command::sized_panels)
+        if (const double share = scene.share(panel); share > 0.0) text += fmt::format("size {} {:.9g}\n", panel, share);
+    if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
+    if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
+    if (scene.loops()) text += "loop on\n";
+    if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
+    return text;
+}
+
+}  // namespace achilles

@@ -1,0 +1,59 @@
+// How the mechanism is looked at and how time passes. A value: it knows no run.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "session/command.hpp"
+
+namespace achilles {
+
+class Scene {
+ public:
+    // The part of the world in the middle of the picture; nothing: all that the run needs.
+    const std::optional<command::Look>& look() const { return look_; }
+    // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", and the
+    // Zeno "lens" in place of the certificate.
+    bool shows(const std::string& what) const { return shown_.contains(what); }
+    double speed() const { return speed_; }  // seconds of the run in one of the player's
+    bool loops() const { return loops_; }
+    // The left edge of the Zeno lens; nothing: where the row begins.
+    const std::optional<double>& lens() const { return lens_; }
+    const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
+
+    // The share of the window that the user gave a panel; 0: as it fits.
+    double share(const std::string& panel) const;
+
+    // Each throws InputError and changes nothing where it makes no sense.
+    void perform(const command::Look& command);
+    void perform(const command::LookAll& command);
+    void perform(const command::Show& command);
+    void perform(const command::Speed& command);
+    void perform(const command::Loop& command);
+    void perform(const command::Lens& command);
+    void perform(const command::Size& command);
+    void perform(const command::Say& command);
+
+    // Another system: another world, but the same taste.
+    void forget_place() { look_.reset(), lens_.reset(); }
+
+ private:
+    std::optional<command::Look> look_;
+    std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events"};
+    double speed_ = 1.0;
+    bool loops_ = false;
+    std::optional<double> lens_;
+    std::map<std::string, double> shares_;
+    std::string caption_;
+};
+
+// What leads from a new scene to this one.
+std::vector<Command> steps_to(const Scene& scene);
+
+// What is not as at the beginning, for the session's text.
+std::string to_text(const Scene& scene);
+
+}  // namespace achilles

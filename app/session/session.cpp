@@ -1,0 +1,394 @@
+#include "session/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cli/overrides.hpp"
+#include "expression/nearest.hpp"
+#include "model/model.hpp"
+#include "model/read_system.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A refusal that names no file: the user's hand made the mistake.
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+void expect_positive(double value, const char* what) {
+    if (!(std::isfinite(value) && value > 0.0))
+        throw refusal(fmt::format("{} must be positive and finite, but it would be {}", what, value));
+}
+
+// Where a run keeps the value of a name: a parameter, a coordinate's start x, its rate x'. Null if there is none.
+double* find_value(const SystemDescription& description, Run& run, const std::string& name) {
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        if (description.parameters[i].name == name) return &run.parameters[i];
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const std::string& coordinate = description.coordinates[i].name;
+        if (name == coordinate) return &run.q[static_cast<Eigen::Index>(i)];
+        if (name == coordinate + "'") return &run.v[static_cast<Eigen::Index>(i)];
+    }
+    return nullptr;
+}
+
+InputError no_such_name(const SystemDescription& description, const std::string& name) {
+    std::vector<std::string> names;
+    for (const ParameterDescription& p : description.parameters) names.push_back(p.name);
+    for (const CoordinateDescription& c : description.coordinates) names.insert(names.end(), {c.name, c.name + "'"});
+    return refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name, did_you_mean(name, names)));
+}
+
+}  // namespace
+
+Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
+    : name(name_as_opened),
+      model(std::make_shared<const Model>(description)),
+      mechanism(*model),
+      file_run(run_of_text(description)) {}
+
+Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
+                        Watch* watch)
+    : trajectory(simulate(of->model, run, watch)),
+      system(std::move(of)),
+      sampler(trajectory),
+      samples(plot_samples(trajectory)),
+      limits(system->mechanism.limits(trajectory, samples)),
+      trail(trail_of(system->mechanism, trajectory, samples)),
+      revision(plotted.revision()),
+      dark(theme.dark),
+      plots(plotted.compose(trajectory, samples, theme)) {}
+
+Session::Session(const std::string& name, const SystemDescription& first, Library library, Patience patience)
+    : library_(std::move(library)),
+      patience_(patience),
+      document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
+      system_(std::make_shared<const System>(name, first)),
+      plots_(system_->model) {
+    change_system(system_, plots_, system_->model->default_run());
+}
+
+void Session::apply(const Command& command) {
+    if (!patience_) receive(patience_);
+    const Moment before = moment();
+    const std::string noticed = std::exchange(notice_, {});
+    try {
+        std::visit([this](const auto& what) { perform(what); }, command);
+        // Playing on, or letting go, must not wipe away what the last change of the run complained about.
+        const bool changes_nothing =
+            std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
+            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command) ||
+            std::holds_alternative<command::Wait>(command) || std::holds_alternative<command::Done>(command);
+        if (!changes_nothing) error_.clear();
+        if (changes_nothing) notice_ = noticed;
+        history_.remember(command, before);
+    } catch (const InputError& problem) {
+        error_ = problem.what();
+    }
+}
+
+// As it was at another moment.
+void Session::restore(Moment back) {
+    document_ = std::move(back.document);
+    placed_ = command::Seek{time_};
+    if (back.system != system_) return change_system(back.system, back.plots, back.run);
+    plots_ = back.plots;
+    rerun(back.run);
+}
+
+void Session::perform(const command::Undo&) {
+    if (!can_undo()) throw refusal("there is nothing to undo");
+    restore(history_.undo(moment()));
+}
+
+void Session::perform(const command::Redo&) {
+    if (!can_redo()) throw refusal("there is nothing to do again");
+    restore(history_.redo(moment()));
+}
+
+void Session::perform(const command::Reset&) { rerun(system_->file_run); }
+
+void Session::perform(const command::UseTheme& command) {
+    theme_ = command.dark ? dark_theme() : light_theme();
+    pinned_revision_ = -1;
+    compose_plots();
+    compose_pinned();
+}
+
+void Session::perform(const command::Pin& command) {
+    pinned_ = command.on ? motion_ : nullptr;
+    pinned_revision_ = -1;
+    compose_pinned();
+}
+
+void Session::compose_pinned() {
+    const bool same = pinned_ && pinned_->system == motion_->system;
+    if (!same) pinned_plots_.clear();
+    if (!same || pinned_revision_ == plots_.revision()) return;
+    pinned_revision_ = plots_.revision();
+    pinned_plots_ = plots_.compose(pinned_->trajectory, pinned_->samples, theme_);
+}
+
+std::optional<Sample> Session::pinned_now() const {
+    if (!pinned_ || pinned_->system != motion_->system) return std::nullopt;
+    return pinned_->sampler.at(std::min(time_, pinned_->trajectory.end_time));
+}
+
+void Session::perform(const command::Open& command) {
+    begin_document(library_.open ? library_.open(command.system)
+                                 : open_document(command.system, library_.find(command.system)));
+}
+
+void Session::perform(const command::New&) { begin_document(new_document()); }
+
+// Another text. Where it is no system the editor shows why, and the last system goes on.
+void Session::begin_document(Document document) {
+    document_ = std::move(document);
+    try {
+        SystemDescription description = parse_system(document_.text, document_.source);
+        if (library_.finish) library_.finish(description);
+        const auto system = std::make_shared<const System>(document_.name, description);
+        system->model->check(system->model->default_run());
+        playing_ = false;
+        selected_ = 0;
+        time_ = 0.0;
+        scene_.forget_place();
+        placed_.reset();
+        change_system(system, Plots(system->model), system->model->default_run());
+    } catch (const InputError& problem) {
+        document_.problems = each_of(problem);
+        scene_.perform(command::Show{"editor", true});
+    }
+}
+
+void Session::perform(const command::Text& command) {
+    document_.text = command.text;
+    read_document();
+}
+
+void Session::perform(const command::Save& command) {
+    const std::string before = document_.source;
+    if (library_.save)
+        library_.save(document_, command.file, command.overwrite);
+    else
+        save(document_, command.file, command.overwrite);
+    if (document_.source != before) read_document();  // under its new name
+}
+
+// The edited text takes effect if it is a system.
+void Session::read_document() {
+    document_.problems.clear();
+    try {
+        const SystemDescription description = parse_system(document_.text, document_.source);
+        const auto system = std::make_shared<const System>(document_.name, description);
+        // Read once more as it stood there: the command line may have put other values over it.
+        const SystemDescription before = parse_system(this->description().source_text, this->description().file);
+        Run run = carried_over(before, asked_, *system->model);
+        try {
+            system->model->check(run);
+        } catch (const InputError&) {  // what the sliders changed does not fit the new text: the text alone
+            run = system->model->default_run();
+            system->model->check(run);
+        }
+        placed_ = command::Seek{time_};
+        change_system(system, plots_.carried_over(system->model), run);
+    } catch (const InputError& problem) {
+        document_.problems = each_of(problem);
+    }
+}
+
+// Shows the start of the system until its run is there. The run must be one that can start.
+void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
+    system_ = system;
+    plots_ = plots;
+    motion_.reset();
+    rerun(run);
+    if (motion_ != nullptr) return;
+    std::stop_source at_once;
+    at_once.request_stop();
+    Watch watch;
+    watch.stop = at_once.get_token();
+    motion_ = std::make_shared<Motion>(system_, run, plots_, theme_, &watch);
+    move_to(0.0);
+}
+
+void Session::perform(const command::Set& command) { perform(command::Start{{{command.name, command.value}}}); }
+
+void Session::perform(const command::Start& command) {
+    Run changed = run();
+    for (const auto& [name, value] : command.values) {
+        double* const found = find_value(description(), changed, name);
+        if (found == nullptr) throw no_such_name(description(), name);
+        if (!std::isfinite(value)) throw refusal(fmt::format("'{}' must be finite", name));
+        *found = value;
+    }
+    rerun(changed);
+}
+
+std::optional<double> Session::value(const std::string& name) const {
+    Run copy = run();
+    const double* const found = find_value(description(), copy, name);
+    return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+void Session::perform(const command::End& command) {
+    expect_positive(command.time, "the end time");
+    Run changed = run();
+    changed.options.end_time = command.time;
+    rerun(changed);
+}
+
+void Session::perform(const command::Tolerance& command) {
+    expect_positive(command.value, "the tolerance");
+    Run changed = run();
+    changed.options.tolerance = command.value;
+    rerun(changed);
+}
+
+void Session::perform(const command::Eps& command) {
+    for (const double value : {command.q, command.v, command.t}) expect_positive(value, "eps");
+    Run changed = run();
+    changed.options.truncation.eps_q = command.q;
+    changed.options.truncation.eps_v = command.v;
+    changed.options.truncation.eps_t = command.t;
+    rerun(changed);
+}
+
+void Session::perform(const command::UseConditions& command) {
+    Run changed = run();
+    changed.options.truncation.conditions = command.conditions;
+    rerun(changed);
+}
+
+void Session::perform(const command::UseReinitialization& command) {
+    Run changed = run();
+    changed.options.truncation.reinitialization = command.reinitialization;
+    rerun(changed);
+}
+
+void Session::perform(const command::UseMethod& command) {
+    Run changed = run();
+    changed.options.method = command.method;
+    rerun(changed);
+}
+
+void Session::perform(const command::MaxImpacts& command) {
+    if (command.count < 1) throw refusal("at least one impact must be allowed");
+    Run changed = run();
+    changed.options.max_impacts = command.count;
+    rerun(changed);
+}
+
+void Session::perform(const command::Seek& command) {
+    move_to(command.time);
+    place(command);
+}
+
+void Session::perform(const command::Play&) {
+    // Play at the end means: once more.
+    if (time_ >= trajectory().end_time) move_to(0.0);
+    playing_ = true;
+}
+
+void Session::perform(const command::Pause&) { playing_ = false; }
+
+void Session::perform(const command::Select& command) {
+    const auto& events = trajectory().events;
+    if (command.event < 0 || static_cast<std::size_t>(command.event) > events.size())
+        throw refusal(fmt::format("there is no event {}: this run has {}", command.event, events.size()));
+    selected_ = command.event;
+    if (selected_ > 0) move_to(events[static_cast<std::size_t>(selected_ - 1)].t);
+    place(command);
+}
+
+// The same model with another run: nothing is read or derived again.
+void Session::rerun(const Run& run) {
+    system_->model->check(run);
+    asked_ = run;
+    const auto watch = std::make_shared<Watch>();
+    watch_ = watch;
+    worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
+        watch->stop = stop;
+        return std::make_shared<Motion>(system, run, plots, theme, watch.get());
+    });
+    receive(patience_);
+}
+
+void Session::receive(Patience patience) {
+    if (watch_ == nullptr) return;
+    const auto motion = worker_.take(patience);
+    if (!motion) return;
+    motion_ = *motion;
+    watch_.reset();
+    compose_plots();  // they may have been changed meanwhile
+    compose_pinned();
+    if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
+    move_to(time_);
+    if (placed_) apply(*std::exchange(placed_, std::nullopt));
+}
+
+// While a run is under way: what is to be done again on its result.
+void Session::place(const Command& command) {
+    if (watch_ != nullptr) placed_ = command;
+}
+
+void Session::move_to(double time) {
+    time_ = std::clamp(time, 0.0, trajectory().end_time);
+    now_ = motion_->sampler.at(time_);
+}
+
+std::vector<double> Session::values(std::size_t plot, const Sample& sample) const {
+    return values_at(motion_->trajectory, sample, *plots_.list()[plot].prepared);
+}
+
+// The next event after the present, or the last before it; beyond them the end and the start.
+void Session::perform(const command::Step& command) {
+    const auto& events = trajectory().events;
+    double time = time_;
+    for (int i = 0; i < std::abs(command.events); ++i) {
+        const auto later = std::upper_bound(events.begin(), events.end(), time,
+                                            [](double t, const Event& event) { return t < event.t; });
+        const auto here = std::lower_bound(events.begin(), events.end(), time,
+                                           [](const Event& event, double t) { return event.t < t; });
+        if (command.events > 0)
+            time = later != events.end() ? later->t : trajectory().end_time;
+        else
+            time = here != events.begin() ? std::prev(here)->t : 0.0;
+    }
+    move_to(time);
+    place(command::Seek{time});
+}
+
+template <class Other>
+void Session::perform(const Other& command) {
+    if constexpr (requires { scene_.perform(command); }) {
+        scene_.perform(command);
+    } else {
+        plots_.perform(command);
+        compose_plots();
+    }
+}
+
+void Session::compose_plots() {
+    if (motion_->revision == plots_.revision() && motion_->dark == theme_.dark) return;
+    motion_->revision = plots_.revision();
+    motion_->dark = theme_.dark;
+    motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
+    compose_pinned();
+}
+
+void play_on(Session& session, double seconds) {
+    if (!session.playing()) return;
+    session.apply(command::Seek{session.time() + seconds * session.scene().speed()});
+    if (session.time() < session.trajectory().end_time || session.under_way() != nullptr) return;
+    if (session.scene().loops())
+        session.apply(command::Play{});  // at the end: once more
+    else
+        session.apply(command::Pause{});
+}
+
+}  // namespace achilles

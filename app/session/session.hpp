@@ -1,0 +1,215 @@
+// The state of the explorer: one system, one run of it, and where its player stands. apply() is the only door.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "figure/body.hpp"
+#include "figure/compose.hpp"
+#include "figure/mechanism.hpp"
+#include "session/command.hpp"
+#include "session/document.hpp"
+#include "session/history.hpp"
+#include "session/plots.hpp"
+#include "session/scene.hpp"
+#include "session/worker.hpp"
+#include "simulate/sampler.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+// How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
+struct Library {
+    std::function<std::filesystem::path(const std::string& system)> find{};  // its file
+    std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
+    std::function<Document(const std::string& system)> open{};                                // empty: from its file
+    std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
+    std::function<std::string(const std::string& journal)> journal{};  // the text of one; empty: there are none
+    bool exports = true;                                               // false: `export` writes nothing
+};
+
+// Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
+// as long as it takes, so that the same commands lead to the same session. With less patience the last result stays
+// until update() takes in the new one; a newer run cancels an older one. The commands that place the present while a
+// run is under way are done again when it is there, and so mean what they mean in a replayed journal.
+class Session {
+ public:
+    // Opens `first`, known as `name`. Throws InputError if it cannot be derived or cannot start.
+    Session(const std::string& name, const SystemDescription& first, Library library, Patience patience = {});
+
+    // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
+    // text is no system.
+    void apply(const Command& command);
+
+    // A mistake that is no command's: error() tells it until the next command.
+    void refuse(const InputError& problem) { error_ = problem.what(); }
+
+    void set_patience(Patience patience) { patience_ = patience; }
+    // Called on another thread when update() would take something in.
+    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    // Takes in the run that was under way, if it is ready.
+    void update() { receive(0.0); }
+    // How far the run is that was asked for last; null if it is the one that is shown.
+    const Watch* under_way() const { return watch_.get(); }
+
+    // The text that is edited; without problems it is the system that runs.
+    const Document& document() const { return document_; }
+    bool shows_editor() const { return scene_.shows("editor"); }
+    const Scene& scene() const { return scene_; }
+    const std::string& system() const { return system_->name; }  // as opened
+    const std::shared_ptr<const Model>& model() const { return system_->model; }
+    const SystemDescription& description() const { return system_->model->description(); }
+    // What was asked for last. trajectory().run is what is shown.
+    const Run& run() const { return asked_; }
+    // Of a parameter, a coordinate's start x or its rate x'; nothing if there is no such name.
+    std::optional<double> value(const std::string& name) const;
+    const Trajectory& trajectory() const { return motion_->trajectory; }
+    const Mechanism& mechanism() const { return system_->mechanism; }
+    // A run that was pinned, to compare with; null where there is none. Its plots are of what is plotted now, and empty
+    // where it is of another system.
+    const Trajectory* pinned() const { return pinned_ ? &pinned_->trajectory : nullptr; }
+    const std::vector<Panel>& pinned_plots() const { return pinned_plots_; }
+    // As opened; only where there is one.
+    const std::string& pinned_system() const { return pinned_->system->name; }
+    // The pinned mechanism at the present time, of the same system; nothing otherwise.
+    std::optional<Sample> pinned_now() const;
+    bool can_undo() const { return history_.can_undo(); }
+    bool can_redo() const { return history_.can_redo(); }
+
+    // Its body along the run that is shown, a point a sample.
+    const Trail& trail() const { return motion_->trail; }
+    std::span<const Sample> samples() const { return motion_->samples; }
+    // The world the mechanism needs during the whole run.
+    const Drawing& limits() const { return motion_->limits; }
+    // What is plotted, and the plots, composed.
+    const Plots& plotted() const { return plots_; }
+    const std::vector<Panel>& plots() const { return motion_->plots; }
+    // What a plot shows of an instant, in its units: x, then every y.
+    std::vector<double> values(std::size_t plot, const Sample& sample) const;
+    // The state at a time of the run that is shown.
+    Sample at(double time) const { return motion_->sampler.at(time); }
+
+    double time() const { return time_; }
+    const Sample& now() const { return now_; }  // the state at that time
+    bool playing() const { return playing_; }
+    int selected() const { return selected_; }           // an event's number, from 1; 0: none
+    const std::string& error() const { return error_; }  // why the last command was refused; empty: it was not
+    // Every value and option as the text of the system has them.
+    const Run& file_run() const { return system_->file_run; }
+    const Theme& theme() const { return theme_; }
+    // What the last command did that cannot be seen otherwise: a file written, a line copied. Empty: nothing.
+    const std::string& notice() const { return notice_; }
+    // What is to be on the clipboard, and how often something was put there.
+    const std::string& copied() const { return copied_; }
+    int copies() const { return copies_; }
+
+ private:
+    // A system derived and compiled: nothing here depends on a parameter's value.
+    struct System {
+        System(const std::string& name, const SystemDescription& description);
+        std::string name;
+        std::shared_ptr<const Model> model;
+        Mechanism mechanism;
+        Run file_run;
+    };
+    // One run and what is shown of it.
+    struct Motion {
+        Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
+               Watch* watch);
+        Trajectory trajectory;
+        std::shared_ptr<const System> system;
+        Sampler sampler;
+        std::vector<Sample> samples;
+        Drawing limits;
+        Trail trail;
+        int revision = 0;   // of what is plotted
+        bool dark = false;  // in which theme
+        std::vector<Panel> plots;
+    };
+
+    void perform(const command::Open& command);
+    void perform(const command::Set& command);
+    void perform(const command::End& command);
+    void perform(const command::Tolerance& command);
+    void perform(const command::Eps& command);
+    void perform(const command::UseConditions& command);
+    void perform(const command::UseReinitialization& command);
+    void perform(const command::Seek& command);
+    void perform(const command::Play& command);
+    void perform(const command::Pause& command);
+    void perform(const command::Select& command);
+    void perform(const command::New& command);
+    void perform(const command::Text& command);
+    void perform(const command::Save& command);
+    void perform(const command::Start& command);
+    void perform(const command::Undo& command);
+    void perform(const command::Redo& command);
+    void perform(const command::Pin& command);
+    void perform(const command::Step& command);
+    void perform(const command::Reset& command);
+    void perform(const command::Done&) {}  // the history heard it
+    void perform(const command::UseTheme& command);
+    void perform(const command::UseMethod& command);
+    void perform(const command::MaxImpacts& command);
+    void perform(const command::Export& command);
+    void perform(const command::Copy& command);
+    void perform(const command::Wait& command);
+    void perform(const command::Replay& command);
+    // Everything else is about how the run is looked at.
+    template <class Other>
+    void perform(const Other& command);
+    // What a change may change.
+    struct Moment {
+        Document document;
+        std::shared_ptr<const System> system;
+        Plots plots;
+        Run run;
+    };
+    Moment moment() const { return {document_, system_, plots_, asked_}; }
+    void restore(Moment back);
+    void compose_pinned();
+    void begin_document(Document document);
+    void read_document();
+    void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
+    void rerun(const Run& run);
+    void receive(Patience patience);
+    void compose_plots();
+    void place(const Command& command);
+    void move_to(double time);
+
+    Library library_;
+    Patience patience_;
+    Theme theme_ = light_theme();
+    Document document_;
+    std::shared_ptr<const System> system_;
+    Plots plots_;
+    Scene scene_;
+    Run asked_;
+    std::shared_ptr<Motion> motion_;  // of this system; of another run than the one asked for while that is under way
+    std::shared_ptr<const Watch> watch_;  // of the run under way
+    std::optional<Command> placed_;       // what placed the present meanwhile
+    Sample now_;
+    double time_ = 0.0;
+    bool playing_ = false;
+    int selected_ = 0;
+    std::string error_, notice_;
+    std::string copied_;
+    int copies_ = 0, replaying_ = 0;
+    History<Moment> history_;
+    std::shared_ptr<Motion> pinned_;
+    std::vector<Panel> pinned_plots_;
+    int pinned_revision_ = -1;
+    Worker<std::shared_ptr<Motion>> worker_;
+};
+
+// Lets so much time pass for a session that plays, at its speed. At the end it stops or begins again.
+void play_on(Session& session, double seconds);
+
+// The session as text: what tests compare.
+std::string to_text(const Session& session);
+
+}  // namespace achilles

@@ -1,0 +1,60 @@
+// What a session gives away, and the journals that it replays.
+#include <fmt/format.h>
+
+#include "journal/journal.hpp"
+#include "pictures/take_away.hpp"
+#include "session/session.hpp"
+
+namespace achilles {
+
+namespace {
+
+InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+// The text that a command line finds under a system's name; nothing where there is no such file.
+std::optional<std::string> held_by_file(const Library& library, const std::string& system) {
+    try {
+        return (library.open ? library.open(system) : open_document(system, library.find(system))).text;
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+constexpr int deepest = 8;  // journals in journals: one that names itself comes to an end
+
+}  // namespace
+
+void Session::perform(const command::Export& command) {
+    // Until then the result on the screen is of another run than the sliders say, or of none.
+    if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
+        throw refusal("the run is still under way", "export again when it is there");
+    if (library_.exports) take_away(*this, command.file, command.overwrite);
+    notice_ = fmt::format("{} is written", command.file);
+}
+
+void Session::perform(const command::Copy& command) {
+    // The line names a file: it must hold what runs here.
+    if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
+        throw refusal("no file holds this text, and a command line can only name a file", "save it first, then copy");
+    copied_ = command_for(*this, command.what);
+    ++copies_;
+    notice_ = "copied: " + copied_;
+}
+
+void Session::perform(const command::Wait& command) { play_on(*this, command.seconds); }
+
+void Session::perform(const command::Replay& command) {
+    if (!library_.journal) throw refusal("there are no journals here");
+    if (replaying_ >= deepest) throw refusal("journals that replay journals that replay journals: this has no end");
+    const std::vector<Command> journal = parse_journal(library_.journal(command.journal), command.journal);
+    ++replaying_;
+    std::string first_error;
+    for (const Command& step : journal) {
+        apply(step);
+        if (first_error.empty()) first_error = error_;
+    }
+    --replaying_;
+    if (!first_error.empty()) throw refusal(first_error);
+}
+
+}  // namespace achilles

@@ -1,0 +1,29 @@
+#include <fmt/format.h>
+
+#include "model/model.hpp"
+#include "output/output.hpp"
+#include "session/session.hpp"
+
+namespace achilles {
+
+std::string to_text(const Session& session) {
+    std::string text = fmt::format("system {}\n", session.system());
+    const SystemDescription& description = session.description();
+    const Run& run = session.run();
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        text += fmt::format("{} = {:.9g}\n", description.parameters[i].name, run.parameters[i]);
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        text += fmt::format("{0} = {1:.9g}, {0}' = {2:.9g}\n", description.coordinates[i].name, run.q[at], run.v[at]);
+    }
+    text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
+                        session.selected());
+    text += to_text(session.plotted()) + to_text(session.scene());
+    if (session.theme().dark) text += "theme dark\n";
+    if (!session.error().empty()) text += "error " + session.error() + "\n";
+    if (session.document().is_changed()) text += "the text is not saved\n";
+    for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());
+    return text + to_text(session.trajectory());
+}
+
+}  // namespace achilles

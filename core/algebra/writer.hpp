@@ -1,0 +1,48 @@
+// Simplified expressions as a person would write them: common factors before brackets, parameters before coordinates
+// before rates before functions. For the files of this library only: see multinomial.hpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "algebra/factored.hpp"
+#include "expression/notation.hpp"
+
+namespace achilles {
+
+class Writer {
+ public:
+    // `names` and `ranks` are by slot: symbols of lower rank stand first in a product, and sums start with the terms of
+    // the highest degree in symbols of the highest rank.
+    Writer(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks, Notation notation);
+
+    Written write(const Multinomial& polynomial) const;
+    // A polynomial over a number as a sum with fractions for coefficients; anything else as a quotient of products.
+    Written write(const Fraction& fraction, Algebra& algebra) const;
+    Written write(const Factored& factored) const;
+
+ private:
+    using Rational = boost::multiprecision::cpp_rational;
+    struct Item {  // a term of a sum
+        Rational number;
+        Monomial powers;
+    };
+    struct Piece {  // a term, or several with a common factor, of a written sum
+        bool negative = false;
+        Written written;
+    };
+    void gather_sines(std::vector<Item>& items, const Algebra& algebra) const;
+    Written sum(std::vector<Item> items) const;
+    std::vector<std::size_t> next_group(const std::vector<Item>& items, const std::vector<std::size_t>& left) const;
+    Written product(const Rational& number, const Monomial& powers, const Written* bracket) const;
+    Piece collected(std::vector<Item> items, const Monomial& shared) const;
+    int degree_of_highest(const Monomial& powers) const;
+    bool before(const Item& a, const Item& b) const;
+
+    Notation notation_;
+    std::vector<Written> written_;    // by atom
+    std::vector<std::size_t> order_;  // of atoms in a product
+    std::vector<bool> highest_;       // is it a symbol of the highest rank?
+};
+
+}  // namespace achilles

@@ -1,0 +1,33 @@
+#include "number/sine.hpp"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace achilles {
+
+namespace {
+
+struct Known {
+    double angle = 0.0;
+    SineCosine value;
+};
+
+// Apart, so that what is known is given without saving a register.
+[[gnu::noinline]] SineCosine get_to_know(double angle, Known& known) {
+    known = {angle, {std::sin(angle), std::cos(angle)}};
+    return known.value;
+}
+
+}  // namespace
+
+SineCosine sine_and_cosine(double angle) {
+    static thread_local constinit std::array<Known, 8> memory{};
+    const auto bits = std::bit_cast<std::uint64_t>(angle);
+    Known& known = memory[bits * 0x9E3779B97F4A7C15u >> 61];
+    if (std::bit_cast<std::uint64_t>(known.angle) != bits) return get_to_know(angle, known);
+    return known.value;
+}
+
+}  // namespace achilles

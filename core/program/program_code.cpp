@@ -1,0 +1,264 @@
+#include "program/program_code.hpp"
+
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "number/eight.hpp"
+#include "number/sine.hpp"
+
+namespace achilles {
+
+#if defined(__x86_64__) && defined(__linux__)
+
+namespace {
+
+using Code = Assembler::Code;
+using Function = double (*)(double);
+
+constexpr std::size_t most_instructions = 20000;
+
+double whole_power(double x, int n) { return integer_power(x, n); }
+double sine(double x) { return sine_and_cosine(x).sine; }
+double cosine(double x) { return sine_and_cosine(x).cosine; }
+void both(double x, double* sine, double* cosine) {
+    const SineCosine value = sine_and_cosine(x);
+    *sine = value.sine;
+    *cosine = value.cosine;
+}
+
+Function function_of(Operation operation) {
+    switch (operation) {
+        case Operation::sin:
+            return sine;
+        case Operation::cos:
+            return cosine;
+        case Operation::tan:
+            return std::tan;
+        case Operation::asin:
+            return std::asin;
+        case Operation::acos:
+            return std::acos;
+        case Operation::atan:
+            return std::atan;
+        case Operation::sinh:
+            return std::sinh;
+        case Operation::cosh:
+            return std::cosh;
+        case Operation::tanh:
+            return std::tanh;
+        case Operation::exp:
+            return std::exp;
+        case Operation::log:
+            return std::log;
+        default:
+            return nullptr;
+    }
+}
+
+// ---- the same for lanes: operands and results stand in memory ----
+
+using OfLanes = void(const Eight* a, Eight* result);
+
+template <Operation operation>
+void each(const Eight* a, Eight* result) {
+    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = function_of(operation)((*a)[i]);
+}
+void each_whole_power(const Eight* a, Eight* result, int n) {
+    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = integer_power((*a)[i], n);
+}
+void each_real_power(const Eight* a, Eight* result, const Eight* b) {
+    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = std::pow((*a)[i], (*b)[i]);
+}
+
+OfLanes* function_of_lanes(Operation operation) {
+    switch (operation) {
+        case Operation::sin:
+            return [](const Eight* a, Eight* result) {
+                Eight cosine_too;
+                sine_and_cosine_of_lanes(a, result, &cosine_too);
+            };
+        case Operation::cos:
+            return [](const Eight* a, Eight* result) {
+                Eight sine_too;
+                sine_and_cosine_of_lanes(a, &sine_too, result);
+            };
+        case Operation::tan:
+            return each<Operation::tan>;
+        case Operation::asin:
+            return each<Operation::asin>;
+        case Operation::acos:
+            return each<Operation::acos>;
+        case Operation::atan:
+            return each<Operation::atan>;
+        case Operation::sinh:
+            return each<Operation::sinh>;
+        case Operation::cosh:
+            return each<Operation::cosh>;
+        case Operation::tanh:
+            return each<Operation::tanh>;
+        case Operation::exp:
+            return each<Operation::exp>;
+        case Operation::log:
+            return each<Operation::log>;
+        default:
+            return nullptr;
+    }
+}
+
+// ---- writing ----
+
+// A function of xmm0 (and what else is in place).
+void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
+    code.get(0, a);
+    code.call(function);
+    code.store(0, result);
+}
+
+void arithmetic(Assembler& code, Code operation, const Instruction& in, std::uint32_t result) {
+    const unsigned reg = code.result(result);
+    code.combine(operation, reg, in.a, in.b);
+    code.store(reg, result);
+}
+
+// A function of (operand, result) and a third argument.
+void call_on_lanes(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
+    code.address(Assembler::Base::rdi, Assembler::Base::rbx, code.place(a));
+    code.address(Assembler::Base::rsi, Assembler::Base::rbx, code.place(result));
+    code.call(function);
+}
+
+// False if there is no code for it.
+bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t result) {
+    if (in.operation == Operation::power) {
+        code.integer_argument(Assembler::Base::rdx, in.exponent);
+        call_on_lanes(code, reinterpret_cast<const void*>(&each_whole_power), in.a, result);
+        return true;
+    }
+    if (in.operation == Operation::real_power) {
+        code.address(Assembler::Base::rdx, Assembler::Base::rbx, code.place(in.b));
+        call_on_lanes(code, reinterpret_cast<const void*>(&each_real_power), in.a, result);
+        return true;
+    }
+    OfLanes* const function = function_of_lanes(in.operation);
+    if (function == nullptr) return false;
+    call_on_lanes(code, reinterpret_cast<const void*>(function), in.a, result);
+    return true;
+}
+
+// False if there is no code for it.
+bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result) {
+    if (in.operation == Operation::power) {
+        code.integer_argument(Assembler::Base::rdi, in.exponent);
+        call(code, reinterpret_cast<const void*>(&whole_power), in.a, result);
+        return true;
+    }
+    if (in.operation == Operation::real_power) {
+        code.get(1, in.b);
+        call(code, reinterpret_cast<const void*>(static_cast<double (*)(double, double)>(std::pow)), in.a, result);
+        return true;
+    }
+    const Function function = function_of(in.operation);
+    if (function == nullptr) return false;
+    call(code, reinterpret_cast<const void*>(function), in.a, result);
+    return true;
+}
+
+// False if there is no code for it.
+bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
+    unsigned reg = 0;
+    switch (in.operation) {
+        case Operation::add:
+            arithmetic(code, Code::add, in, result);
+            return true;
+        case Operation::subtract:
+            arithmetic(code, Code::subtract, in, result);
+            return true;
+        case Operation::multiply:
+            arithmetic(code, Code::multiply, in, result);
+            return true;
+        case Operation::divide:
+            arithmetic(code, Code::divide, in, result);
+            return true;
+        case Operation::negate:
+            reg = code.result(result);
+            code.negative_zero(reg);
+            code.apply(Code::subtract, reg, reg, in.a);
+            code.store(reg, result);
+            return true;
+        case Operation::sqrt:
+            reg = code.result(result);
+            code.apply(Code::sqrt, reg, reg, in.a);
+            code.store(reg, result);
+            return true;
+        default:
+            return code.width() == Width::one ? write_for_one(code, in, result) : write_for_lanes(code, in, result);
+    }
+}
+
+// The results that are sine and cosine of one operand.
+struct Waves {
+    std::optional<std::uint32_t> sine, cosine;
+    bool written = false;
+};
+
+std::map<std::uint32_t, Waves> waves_of(std::span<const Instruction> instructions, std::uint32_t first) {
+    std::map<std::uint32_t, Waves> waves;
+    for (const Instruction& in : instructions) {
+        if (in.operation == Operation::sin) waves[in.a].sine = first;
+        if (in.operation == Operation::cos) waves[in.a].cosine = first;
+        ++first;
+    }
+    return waves;
+}
+
+// Where the first of the two stands.
+void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
+    if (waves.written) return;
+    waves.written = true;
+    const bool one = code.width() == Width::one;
+    const auto argument = [&](Assembler::Base base, std::uint32_t number) {
+        code.address(base, Assembler::Base::rbx, code.place(number));
+    };
+    if (one) {
+        code.get(0, operand);
+        argument(Assembler::Base::rdi, *waves.sine);
+        argument(Assembler::Base::rsi, *waves.cosine);
+    } else {
+        argument(Assembler::Base::rdi, operand);
+        argument(Assembler::Base::rsi, *waves.sine);
+        argument(Assembler::Base::rdx, *waves.cosine);
+    }
+    code.call(one ? reinterpret_cast<const void*>(&both) : reinterpret_cast<const void*>(&sine_and_cosine_of_lanes));
+}
+
+}  // namespace
+
+std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
+                                                Width width) {
+    if (const auto widest = widest_code();
+        !widest || width > *widest || instructions.empty() || instructions.size() > most_instructions)
+        return nullptr;
+    Assembler code(Assembler::Base::rbx, 2, width);
+    code.enter();
+    std::map<std::uint32_t, Waves> waves = waves_of(instructions, first);
+    for (const Instruction& in : instructions) {
+        const std::uint32_t result = first++;
+        const bool is_wave = in.operation == Operation::sin || in.operation == Operation::cos;
+        if (is_wave && waves[in.a].sine && waves[in.a].cosine) {
+            call_both(code, in.a, waves[in.a]);
+        } else if (!write(code, in, result)) {
+            return nullptr;
+        }
+    }
+    code.leave();
+    return MachineCode::of(code.bytes());
+}
+
+#else
+
+std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width) { return nullptr; }
+
+#endif
+
+}  // namespace achilles

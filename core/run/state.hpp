@@ -1,0 +1,26 @@
+// Coordinates and rates. At most eight, so vectors of them live on the stack.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace achilles {
+
+inline constexpr int max_coordinates = 8;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_coordinates, 1>;
+
+struct State {
+    Vector q, v;
+};
+
+// Puts a state into the inputs of a program (slots 0 .. 2n - 1, see model/derive.hpp).
+template <class Evaluator>
+void put(Evaluator& evaluator, const State& state) {
+    const auto n = state.q.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        evaluator.input(static_cast<std::size_t>(i)) = state.q[i];
+        evaluator.input(static_cast<std::size_t>(n + i)) = state.v[i];
+    }
+}
+
+}  // namespace achilles

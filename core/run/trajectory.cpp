@@ -1,0 +1,66 @@
+// Names of the kinds of things, and a trajectory as text for golden tests.
+#include "run/trajectory.hpp"
+
+#include <fmt/format.h>
+
+namespace achilles {
+
+std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
+
+std::string_view to_text(Event::Kind kind) {
+    switch (kind) {
+        case Event::Kind::impact:
+            return "impact";
+        case Event::Kind::zeno:
+            return "zeno";
+        default:
+            return "release";
+    }
+}
+
+std::string_view to_text(Outcome::Kind kind) {
+    switch (kind) {
+        case Outcome::Kind::end_time:
+            return "end time";
+        case Outcome::Kind::too_many_impacts:
+            return "too many impacts";
+        case Outcome::Kind::too_many_steps:
+            return "too many steps";
+        case Outcome::Kind::not_a_number:
+            return "not a number";
+        case Outcome::Kind::left_the_domain:
+            return "left the domain";
+        case Outcome::Kind::step_too_small:
+            return "step too small";
+        case Outcome::Kind::cancelled:
+            return "cancelled";
+        default:
+            return "undecided";
+    }
+}
+
+namespace {
+
+std::string to_text(const Vector& x) {
+    std::string text = "(";
+    // Adding 0.0 turns -0 into 0: their difference is not one that a golden should see.
+    for (Eigen::Index i = 0; i < x.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", x[i] + 0.0);
+    return text + ")";
+}
+
+}  // namespace
+
+std::string to_text(const Trajectory& trajectory) {
+    std::string text;
+    for (const Phase& phase : trajectory.phases)
+        text += fmt::format("phase {} [{:.9g}, {:.9g}] impacts {}\n", to_text(phase.kind), phase.start, phase.end,
+                            phase.impacts);
+    for (const Event& event : trajectory.events)
+        text += fmt::format("{} t {:.9g} q {} before {} after {}\n", to_text(event.kind), event.t, to_text(event.q),
+                            to_text(event.v_before), to_text(event.v_after));
+    return text + fmt::format("end t {:.9g} {} q {} v {}\noutcome {}: {}\n", trajectory.end_time,
+                              to_text(trajectory.end_phase), to_text(trajectory.end.q), to_text(trajectory.end.v),
+                              to_text(trajectory.outcome.kind), trajectory.outcome.message);
+}
+
+}  // namespace achilles

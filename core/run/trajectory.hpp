@@ -1,0 +1,128 @@
+// A completed execution (Defs. 4 and 5 of the paper), as data: phases, the events between them, and how it ended.
+// The central noun of Achilles; read this first.
+//
+// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0. A Zeno event ends a hybrid phase, a
+// release ends a constrained one, impacts happen inside hybrid phases.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "run/options.hpp"
+#include "run/state.hpp"
+
+namespace achilles {
+
+class Model;
+
+// Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
+struct Piece {
+    double start = 0.0, end = 0.0;
+    std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
+    std::uint32_t degree = 0;
+    bool contact = false;  // on the surface: a sample is projected to h = 0, hdot = 0
+};
+
+struct Phase {
+    enum class Kind { hybrid, constrained };
+    Kind kind = Kind::hybrid;
+    double start = 0.0, end = 0.0;
+    int impacts = 0;
+    std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time
+};
+
+// One inequality of a truncation condition: satisfied when left < right.
+struct Inequality {
+    std::string_view name;  // "c1: time", ...: a literal
+    double left = 0.0, right = 0.0;
+};
+
+// What is proved about a truncated bouncing. Bounds are proved by interval evaluation, except that errors made before
+// tau_k (integration, rounding) and the accumulation over several truncations are not covered.
+struct Certificate {
+    bool certified = false;
+    Conditions conditions = Conditions::sharp;
+    Reinitialization reinitialization = Reinitialization::kinetic;
+    bool below_rounding = false;                                   // completed since no further flight can be resolved
+    double zeno_low = 0.0, zeno_high = 0.0;                        // encloses tau_inf
+    double zeno_time = 0.0;                                        // its best estimate, inside
+    double position_bound = 0.0;                                   // on |q_inf - q*|
+    double velocity_bound = 0.0;                                   // on |v_inf - v*|
+    std::optional<double> shadowing_position, shadowing_velocity;  // THEORY section 5, at tau_inf
+    std::optional<double> uniform_position;                        // on |q - q~| at all times from tau_k to tau_inf
+    double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
+    std::string_view decisive;                                     // the inequality with the least margin, or why
+    struct Paper {
+        double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
+        double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
+    };
+    std::optional<Paper> paper;
+    std::vector<Inequality> inequalities;  // all of them, with both sides
+};
+
+struct Event {
+    enum class Kind { impact, zeno, release };
+    Kind kind = Kind::impact;
+    double t = 0.0;
+    Vector q, v_before, v_after;  // equal velocities where nothing jumps (release, zeno)
+    double impact_speed = 0.0;    // impact: |hdot| before
+    int impacts = 0;              // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
+    struct Truncation {           // zeno: the impact where the bouncing was cut, and what restarted from it
+        double t = 0.0;
+        Vector q, v_before, v;  // v: after re-initialisation
+        double impact_speed = 0.0;
+    };
+    std::optional<Truncation> truncation;
+    std::optional<Certificate> certificate;  // zeno
+};
+
+struct Outcome {
+    enum class Kind {
+        end_time,
+        too_many_impacts,
+        too_many_steps,
+        not_a_number,
+        left_the_domain,
+        step_too_small,
+        undecided,
+        cancelled  // another thread told it to stop
+    };
+    Kind kind = Kind::end_time;
+    std::string message;
+};
+
+struct Statistics {
+    long steps = 0, evaluations = 0, impacts = 0;
+    double energy_drift = 0.0;  // largest relative change of the energy inside a smooth stretch, at step ends
+    double least_gap = 0.0;     // at step ends
+    // Wall clock: the only values that may differ between two runs.
+    double seconds = 0.0;
+    double certificate_seconds = 0.0;  // of these, for the truncation conditions' proofs
+};
+
+struct Trajectory {
+    std::shared_ptr<const Model> model;
+    Run run;
+    std::vector<Phase> phases;
+    std::vector<Event> events;  // in time
+    std::vector<Piece> pieces;  // in time
+    std::vector<double> coefficients;
+    double end_time = 0.0;
+    State end;
+    Phase::Kind end_phase = Phase::Kind::hybrid;
+    Outcome outcome;
+    Statistics statistics;
+};
+
+std::string_view to_text(Phase::Kind);
+std::string_view to_text(Event::Kind);
+std::string_view to_text(Outcome::Kind);
+
+// The trajectory as text, 9 significant digits: what golden tests compare first.
+std::string to_text(const Trajectory& trajectory);
+
+}  // namespace achilles

@@ -1,0 +1,102 @@
+#include "simulate/sampler.hpp"
+
+#include <algorithm>
+
+#include "simulate/impact.hpp"
+
+namespace achilles {
+
+// A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
+struct Sampler::Projection {
+    explicit Projection(const Trajectory& trajectory) : surface(*trajectory.model, trajectory.run) {}
+    Surface surface;
+};
+
+Sampler::Sampler(const Trajectory& trajectory)
+    : trajectory_(trajectory), projection_(std::make_unique<Projection>(trajectory)) {}
+Sampler::~Sampler() = default;
+
+State Sampler::state(const Piece& piece, double t) const {
+    const auto n = trajectory_.run.q.size();
+    const double theta =
+        piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
+    State state{Vector::Zero(n), Vector::Zero(n)};
+    for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
+        const double* block = trajectory_.coefficients.data() + piece.first + 2 * static_cast<std::size_t>(n) * k;
+        for (Eigen::Index i = 0; i < n; ++i) {
+            state.q[i] = state.q[i] * theta + block[i];
+            state.v[i] = state.v[i] * theta + block[n + i];
+        }
+    }
+    if (piece.contact) {
+        State projected = state;
+        if (projection_->surface.project(projected, false)) return projected;
+    }
+    return state;
+}
+
+Sample Sampler::at(double t) {
+    t = std::clamp(t, 0.0, trajectory_.end_time);
+    const auto later = [](double time, const auto& x) { return time < x.start; };
+    const auto event = std::upper_bound(trajectory_.events.begin(), trajectory_.events.end(), t,
+                                        [](double time, const Event& x) { return time < x.t; });
+    const auto phase = std::upper_bound(trajectory_.phases.begin(), trajectory_.phases.end(), t, later);
+    const auto piece = std::upper_bound(trajectory_.pieces.begin(), trajectory_.pieces.end(), t, later);
+    Sample sample;
+    sample.t = t;
+    sample.j = static_cast<int>(event - trajectory_.events.begin());
+    sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
+    if (piece == trajectory_.pieces.begin()) {  // a run without a step
+        sample.state = trajectory_.end;
+        return sample;
+    }
+    sample.contact = std::prev(piece)->contact;
+    sample.state = state(*std::prev(piece), t);
+    // The last piece may end at an impact after which no step was made.
+    if (t == trajectory_.end_time) sample.state = trajectory_.end;
+    return sample;
+}
+
+std::vector<Sample> Sampler::all(int between) {
+    std::vector<Sample> samples;
+    const std::vector<Event>& events = trajectory_.events;
+    std::size_t j = 0, phase = 0;
+    const auto kind = [&](double start) {
+        while (phase + 1 < trajectory_.phases.size() && trajectory_.phases[phase + 1].start <= start) ++phase;
+        return trajectory_.phases[phase].kind;
+    };
+    const auto add = [&](double t, Phase::Kind in, bool contact, const State& state) {
+        samples.push_back({t, static_cast<int>(j), in, contact, state});
+    };
+    // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
+    const auto pass_events = [&](double until) {
+        bool any = false;
+        for (; j < events.size() && events[j].t <= until; any = true) {
+            const Event& event = events[j];
+            const bool shown =
+                !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
+            if (event.kind == Event::Kind::impact && !shown)
+                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before});
+            ++j;
+        }
+        return any;
+    };
+    bool contact = false;
+    for (const Piece& piece : trajectory_.pieces) {
+        const bool fresh = pass_events(piece.start) || samples.empty() || piece.contact != contact;
+        contact = piece.contact;
+        const Phase::Kind in = kind(piece.start);
+        if (fresh) add(piece.start, in, contact, state(piece, piece.start));
+        for (int k = 1; k <= between; ++k) {
+            const double t = piece.start + (piece.end - piece.start) * k / (between + 1);
+            add(t, in, contact, state(piece, t));
+        }
+        add(piece.end, in, contact, state(piece, piece.end));
+    }
+    if (pass_events(trajectory_.end_time) || samples.empty())
+        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_phase == Phase::Kind::constrained,
+            trajectory_.end);
+    return samples;
+}
+
+}  // namespace achilles

@@ -1,0 +1,37 @@
+// The states of a trajectory between its step ends.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+// One instant of a trajectory. j counts the events so far (hybrid time): two samples of the same t differ in j.
+struct Sample {
+    double t = 0.0;
+    int j = 0;
+    Phase::Kind phase = Phase::Kind::hybrid;
+    bool contact = false;  // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
+    State state;
+};
+
+// The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
+class Sampler {
+ public:
+    explicit Sampler(const Trajectory& trajectory);
+    ~Sampler();
+    Sample at(double t);
+    // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each
+    // step.
+    std::vector<Sample> all(int between = 0);
+
+ private:
+    struct Projection;
+    State state(const Piece& piece, double t) const;
+    const Trajectory& trajectory_;
+    std::unique_ptr<Projection> projection_;
+};
+
+}  // namespace achilles

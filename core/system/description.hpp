@@ -1,0 +1,118 @@
+// What a person writes: a system file, read but not yet derived. Every error says file, line, column and what would be
+// right.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "run/options.hpp"
+
+namespace achilles {
+
+// Where something stands in a file, from 1; 0: nowhere.
+struct Location {
+    int line = 0;
+    int column = 0;
+};
+
+// Bad input, told to a person: "FILE:LINE:COLUMN: message", the offending line with a caret where there is one, a hint.
+struct InputError : std::runtime_error {
+    InputError(std::string file, Location at, std::string message, std::string hint = {}, const std::string& line = {});
+    std::string file, message, hint;  // hint: what would be right; may be empty
+    Location at;
+
+ protected:
+    // One that stands for several: the first of them, but for what() a text of its own.
+    InputError(const InputError& first, const std::string& told);
+};
+
+// The mistakes of one file, in order of position. Caught as an InputError it is the first of them; what() tells all,
+// each as it would be told alone, with an empty line between them and a last line "and N more" where there are more.
+struct InputErrors : InputError {
+    // `all`: at least one, in order; `more`: how many others there are.
+    explicit InputErrors(std::vector<InputError> all, std::size_t more = 0);
+    std::vector<InputError> all;  // at most ten, each with its line and column
+    std::size_t more;
+};
+
+// What an error consists of: the mistakes of an InputErrors, or itself.
+std::vector<InputError> each_of(const InputError& error);
+
+// An expression (or a number) as written. `at` is the place of its first character.
+struct Text {
+    std::string text;
+    Location at;
+};
+
+// The place of a byte inside a text that starts at `text.at`.
+Location place_in(const Text& text, std::size_t offset);
+
+struct CoordinateDescription {
+    std::string name, unit;
+    double start = 0.0, rate = 0.0;
+    std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // for sliders; defaults as INTERFACE section 5 says
+    Location at, start_at, rate_at;
+};
+
+struct ParameterDescription {
+    std::string name, unit, about;
+    double value = 0.0;
+    std::array<double, 2> range{0.0, 1.0};
+    Location at;
+};
+
+struct DrawingDescription {
+    enum class Shape { disc, segment, curve, polyline, text };
+    Shape shape = Shape::disc;
+    std::vector<std::array<Text, 2>> points;  // at, or from and to, or points
+    Text radius;                              // disc
+    std::string over;                         // curve: its own parameter, and the limits
+    std::array<Text, 2> over_limits;
+    std::string text;   // text
+    std::string color;  // "#rrggbb" or ""
+    Text width;         // stroke width; empty: default
+    bool fill = false;
+    Location at;
+};
+
+// Every expression of a drawing: x and y of its points, then a disc's radius or a curve's limits, then the width if
+// given.
+std::vector<Text> texts_of(const DrawingDescription& drawing);
+
+struct ViewDescription {
+    std::string name;
+    Text x;
+    std::vector<Text> y;
+};
+
+struct SystemDescription {
+    std::string file;         // as given; "<text>" for typed text
+    std::string source_text;  // the whole file, for carets
+    std::string title, source;
+    std::vector<CoordinateDescription> coordinates;
+    std::vector<ParameterDescription> parameters;
+    Text kinetic, potential, gap, restitution;
+    Options options;                           // defaults overridden by [run] and [truncation]
+    std::vector<DrawingDescription> drawings;  // as written; none is a valid answer
+    std::vector<ViewDescription> views;        // as written, or the defaults of INTERFACE section 5
+
+    // An error at a place in this file, with the line and a caret.
+    InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
+};
+
+// The most bytes of a file: thousands of points of a polyline fit, and whatever else it holds is refused in a second.
+inline constexpr std::size_t largest_file = std::size_t{4} << 20;
+
+// What a file holds. Throws InputError if there is none to read. Of a file that is too large it is only so much that
+// the size tells: parse_system will say so.
+std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
+// Assigns "NAME=VALUE" (a parameter, a coordinate x, a rate x') as --set does. Throws InputError without a location.
+void assign(SystemDescription& description, std::string_view name_value);
+
+}  // namespace achilles

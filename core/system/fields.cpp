@@ -1,0 +1,144 @@
+#include "system/fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "expression/nearest.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+Fields::Fields(const TomlValue& table, std::string where) : table_(table), where_(std::move(where)) {
+    if (table.kind != TomlValue::Kind::table)
+        throw Mistake{table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)), {}};
+}
+
+void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
+    for (const TomlEntry& entry : table_.entries) {
+        if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
+        misspelt_.push_back(nearest(entry.key, keys));
+        mistakes.add({entry.at,
+                      fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, did_you_mean(entry.key, keys)),
+                      fmt::format("known here: {}", listed(keys))});
+    }
+}
+
+const TomlValue* Fields::find(std::string_view key) const {
+    for (const TomlEntry& entry : table_.entries) {
+        if (entry.key == key) return &entry.value;
+    }
+    return nullptr;
+}
+
+const TomlValue& Fields::need(std::string_view key) const {
+    need(key, {table_.at, fmt::format("missing key '{}' in {}", key, where_), {}});
+    return *find(key);
+}
+
+void Fields::need(std::string_view key, const Mistake& otherwise) const {
+    if (find(key)) return;
+    if (std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end()) throw AlreadyTold{};
+    throw otherwise;
+}
+
+Text Fields::string(std::string_view key) const {
+    const TomlValue& value = need(key);
+    if (value.kind != TomlValue::Kind::string) throw wrong_type(key, value, "a string");
+    return value.text;
+}
+
+double Fields::number(std::string_view key) const {
+    const TomlValue& value = need(key);
+    if (value.kind != TomlValue::Kind::number) throw wrong_type(key, value, "a number");
+    if (!std::isfinite(value.number)) {
+        throw Mistake{value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text), {}};
+    }
+    return value.number;
+}
+
+double Fields::positive(std::string_view key) const {
+    const double x = number(key);
+    if (x > 0.0) return x;
+    const TomlValue& value = need(key);
+    throw Mistake{value.at, fmt::format("'{}' in {} must be positive, not {}", key, where_, value.text.text), {}};
+}
+
+Text Fields::expression(std::string_view key) const { return expression(key, need(key)); }
+
+Text Fields::expression(std::string_view key, const TomlValue& value) const {
+    const bool number = value.kind == TomlValue::Kind::number;
+    if (!number && value.kind != TomlValue::Kind::string) {
+        throw wrong_type(key, value, "an expression (a string or a number)");
+    }
+    if (number && !std::isfinite(value.number)) {
+        throw Mistake{value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text), {}};
+    }
+    if (value.text.text.find_first_not_of(" \t\r\n") == std::string::npos) {
+        throw Mistake{value.text.at, fmt::format("'{}' in {} is empty", key, where_), "an expression is expected"};
+    }
+    return value.text;
+}
+
+std::array<Text, 2> Fields::point(std::string_view key) const { return point(key, need(key)); }
+
+std::array<Text, 2> Fields::point(std::string_view key, const TomlValue& value) const {
+    if (value.kind != TomlValue::Kind::array) throw wrong_type(key, value, "a point [x, y]");
+    if (value.items.size() != 2) {
+        throw Mistake{value.at,
+                      fmt::format("a point of '{}' in {} has two coordinates, not {}", key, where_, value.items.size()),
+                      {}};
+    }
+    return {expression(key, value.items[0]), expression(key, value.items[1])};
+}
+
+std::string Fields::string_or(std::string_view key, std::string otherwise) const {
+    return find(key) ? string(key).text : std::move(otherwise);
+}
+
+double Fields::number_or(std::string_view key, double otherwise) const { return find(key) ? number(key) : otherwise; }
+
+std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 2> otherwise) const {
+    const TomlValue* value = find(key);
+    if (!value) return otherwise;
+    const auto is_number = [](const TomlValue& item) { return item.kind == TomlValue::Kind::number; };
+    if (value->kind != TomlValue::Kind::array || value->items.size() != 2 || !is_number(value->items[0]) ||
+        !is_number(value->items[1])) {
+        throw Mistake{value->at, fmt::format("'{}' in {} must be two numbers, [low, high]", key, where_), {}};
+    }
+    const std::array<double, 2> range{value->items[0].number, value->items[1].number};
+    if (!std::isfinite(range[0]) || !std::isfinite(range[1]) || !(range[0] < range[1])) {
+        throw Mistake{value->at, fmt::format("'{}' in {} must be finite with low < high", key, where_), {}};
+    }
+    return range;
+}
+
+Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const {
+    return {value.at, fmt::format("'{}' in {} must be {}, not {}", key, where_, expected, kind_name(value.kind)), {}};
+}
+
+std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes) {
+    std::vector<Fields> list;
+    const std::string where = fmt::format("[[{}]]", key);
+    for (const TomlEntry& entry : root.entries) {
+        if (entry.key != key) continue;
+        if (entry.value.kind != TomlValue::Kind::array) {
+            mistakes.add({entry.at,
+                          fmt::format("'{}' must be an array of tables, not {}", key, kind_name(entry.value.kind)),
+                          fmt::format("write {}, once for each", where)});
+            continue;
+        }
+        constexpr std::size_t most = 1000;
+        const std::vector<TomlValue>& items = entry.value.items;
+        if (items.size() > most) mistakes.add({items[most].at, fmt::format("more than {} {}", most, where), {}});
+        for (std::size_t i = 0; i < std::min(items.size(), most); ++i)
+            mistakes.attempt([&] { list.emplace_back(items[i], where); });
+    }
+    return list;
+}
+
+std::string listed(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+}  // namespace achilles

@@ -1,0 +1,136 @@
+#include "system/input_error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Bytes of the UTF-8 character at the start of a text; 0 if it is none.
+std::size_t character_size(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t size = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
+    if (size == 0 || byte(0) > 0xF4 || size > text.size()) return 0;
+    for (std::size_t i = 1; i < size; ++i) {
+        if ((byte(i) & 0xC0) != 0x80) return 0;
+    }
+    return size;
+}
+
+// One printable character each: a tab is a space so that a caret below stays in step, what cannot be shown is '?'.
+std::vector<std::string> characters(std::string_view text) {
+    std::vector<std::string> list;
+    while (!text.empty()) {
+        const std::size_t size = character_size(text);
+        const bool control = static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7F;
+        if (text[0] == '\t') {
+            list.emplace_back(" ");
+        } else if (size == 0 || control) {
+            list.emplace_back("?");
+        } else {
+            list.emplace_back(text.substr(0, size));
+        }
+        text.remove_prefix(std::max<std::size_t>(1, size));
+    }
+    return list;
+}
+
+// The line and a caret under the column. Of a long line, what is near the caret.
+std::string with_caret(std::string_view line, int column) {
+    constexpr std::size_t around = 56;
+    const std::size_t target = byte_of_column(line, column);
+    // Four bytes a character are enough to reach as far as is shown.
+    std::size_t first = target > 4 * around ? target - 4 * around : 0;
+    while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xC0) == 0x80) --first;
+    std::vector<std::string> before = characters(line.substr(first, target - first));
+    std::vector<std::string> after = characters(line.substr(target, 4 * around));
+    std::string shown_line;
+    std::size_t indent = 0;
+    if (first > 0 || before.size() > around) {
+        before.erase(before.begin(), before.end() - static_cast<std::ptrdiff_t>(std::min(before.size(), around)));
+        shown_line = "...";
+        indent = 3;
+    }
+    const bool cut = after.size() > around || target + 4 * around < line.size();
+    after.resize(std::min(after.size(), around));
+    for (const std::string& character : before) shown_line += character;
+    for (const std::string& character : after) shown_line += character;
+    return fmt::format("    {}{}\n    {}^", shown_line, cut ? "..." : "", std::string(indent + before.size(), ' '));
+}
+
+std::string full_message(const std::string& file, Location at, const std::string& message, const std::string& hint,
+                         const std::string& line) {
+    std::string full = file.empty()  ? ""
+                       : at.line > 0 ? fmt::format("{}:{}:{}: ", file, at.line, at.column)
+                                     : file + ": ";
+    full += message;
+    if (!line.empty() && at.column > 0) full += '\n' + with_caret(line, at.column);
+    if (!hint.empty()) full += '\n' + hint;
+    return full;
+}
+
+std::string told(const std::vector<InputError>& all, std::size_t more) {
+    std::string text;
+    for (const InputError& error : all) text += fmt::format("{}{}", text.empty() ? "" : "\n\n", error.what());
+    return more == 0 ? text : fmt::format("{}\n\nand {} more", text, more);
+}
+
+}  // namespace
+
+InputError::InputError(std::string file_, Location at_, std::string message_, std::string hint_,
+                       const std::string& line)
+    : std::runtime_error(full_message(file_, at_, message_, hint_, line)),
+      file(std::move(file_)),
+      message(std::move(message_)),
+      hint(std::move(hint_)),
+      at(at_) {}
+
+InputError::InputError(const InputError& first, const std::string& told)
+    : std::runtime_error(told), file(first.file), message(first.message), hint(first.hint), at(first.at) {}
+
+InputErrors::InputErrors(std::vector<InputError> all_, std::size_t more_)
+    : InputError(all_.front(), told(all_, more_)), all(std::move(all_)), more(more_) {}
+
+std::vector<InputError> each_of(const InputError& error) {
+    const auto* several = dynamic_cast<const InputErrors*>(&error);
+    return several == nullptr ? std::vector<InputError>{error} : several->all;
+}
+
+std::string line_of(std::string_view text, int line) {
+    std::size_t begin = 0;
+    for (int i = 1; i < line; ++i) {
+        begin = text.find('\n', begin);
+        if (begin == text.npos) return "";
+        ++begin;
+    }
+    std::string_view found = text.substr(begin, text.find('\n', begin) - begin);
+    if (found.ends_with('\r')) found.remove_suffix(1);
+    return std::string(found);
+}
+
+std::size_t byte_of_column(std::string_view line, int column) {
+    std::size_t byte = 0;
+    for (int i = 1; i < column && byte < line.size(); ++i) {
+        byte += std::max<std::size_t>(1, character_size(line.substr(byte)));
+    }
+    return std::min(byte, line.size());
+}
+
+std::string shown(std::string_view text) {
+    constexpr std::size_t most = 60;
+    const std::vector<std::string> list = characters(text.substr(0, 4 * most));
+    std::string result;
+    for (std::size_t i = 0; i < std::min(list.size(), most); ++i) result += list[i];
+    return list.size() > most || text.size() > 4 * most ? result + "..." : result;
+}
+
+std::string subnormal_parameter(std::string_view name, double value) {
+    return fmt::format("the parameter '{}' is {}: so small a number has lost digits", name, value);
+}
+
+}  // namespace achilles

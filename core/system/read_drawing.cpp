@@ -1,0 +1,149 @@
+// What a system file says is drawn and plotted: [[drawing]] and [[view]].
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "system/fields.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Shape = DrawingDescription::Shape;
+
+struct ShapeKeys {
+    std::string name;
+    Shape shape;
+    std::vector<std::string> own;  // beside shape, color, width, fill
+};
+
+const std::vector<ShapeKeys>& shapes() {
+    static const std::vector<ShapeKeys> list{{"disc", Shape::disc, {"at", "radius"}},
+                                             {"segment", Shape::segment, {"from", "to"}},
+                                             {"curve", Shape::curve, {"at", "over"}},
+                                             {"polyline", Shape::polyline, {"points"}},
+                                             {"text", Shape::text, {"at", "text"}}};
+    return list;
+}
+
+const ShapeKeys& shape_of(const Fields& fields) {
+    const Text name = fields.string("shape");
+    std::vector<std::string> names;
+    for (const ShapeKeys& shape : shapes()) {
+        if (shape.name == name.text) return shape;
+        names.push_back(shape.name);
+    }
+    throw Mistake{name.at, fmt::format("unknown shape '{}'{}", shown(name.text), did_you_mean(name.text, names)),
+                  fmt::format("shapes are: {}", listed(names))};
+}
+
+void read_over(const SystemDescription& system, const Fields& fields, DrawingDescription& drawing) {
+    const TomlValue& over = fields.need("over");
+    if (over.kind != TomlValue::Kind::array || over.items.size() != 3 ||
+        over.items[0].kind != TomlValue::Kind::string) {
+        throw Mistake{over.at, R"('over' in [[drawing]] must be ["name", low, high])", {}};
+    }
+    const Text& own = over.items[0].text;
+    if (!is_name(own.text)) throw Mistake{own.at, fmt::format("'{}' is not a name", shown(own.text)), {}};
+    if (is_reserved(own.text)) throw Mistake{own.at, fmt::format("the name '{}' is reserved", own.text), {}};
+    const auto same = [&](const auto& other) { return other.name == own.text; };
+    if (std::any_of(system.coordinates.begin(), system.coordinates.end(), same) ||
+        std::any_of(system.parameters.begin(), system.parameters.end(), same)) {
+        throw Mistake{own.at, fmt::format("the name '{}' is used twice", own.text),
+                      "a curve's own parameter needs a name of its own"};
+    }
+    drawing.over = own.text;
+    drawing.over_limits = {fields.expression("over", over.items[1]), fields.expression("over", over.items[2])};
+}
+
+void read_points(const Fields& fields, DrawingDescription& drawing) {
+    const TomlValue& points = fields.need("points");
+    if (points.kind != TomlValue::Kind::array) throw fields.wrong_type("points", points, "an array of points");
+    if (points.items.size() < 2) throw Mistake{points.at, "a polyline needs at least two points", {}};
+    for (const TomlValue& item : points.items) drawing.points.push_back(fields.point("points", item));
+}
+
+std::string read_color(const Fields& fields) {
+    if (!fields.find("color")) return "";
+    const Text color = fields.string("color");
+    const bool hexadecimal = color.text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+    if (color.text.size() == 7 && color.text[0] == '#' && hexadecimal) return color.text;
+    throw Mistake{color.at, fmt::format("'{}' is not a colour", shown(color.text)), "a colour is \"#rrggbb\""};
+}
+
+}  // namespace
+
+DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes) {
+    const ShapeKeys& shape = shape_of(fields);
+    std::vector<std::string> keys{"shape", "color", "width", "fill"};
+    keys.insert(keys.end(), shape.own.begin(), shape.own.end());
+    Fields of_shape(fields.table(), fmt::format("[[drawing]] of shape {}", shape.name));
+    of_shape.allow(keys, mistakes);
+
+    DrawingDescription drawing;
+    drawing.shape = shape.shape;
+    drawing.at = fields.table().at;
+    drawing.fill = shape.shape == Shape::disc;
+    const auto point = [&](const char* key) {
+        mistakes.attempt([&] { drawing.points.push_back(of_shape.point(key)); });
+    };
+    if (shape.shape == Shape::polyline) {
+        mistakes.attempt([&] { read_points(of_shape, drawing); });
+    } else if (shape.shape == Shape::segment) {
+        point("from");
+        point("to");
+    } else {
+        point("at");
+    }
+    if (shape.shape == Shape::disc) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
+    if (shape.shape == Shape::curve) mistakes.attempt([&] { read_over(system, of_shape, drawing); });
+    if (shape.shape == Shape::text) mistakes.attempt([&] { drawing.text = of_shape.string("text").text; });
+    mistakes.attempt([&] { drawing.color = read_color(of_shape); });
+    mistakes.attempt([&] {
+        if (fields.find("width")) drawing.width = of_shape.expression("width");
+    });
+    mistakes.attempt([&] {
+        const TomlValue* fill = fields.find("fill");
+        if (fill && fill->kind != TomlValue::Kind::boolean) throw of_shape.wrong_type("fill", *fill, "true or false");
+        if (fill) drawing.fill = fill->boolean;
+    });
+    return drawing;
+}
+
+ViewDescription read_view(Fields& fields, Mistakes& mistakes) {
+    fields.allow({"name", "x", "y"}, mistakes);
+    ViewDescription view;
+    mistakes.attempt([&] { view.x = fields.expression("x"); });
+    const TomlValue& y = fields.need("y");
+    if (y.kind != TomlValue::Kind::array) {
+        view.y = {fields.expression("y")};
+    } else {
+        if (y.items.empty()) throw Mistake{y.at, "'y' in [[view]] is empty", "one expression for each curve"};
+        for (const TomlValue& item : y.items) mistakes.attempt([&] { view.y.push_back(fields.expression("y", item)); });
+    }
+    mistakes.attempt([&] { view.name = fields.string_or("name", view.y.empty() ? "" : view.y[0].text); });
+    return view;
+}
+
+std::vector<ViewDescription> default_views(const SystemDescription& system) {
+    std::vector<ViewDescription> views;
+    const auto add = [&](const std::string& name, const std::string& x, const std::string& y) {
+        ViewDescription& view = views.emplace_back();
+        view.name = name;
+        view.x.text = x;
+        view.y.emplace_back().text = y;
+    };
+    const auto& coordinates = system.coordinates;
+    for (const CoordinateDescription& coordinate : coordinates) add(coordinate.name, "t", coordinate.name);
+    add("gap", "t", "gap");
+    if (coordinates.size() < 2) return views;
+    const auto called_plane = [](const CoordinateDescription& c) { return c.name == "plane"; };
+    const bool taken = std::any_of(coordinates.begin(), coordinates.end(), called_plane);
+    add(taken ? "the plane" : "plane", coordinates[0].name, coordinates[1].name);
+    return views;
+}
+
+}  // namespace achilles

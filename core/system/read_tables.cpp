@@ -1,0 +1,269 @@
+#include "system/read_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <climits>
+#include <utility>
+
+#include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "number/ground.hpp"
+#include "system/fields.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Of what no line can be blamed for.
+Mistake missing(const std::string& part) {
+    return {{1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples", false};
+}
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// The slider's default: 0 to twice the value, -1 to 1 at 0 (INTERFACE section 5).
+std::array<double, 2> range_around(double value) {
+    if (value == 0.0) return {-1.0, 1.0};
+    return {std::min(0.0, 2.0 * value), std::max(0.0, 2.0 * value)};
+}
+
+// A file while it is read.
+struct Reading {
+    SystemDescription& system;
+    const TomlValue& root;
+    Mistakes& mistakes;
+    Names& names;  // of the coordinates and parameters, whatever else is wrong with these
+};
+
+// A name that nothing else has. Throws Mistake.
+Text read_name(Names& names, const Fields& fields) {
+    const bool was_complete = std::exchange(names.complete, false);  // until this one is known
+    const Text name = fields.string("name");
+    if (!is_name(name.text))
+        throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
+                      "a name is a letter, then letters, digits and underscores"};
+    if (is_reserved(name.text)) {
+        names.complete = was_complete;
+        names.excused.insert(name.text);
+        throw Mistake{name.at, fmt::format("the name '{}' is reserved", name.text),
+                      "functions, t, pi, gap, lambda and energy keep their meaning: choose another name"};
+    }
+    const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
+    if (!is_new)
+        throw Mistake{name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
+                      fmt::format("it is the name at line {} already", other->second.line)};
+    names.complete = was_complete;
+    return name;
+}
+
+// The tables of coordinates or parameters: where they cannot be had, neither can their names.
+std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
+    const std::size_t before = reading.mistakes.count();
+    std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
+    if (reading.mistakes.count() > before) reading.names.complete = false;
+    return list;
+}
+
+void read_coordinates(Reading& reading, const Fields& root) {
+    root.need("coordinate", missing("[[coordinate]]: a system needs at least one"));
+    const std::size_t before = reading.mistakes.count();
+    for (Fields& fields : named_tables(reading, "coordinate")) {
+        Mistakes& mistakes = reading.mistakes;
+        fields.allow({"name", "start", "rate", "unit", "range", "rate_range"}, mistakes);
+        CoordinateDescription coordinate;
+        const bool is_named = mistakes.attempt([&] {
+            const Text name = read_name(reading.names, fields);
+            coordinate.name = name.text;
+            coordinate.at = name.at;
+        });
+        const auto place = [&](const char* key) { return fields.find(key) ? fields.find(key)->at : coordinate.at; };
+        coordinate.start_at = place("start");
+        coordinate.rate_at = place("rate");
+        mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0); });
+        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0); });
+        mistakes.attempt([&] { coordinate.unit = fields.string_or("unit", ""); });
+        mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start)); });
+        mistakes.attempt([&] { coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate)); });
+        if (!is_named) continue;
+        if (reading.system.coordinates.size() == max_coordinates) {
+            mistakes.add({coordinate.at, fmt::format("more than {} coordinates", max_coordinates), {}});
+            reading.names.complete = false;
+            return;
+        }
+        reading.system.coordinates.push_back(coordinate);
+    }
+    if (reading.system.coordinates.empty() && reading.mistakes.count() == before)  // coordinate = []
+        throw missing("[[coordinate]]: a system needs at least one");
+}
+
+void read_parameters(Reading& reading) {
+    for (Fields& fields : named_tables(reading, "parameter")) {
+        Mistakes& mistakes = reading.mistakes;
+        fields.allow({"name", "value", "unit", "about", "range"}, mistakes);
+        ParameterDescription parameter;
+        const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
+        mistakes.attempt([&] {
+            parameter.value = fields.number("value");
+            parameter.at = fields.need("value").at;
+        });
+        mistakes.attempt([&] { parameter.unit = fields.string_or("unit", ""); });
+        mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
+        const bool is_restitution = reading.system.restitution.text == parameter.name;
+        const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
+        mistakes.attempt([&] { parameter.range = fields.range_or("range", usual); });
+        if (is_named) reading.system.parameters.push_back(parameter);
+    }
+}
+
+void read_lagrangian(Reading& reading, const Fields& root) {
+    root.need("lagrangian", missing("[lagrangian]"));
+    Fields fields(*root.find("lagrangian"), "[lagrangian]");
+    fields.allow({"kinetic", "potential"}, reading.mistakes);
+    reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
+    reading.mistakes.attempt([&] { reading.system.potential = fields.expression("potential"); });
+}
+
+void read_constraint(Reading& reading, const Fields& root) {
+    root.need("constraint", missing("[[constraint]]"));
+    const std::size_t before = reading.mistakes.count();
+    std::vector<Fields> constraints = tables(reading.root, "constraint", reading.mistakes);
+    if (constraints.empty() && reading.mistakes.count() == before) throw missing("[[constraint]]");  // constraint = []
+    if (constraints.empty()) return;
+    if (constraints.size() > 1)
+        reading.mistakes.add({constraints[1].table().at, "more than one [[constraint]]",
+                              "Achilles simulates systems with exactly one unilateral constraint"});
+    Fields& fields = constraints[0];
+    fields.allow({"gap", "restitution"}, reading.mistakes);
+    reading.mistakes.attempt([&] { reading.system.gap = fields.expression("gap"); });
+    reading.mistakes.attempt([&] { reading.system.restitution = fields.expression("restitution"); });
+}
+
+int read_count(const Fields& fields, const std::string& key) {
+    const double count = fields.positive(key);
+    const TomlValue& most = fields.need(key);
+    if (!most.integer || count > INT_MAX)
+        throw Mistake{most.at, fmt::format("'{}' in [run] must be a whole number up to {}", key, INT_MAX), {}};
+    return static_cast<int>(count);
+}
+
+// Reads one of a few names. Throws Mistake with the nearest.
+template <class Value>
+void read_choice(Value& value, const Fields& fields, const std::string& key, const std::vector<std::string>& names,
+                 std::optional<Value> (*from)(std::string_view)) {
+    const Text text = fields.string(key);
+    const std::optional<Value> found = from(text.text);
+    if (!found) {
+        throw Mistake{text.at, fmt::format("unknown {} '{}'{}", key, shown(text.text), did_you_mean(text.text, names)),
+                      fmt::format("known: {}", listed(names))};
+    }
+    value = *found;
+}
+
+// [run] or [truncation]: every key has a default.
+class OptionalFields {
+ public:
+    OptionalFields(const TomlValue& table, const std::string& where, const std::vector<std::string>& keys,
+                   Mistakes& mistakes)
+        : fields_(table, where), mistakes_(mistakes) {
+        fields_.allow(keys, mistakes_);
+    }
+    // Where the key is there: read(fields), which may throw Mistake.
+    template <class Read>
+    void at(const char* key, const Read& read) {
+        if (fields_.find(key)) mistakes_.attempt([&] { read(fields_); });
+    }
+    void positive(const char* key, double& value) {
+        at(key, [&](const Fields& fields) { value = fields.positive(key); });
+    }
+
+ private:
+    Fields fields_;
+    Mistakes& mistakes_;
+};
+
+void read_run(const TomlValue& table, Options& options, Mistakes& mistakes) {
+    OptionalFields run(table, "[run]", {"end_time", "tolerance", "method", "max_impacts", "max_steps"}, mistakes);
+    run.positive("end_time", options.end_time);
+    run.positive("tolerance", options.tolerance);
+    run.at("method", [&](const Fields& fields) {
+        read_choice(options.method, fields, "method", {"taylor", "dopri5"}, method_from);
+    });
+    run.at("max_impacts", [&](const Fields& fields) { options.max_impacts = read_count(fields, "max_impacts"); });
+    run.at("max_steps", [&](const Fields& fields) { options.max_steps = read_count(fields, "max_steps"); });
+}
+
+void read_truncation(const TomlValue& table, Truncation& truncation, Mistakes& mistakes) {
+    OptionalFields fields(table, "[truncation]", {"eps_q", "eps_v", "eps_t", "conditions", "reinitialization"},
+                          mistakes);
+    fields.positive("eps_q", truncation.eps_q);
+    fields.positive("eps_v", truncation.eps_v);
+    fields.positive("eps_t", truncation.eps_t);
+    fields.at("conditions", [&](const Fields& text) {
+        read_choice(truncation.conditions, text, "conditions", {"sharp", "paper"}, conditions_from);
+    });
+    fields.at("reinitialization", [&](const Fields& text) {
+        read_choice(truncation.reinitialization, text, "reinitialization", {"kinetic", "euclidean"},
+                    reinitialization_from);
+    });
+}
+
+void read_pictures(Reading& reading) {
+    SystemDescription& system = reading.system;
+    Mistakes& mistakes = reading.mistakes;
+    for (const Fields& fields : tables(reading.root, "drawing", mistakes))
+        mistakes.attempt([&] { system.drawings.push_back(read_drawing(system, fields, mistakes)); });
+    std::set<std::string> names;
+    for (Fields& fields : tables(reading.root, "view", mistakes)) {
+        mistakes.attempt([&] {
+            const ViewDescription view = read_view(fields, mistakes);
+            system.views.push_back(view);
+            if (view.name.empty() || names.insert(view.name).second) return;
+            const Location at = fields.find("name") ? fields.string("name").at : fields.table().at;
+            throw Mistake{at, fmt::format("the name '{}' is used twice", shown(view.name)),
+                          "each [[view]] needs a name of its own"};
+        });
+    }
+    if (system.views.empty()) system.views = default_views(system);
+}
+
+}  // namespace
+
+FileReading read_tables(std::string text, std::string name) {
+    const Ground ground;  // decimals are read to nearest
+    if (text.size() > largest_file)
+        throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
+    FileReading read;
+    SystemDescription& system = read.system;
+    system.file = std::move(name);
+    system.source_text = std::move(text);
+    const TomlValue root = read_toml(system.source_text, system.file);
+    Mistakes& mistakes = read.mistakes;
+    Reading reading{system, root, mistakes, read.names};
+    Fields fields(root, "a system file");
+    const std::vector<std::string> keys{"title", "source", "coordinate", "parameter",  "lagrangian", "constraint",
+                                        "run",   "view",   "drawing",    "truncation", "extra"};
+    fields.allow(keys, mistakes);
+    for (const TomlEntry& entry : root.entries)  // an unknown table may hold names
+        if (entry.value.kind == TomlValue::Kind::array || entry.value.kind == TomlValue::Kind::table)
+            reading.names.complete = reading.names.complete && contains(keys, entry.key);
+    mistakes.attempt([&] {
+        fields.need("title", missing("title"));
+        system.title = fields.string("title").text;
+    });
+    mistakes.attempt([&] { system.source = fields.string_or("source", ""); });
+    mistakes.attempt([&] { read_coordinates(reading, fields); });
+    mistakes.attempt([&] { read_lagrangian(reading, fields); });
+    mistakes.attempt([&] { read_constraint(reading, fields); });
+    read_parameters(reading);  // after the constraint: the restitution's slider has a range of its own
+    if (const TomlValue* run = fields.find("run")) mistakes.attempt([&] { read_run(*run, system.options, mistakes); });
+    if (const TomlValue* truncation = fields.find("truncation"))
+        mistakes.attempt([&] { read_truncation(*truncation, system.options.truncation, mistakes); });
+    read_pictures(reading);
+    return read;
+}
+
+}  // namespace achilles

@@ -1,0 +1,32 @@
+// The first step of reading a system file: its tables, keys and names. What its expressions mean is the second
+// (model/read_expressions.hpp); model/read_system.hpp does both.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "system/description.hpp"
+#include "system/mistakes.hpp"
+
+namespace achilles {
+
+// The names of the coordinates and parameters of a file that may have mistakes.
+struct Names {
+    std::map<std::string, Location> places;
+    bool complete = true;           // false: there may be names that could not be read, so none can be called unknown
+    std::set<std::string> excused;  // refused or unknown, and told once: they may stand for anything
+};
+
+// What was read, and what was wrong with it so far.
+struct FileReading {
+    SystemDescription system;
+    Names names;
+    Mistakes mistakes;
+};
+
+// Reads the tables of a system file from its text; `name` stands for the file in messages. Throws InputError where
+// there is nothing to read (it is no TOML, or too large).
+FileReading read_tables(std::string text, std::string name);
+
+}  // namespace achilles

@@ -1,0 +1,212 @@
+#include "system/toml_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include <toml++/toml.h>
+
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+Location location(const toml::source_position& position) {
+    return {static_cast<int>(position.line), static_cast<int>(position.column)};
+}
+
+// Skips the string or comment that starts at i; returns the index of its last character.
+std::size_t skip(const std::string& text, std::size_t i) {
+    if (text[i] == '#') return std::min(text.find('\n', i), text.size()) - 1;
+    const char quote = text[i];
+    const bool multi = text.compare(i, 3, std::string(3, quote)) == 0;
+    for (std::size_t j = i + (multi ? 3 : 1); j < text.size(); ++j) {
+        if (text[j] == '\\' && quote == '"') {
+            ++j;
+        } else if (multi ? text.compare(j, 3, std::string(3, quote)) == 0 : text[j] == quote || text[j] == '\n') {
+            if (!multi) return j;
+            j += 2;
+            for (int extra = 0; extra < 2 && j + 1 < text.size() && text[j + 1] == quote; ++extra) ++j;  // """a""""
+            return j;
+        }
+    }
+    return text.size() - 1;
+}
+
+// Refuses a key of very many dotted parts: toml++ would build tables nested so deep that freeing them overflows the
+// stack.
+void refuse_deep_keys(const std::string& text, const std::string& name) {
+    constexpr int most = 16;
+    int dots = 0, line = 1;
+    std::size_t line_start = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '"' || c == '\'' || c == '#') {
+            const std::size_t end = skip(text, i);
+            for (; i < end; ++i) {
+                if (text[i] != '\n') continue;
+                ++line;
+                line_start = i + 1;
+            }
+        } else if (c == '.') {
+            if (++dots > most) {
+                const Location at{line, static_cast<int>(i - line_start) + 1};
+                throw InputError(name, at, fmt::format("a key of more than {} parts", most), {}, line_of(text, line));
+            }
+        } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
+            dots = 0;
+        }
+        if (i < text.size() && text[i] == '\n') {
+            dots = 0;
+            ++line;
+            line_start = i + 1;
+        }
+    }
+}
+
+// The rest of a text from a line and column on, found without reading it from its start: a file may hold a million
+// strings, all of them in one line.
+class Places {
+ public:
+    explicit Places(std::string_view text) : text_(text) {
+        lines_.push_back(0);
+        marks_.push_back(0);
+        int characters = 0;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '\n') {
+                lines_.push_back(marks_.size());
+                marks_.push_back(i + 1);
+                characters = 0;
+            } else if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80 && ++characters > stride) {
+                marks_.push_back(i);
+                characters = 1;
+            }
+        }
+        lines_.push_back(marks_.size());
+    }
+
+    std::string_view from(Location at) const {
+        const auto line = static_cast<std::size_t>(at.line - 1),
+                   skipped = static_cast<std::size_t>(at.column - 1) / stride;
+        if (at.line < 1 || at.column < 1 || line + 1 >= lines_.size() || lines_[line] + skipped >= lines_[line + 1])
+            return {};
+        const std::string_view rest = text_.substr(marks_[lines_[line] + skipped]);
+        return rest.substr(byte_of_column(rest, 1 + (at.column - 1) % stride));
+    }
+
+ private:
+    static constexpr int stride = 64;
+    std::string_view text_;
+    std::vector<std::size_t> marks_;  // the bytes where every 64th character of each line starts
+    std::vector<std::size_t> lines_;  // the first mark of each line, and the end
+};
+
+// What a conversion needs to know of its surroundings.
+struct Source {
+    const std::string& text;
+    const std::string& name;
+    const Places& places;
+    int depth = 0;
+};
+
+// Where the characters of a string start: behind its quotes, and behind a first line break that TOML drops.
+Location inside(const Places& places, Location at) {
+    std::string_view rest = places.from(at);
+    for (const std::string_view quotes : {"\"\"\"", "'''"}) {
+        if (!rest.starts_with(quotes)) continue;
+        rest.remove_prefix(3);
+        const bool line_ends = rest.empty() || rest.starts_with("\n") || rest.starts_with("\r\n");
+        return line_ends ? Location{at.line + 1, 1} : Location{at.line, at.column + 3};
+    }
+    return {at.line, at.column + 1};
+}
+
+TomlValue convert(const toml::node& node, Source source);
+
+TomlValue convert_table(const toml::table& table, const Source& source) {
+    TomlValue value;
+    for (const auto& [key, node] : table) {
+        value.entries.push_back({std::string(key.str()), location(key.source().begin), convert(node, source)});
+    }
+    const auto place = [](const TomlEntry& entry) { return std::tuple(entry.at.line, entry.at.column); };
+    std::sort(value.entries.begin(), value.entries.end(),
+              [&](const TomlEntry& a, const TomlEntry& b) { return place(a) < place(b); });
+    return value;
+}
+
+TomlValue convert(const toml::node& node, Source source) {
+    constexpr int deepest = 64;
+    const Location at = location(node.source().begin);
+    if (++source.depth > deepest) {
+        throw InputError(source.name, at, fmt::format("more than {} levels of nesting", deepest), {},
+                         line_of(source.text, at.line));
+    }
+    TomlValue value;
+    if (const toml::table* table = node.as_table()) value = convert_table(*table, source);
+    value.at = at;
+    value.text.at = at;
+    if (const auto* string = node.as_string()) {
+        value.kind = TomlValue::Kind::string;
+        value.text = {string->get(), inside(source.places, at)};
+    } else if (const auto* integer = node.as_integer()) {
+        value.kind = TomlValue::Kind::number;
+        value.integer = true;
+        value.number = static_cast<double>(integer->get());
+        value.text.text = fmt::format("{}", integer->get());
+    } else if (const auto* number = node.as_floating_point()) {
+        value.kind = TomlValue::Kind::number;
+        value.number = number->get();
+        value.text.text = fmt::format("{}", number->get());
+    } else if (const auto* boolean = node.as_boolean()) {
+        value.kind = TomlValue::Kind::boolean;
+        value.boolean = boolean->get();
+    } else if (const toml::array* array = node.as_array()) {
+        value.kind = TomlValue::Kind::array;
+        value.items.reserve(array->size());
+        for (const toml::node& item : *array) value.items.push_back(convert(item, source));
+    } else if (!node.is_table()) {
+        value.kind = TomlValue::Kind::date;
+    }
+    return value;
+}
+
+}  // namespace
+
+std::string_view kind_name(TomlValue::Kind kind) {
+    switch (kind) {
+        case TomlValue::Kind::string:
+            return "a string";
+        case TomlValue::Kind::number:
+            return "a number";
+        case TomlValue::Kind::boolean:
+            return "true or false";
+        case TomlValue::Kind::date:
+            return "a date";
+        case TomlValue::Kind::array:
+            return "an array";
+        case TomlValue::Kind::table:
+            return "a table";
+    }
+    return "";
+}
+
+TomlValue read_toml(const std::string& text, const std::string& name) {
+    refuse_deep_keys(text, name);
+    try {
+        const toml::table table = toml::parse(text);
+        const Places places(text);
+        return convert(table, Source{text, name, places});
+    } catch (const toml::parse_error& error) {
+        std::string_view message = error.description();
+        const std::string_view preamble = "Error while parsing ";  // "... key-value pair: expected '='"
+        if (message.substr(0, preamble.size()) == preamble) {
+            if (const auto colon = message.find(": "); colon != message.npos) message.remove_prefix(colon + 2);
+        }
+        const Location at = location(error.source().begin);
+        throw InputError(name, at, fmt::format("not valid TOML: {}", message), {}, line_of(text, at.line));
+    }
+}
+
+}  // namespace achilles

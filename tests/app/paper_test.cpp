@@ -1,0 +1,69 @@
+// Fig. 4 of the paper, and the table of its numbers beside ours.
+#include "pictures/paper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/systems.hpp"
+
+namespace achilles {
+namespace {
+
+TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
+    const auto ball = test::load("ball_on_sine"), pendulum = test::load("double_pendulum");
+    const auto as_in_the_paper = [](const std::shared_ptr<const Model>& model) {
+        auto run = model->default_run();
+        run.options.truncation.conditions = Conditions::paper;
+        return simulate(model, run);
+    };
+    const Trajectory a = as_in_the_paper(ball), b = as_in_the_paper(pendulum);
+    EXPECT_NEAR(rest_time_with_threshold(a, 1.0), 10.93, 0.005);  // THEORY section 8
+    EXPECT_NEAR(rest_time_with_threshold(a, 1e-5), 12.4658, 1e-4);
+    const std::string table = paper_table(a, b);
+    for (const char* piece :
+         {"ball, second Zeno time             about 11       12.465775      +1.47        see below\n",
+          "ball, first Zeno time              about 3        2.72514217     -0.275       read off the plot\n",
+          "ball, release                      about 4        3.73182155     -0.268       read off the plot\n", "10.93",
+          "about -40 deg  -36.69", "pendulum, theta1 at release        0 deg          0 deg          +0 deg",
+          "ball, Zeno time 2                  [12.4657", "pendulum, Zeno time 3              [18.6960"})
+        EXPECT_NE(table.find(piece), std::string::npos) << piece << "\n" << table;
+    const auto figures = paper_figures(a, b);
+    ASSERT_EQ(figures.size(), 8u);
+    EXPECT_EQ(figures[0].name, "fig4a");
+    EXPECT_EQ(figures[6].name, "fig4");
+    EXPECT_EQ(figures[6].figure.panels.size(), 6u);
+    // From the certified time at threshold 0 to what one would read as 11 at threshold 1.
+    EXPECT_EQ(figures[7].name, "zeno");
+    const std::vector<Point>& cut = figures[7].figure.panels[0].curves[0].points;
+    EXPECT_EQ(cut.front().x, 0.0);
+    EXPECT_NEAR(cut.front().y, 12.465774972, 1e-6);
+    EXPECT_EQ(cut.back().x, 1.0);
+    EXPECT_NEAR(cut.back().y, 10.93, 0.005);
+    ASSERT_EQ(figures[7].figure.panels[1].curves.size(), 5u);
+}
+
+// The times of shared/reference in every interval, and intervals that shrink with the square of the speed.
+TEST(Paper, CertifiedIntervalsShrinkAroundTheZenoTimes) {
+    const auto ball = test::load("ball_on_sine");
+    auto run = ball->default_run();
+    const auto widths = certified_widths(simulate(ball, run));
+    ASSERT_EQ(widths.size(), 2u);
+    const double truth[] = {2.725142172735049, 12.465774972267969};
+    for (std::size_t n = 0; n < 2; ++n) {
+        ASSERT_GE(widths[n].size(), 8u);
+        for (const CertifiedWidth& cut : widths[n]) {
+            // Of the second, errors of the first cut are not covered by the certificate; they are of its tolerance.
+            const double slack = n == 0 ? 1e-9 : 0.1 * cut.speed;
+            EXPECT_LT(cut.low - slack, truth[n]) << cut.speed;
+            EXPECT_GT(cut.high + slack, truth[n]) << cut.speed;
+        }
+        const CertifiedWidth &first = widths[n].front(), &last = widths[n].back();
+        const double slope =
+            std::log((first.high - first.low) / (last.high - last.low)) / std::log(first.speed / last.speed);
+        EXPECT_NEAR(slope, 3.0, 0.25);
+    }
+}
+
+}  // namespace
+}  // namespace achilles

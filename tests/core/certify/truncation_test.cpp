@@ -1,0 +1,222 @@
+// What is drawn is true at every instant: the uniform bound of the sharp conditions, the impact at which a bouncing is
+// cut, and the Zeno time to third order (THEORY-truncation sections 2 to 4).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "certify/truncation.hpp"
+#include "core/systems.hpp"
+#include "output/output.hpp"
+#include "simulate/impact.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+namespace {
+
+std::shared_ptr<const Model> falling_ball() {
+    return test::typed(R"(
+title = "Ball"
+[[coordinate]]
+name = "y"
+start = 1.0
+rate = 0.0
+[[parameter]]
+name = "e"
+value = 0.8
+[lagrangian]
+kinetic = "1/2*y'^2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = "e"
+)");
+}
+
+// The true height of that ball, flight by flight.
+double true_height(double t, double e) {
+    constexpr double g = 9.81;
+    double start = -std::sqrt(2.0 / g), up = std::sqrt(2.0 * g);  // as if it had been thrown up before
+    while (up > 1e-12) {
+        const double length = 2.0 * up / g;
+        if (t < start + length) return up * (t - start) - 0.5 * g * (t - start) * (t - start);
+        start += length;
+        up *= e;
+    }
+    return 0.0;
+}
+
+// Of a flat floor every bound is attained, so that time, position and velocity at tau_inf hold at the first impact
+// already. What is seen does not.
+TEST(Truncation, ATextbookBallBounces) {
+    const auto model = falling_ball();
+    const Trajectory trajectory = simulate(model, model->default_run());
+    ASSERT_EQ(trajectory.phases.size(), 2u);
+    EXPECT_GE(trajectory.phases[0].impacts, 25);
+    Sampler sampler(trajectory);
+    double furthest = 0.0;
+    for (int i = 0; i <= 100000; ++i) {
+        const double t = 1e-4 * i;
+        furthest = std::max(furthest, std::abs(sampler.at(t).state.q[0] - true_height(t, 0.8)));
+    }
+    EXPECT_LE(furthest, 1e-6);
+    const auto zenos = test::events_of(trajectory, Event::Kind::zeno);
+    ASSERT_EQ(zenos.size(), 1u);
+    const Certificate& c = *zenos[0].certificate;
+    EXPECT_LE(furthest, *c.uniform_position);
+    EXPECT_GE(furthest, 0.99 * *c.uniform_position);  // the first bounce that is not drawn is that high
+    EXPECT_NEAR(zenos[0].t, std::sqrt(2.0 / 9.81) * (1.0 + 2.0 * 0.8 / 0.2), 1e-9);
+}
+
+TEST(Truncation, TheImpactAtTheCutIsAnImpactLikeAnyOther) {
+    for (const double e : {0.5, 0.0}) {
+        const auto model = test::load("ball_on_sine");
+        auto run = model->default_run();
+        for (std::size_t i = 0; i < run.parameters.size(); ++i)
+            if (model->description().parameters[i].name == "e") run.parameters[i] = e;
+        const Trajectory trajectory = simulate(model, run);
+        long impacts = 0;
+        for (const Phase& phase : trajectory.phases) impacts += phase.impacts;
+        EXPECT_EQ(impacts, trajectory.statistics.impacts);
+        Surface surface(*model, run);
+        int zenos = 0, since = 0;
+        for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+            const Event& event = trajectory.events[i];
+            if (event.kind == Event::Kind::impact) ++since;
+            if (event.kind != Event::Kind::zeno) continue;
+            ++zenos;
+            ASSERT_GE(i, 1u);
+            const Event& cut = trajectory.events[i - 1];
+            ASSERT_EQ(cut.kind, Event::Kind::impact);
+            EXPECT_EQ(event.impacts, since);
+            since = 0;
+            EXPECT_EQ(cut.t, event.truncation->t);
+            EXPECT_EQ(cut.q, event.truncation->q);
+            EXPECT_EQ(cut.v_before, event.truncation->v_before);
+            EXPECT_EQ(cut.impact_speed, event.truncation->impact_speed);
+            const Contact after = surface.at({cut.q, cut.v_after});
+            EXPECT_NEAR(after.hdot, e * cut.impact_speed, 1e-13);  // Newton's law, not the restart
+        }
+        EXPECT_GE(zenos, 2);
+    }
+}
+
+struct Cut {
+    double w, estimate_error, half_width, first_order_half_width;
+};
+
+// The wait for the first Zeno point as it is seen from each impact before it.
+std::vector<Cut> cuts_of(const std::string& system) {
+    const auto model = test::load(system);
+    auto run = model->default_run();
+    run.options.tolerance = 1e-14;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-13;
+    const Trajectory trajectory = simulate(model, run);
+    const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
+    Surface surface(*model, run);
+    const auto conditions = truncation_conditions(*model, run);
+    const Interval e(0.5);
+    std::vector<Cut> cuts;
+    for (const Event& event : trajectory.events) {
+        if (event.t >= zeno.t || event.kind != Event::Kind::impact) break;
+        const State before{event.q, event.v_before};
+        const Contact contact = surface.at(before);
+        const Vector s = reinitialize(contact, before.v, Reinitialization::kinetic);
+        const auto c = conditions->widest({event.t, before, -contact.hdot, s, s});
+        if (!c) continue;
+        EXPECT_LE(c->zeno_low, zeno.t);
+        EXPECT_GE(c->zeno_high, zeno.t);
+        const Wait wait = wait_for_zeno(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
+        cuts.push_back({event.impact_speed, std::abs(c->zeno_time - zeno.t), 0.5 * (c->zeno_high - c->zeno_low),
+                        0.5 * (wait.latest.hi() - wait.earliest.lo())});
+    }
+    return cuts;
+}
+
+double slope(const Cut& a, const Cut& b, double Cut::*value) {
+    return std::log(a.*value / (b.*value)) / std::log(a.w / b.w);
+}
+
+TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
+    for (const auto& problem : test::problems) {
+        const std::vector<Cut> cuts = cuts_of(problem.asset);
+        const Cut *large = nullptr, *small = nullptr;
+        for (const Cut& cut : cuts) {
+            if (cut.w < 2e-2 && large == nullptr) large = &cut;
+            if (cut.w > 3e-4) small = &cut;
+        }
+        ASSERT_TRUE(large != nullptr && small != nullptr && small->w < 0.1 * large->w);
+        EXPECT_GT(slope(*large, *small, &Cut::half_width), 2.8) << problem.key;
+        EXPECT_GT(slope(*large, *small, &Cut::estimate_error), 2.8) << problem.key;
+        EXPECT_NEAR(slope(*large, *small, &Cut::first_order_half_width), 2.0, 0.5) << problem.key;
+        EXPECT_LT(small->half_width, 0.1 * small->first_order_half_width) << problem.key;
+        // The estimate is not an end of the interval but far inside.
+        EXPECT_LT(small->estimate_error, 0.1 * small->half_width) << problem.key;
+    }
+}
+
+// So small in its units that a_min^2 is nothing: the time and the place of the Zeno point are bounded, the shadowing is
+// not, and then nothing is claimed of it and nothing is cut for it.
+TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
+    const auto model = test::drop();
+    auto run = model->default_run();
+    run.parameters[0] = 1e-290;
+    const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
+    const Collision collision{0.0, {q, v}, 1e-295, s, s};
+    const auto conditions = truncation_conditions(*model, run);
+    EXPECT_FALSE(conditions->hold(collision));
+    const auto widest = conditions->widest(collision);
+    ASSERT_TRUE(widest);
+    EXPECT_GT(widest->position_bound, 0.0);
+    EXPECT_FALSE(widest->shadowing_position || widest->shadowing_velocity || widest->uniform_position);
+}
+
+// (E) is what the exact identity gives: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
+TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
+    const Trend trend{2.0, 0.3, 0.7};
+    const double e = 0.5, w = 1e-2, a = trend.a, b = trend.b, c = trend.c, K = (1 + e) / (1 - e);
+    const double cB = -b * K / (2 * a * a), cC = -(b / (a * a) + c / a) / (2 * a);
+    const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
+    const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
+    EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
+}
+
+// The enclosure of third order is THEORY-truncation section 4's, evaluated here from what is printed there: with none
+// of the six terms of rho (0), with each of them alone, so that no other hides it, and with all of them (7).
+TEST(Truncation, TheThirdOrderIntervalIsThatOfTheTheory) {
+    const Trend trend{2.0, 0.3, 0.7};
+    const double e = 0.5, w = 1e-2, a_min = 1.9, a_max = 2.2, T = 0.03, a = trend.a, b = trend.b, c = trend.c;
+    const double K = (1 + e) / (1 - e), h_m = e * w * e * w / (2 * a_min);
+    const double cA = -b / (a * a), cB = -b * K / (2 * a * a), cE = cB, cC = -(b / (a * a) + c / a) / (2 * a);
+    const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
+    const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
+    const double e2 = e * std::sqrt(a_max / a_min);  // e''
+    const double z_m = w * std::sqrt(std::max(e, e2) * std::max(e, e2) + e * e * a / a_min);
+    const double d_m = std::max(std::abs(a_max - a), std::abs(a - a_min));
+    const double S = T * (std::abs(cA) + 1.09 * std::abs(cB) + std::abs(cE)) +
+                     2 * z_m * (std::abs(cC) + std::abs(cD) + std::abs(cF) + std::abs(cG));
+    for (int term = 0; term <= 7; ++term) {
+        const auto size = [&](int of) { return term == of || term == 7 ? 0.4 + 0.1 * of : 0.0; };
+        const double start = size(1), by_sigma = size(2), P = size(3), phi_mid = size(4), phi_rad = size(5),
+                     xi = size(6);
+        const Drift drift{Interval(a - start, a + 0.5 * start), Interval(c - 0.5 * by_sigma, c + by_sigma),
+                          Interval(b - P, b + 0.5 * P), Interval(-phi_mid - phi_rad, -phi_mid + phi_rad),
+                          Interval(-xi, 0.5 * xi)};
+        const double rho = start + by_sigma * w + P * T + phi_mid * h_m + phi_rad * w * T + xi * w * w * T;
+        const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), centre = estimated_wait(trend, e, w);
+        const Interval wait = third_order_wait(trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w),
+                                               Interval(0.0, T));
+        // 1e-3 for 1.09, which is rounded up. Terms that are less than that beside S are seen where b, c and d_m are 0.
+        EXPECT_LE(wait.lo(), centre - off) << term;
+        EXPECT_GE(wait.hi(), centre + off) << term;
+        EXPECT_NEAR(wait.hi() - centre, off, 1e-3 * off) << term;
+        const Interval alone = third_order_wait(
+            {a, 0.0, 0.0}, {drift.start, drift.by_sigma - Interval(c), drift.P - Interval(b), drift.Phi, drift.Xi},
+            Interval(e), Interval(a), Interval(a), Interval(w), Interval(0.0, T));
+        const double h_alone = e * w * e * w / (2 * a), T0 = 2 * e * w / (a * (1 - e));
+        const double rho_alone = rho + phi_mid * (h_alone - h_m);
+        EXPECT_NEAR(alone.hi() - T0, T * 2 * rho_alone / (a * (1 - e)), 1e-9 * T * rho_alone + 1e-15) << term;
+    }
+}
+
+}  // namespace
+}  // namespace achilles

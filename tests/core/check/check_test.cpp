@@ -1,0 +1,215 @@
+// The Zeno condition as a person reads it, and the report of `achilles check` (THEORY sections 1, 2, 7, 8).
+#include "check/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+
+#include "algebra/writer.hpp"
+#include "check/simplified.hpp"
+#include "core/systems.hpp"
+#include "model/read_system.hpp"
+
+namespace achilles {
+namespace {
+
+struct Condition {
+    std::string hddot, decisive, positive, solved;
+    ZenoCondition::Verdict verdict;
+    bool definite;
+};
+
+Condition condition(const Model& model) {
+    const Simplified simplified(model, model.default_run());
+    EXPECT_TRUE(simplified.zeno);
+    if (!simplified.zeno) return {};
+    const ZenoCondition& zeno = *simplified.zeno;
+    const Writer writer(*zeno.algebra, model.slot_names(), simplified.ranks(), Notation::text);
+    std::string solved;
+    for (const auto& [symbol, value] : zeno.solved)
+        solved += (solved.empty() ? "" : ", ") + to_text(symbol, model.slot_names()) + " = " +
+                  to_text(value, model.slot_names());
+    return {writer.write(zeno.positive * zeno.decisive).text,
+            writer.write(zeno.decisive).text,
+            writer.write(zeno.positive).text,
+            solved,
+            zeno.verdict,
+            zeno.definite};
+}
+
+Condition condition(const std::string& asset) { return condition(*test::load(asset)); }
+
+using Verdict = ZenoCondition::Verdict;
+
+TEST(ZenoCondition, OfTheBallIsThePapers) {
+    const Condition ball = condition("ball_on_sine");
+    EXPECT_EQ(ball.decisive, "x'^2*sin(x) - g");
+    EXPECT_EQ(ball.positive, "1");
+    EXPECT_EQ(ball.verdict, Verdict::depends);
+}
+
+// g sin(theta1)/L~ < 0 with 3(m1(L1 + 2L2) + m2 L2) in 1/L~ (THEORY section 7).
+TEST(ZenoCondition, OfTheDoublePendulumIsThePapers) {
+    const Condition pendulum = condition("double_pendulum");
+    EXPECT_EQ(pendulum.solved, "theta2 = 0, theta2' = 0");
+    EXPECT_EQ(pendulum.decisive, "g*sin(theta1)");
+    EXPECT_EQ(pendulum.positive, "3*(m1*(L1 + 2*L2) + m2*L2)/(L1*L2*(4*m1 + 3*m2))");
+    EXPECT_EQ(pendulum.verdict, Verdict::depends);
+    EXPECT_FALSE(pendulum.definite);
+}
+
+// The same machine in other names, other coordinates (both angles from the vertical, in other units) and other
+// parameters (densities, half lengths): nothing may be recognised.
+const char* const other_pendulum = R"toml(
+title = "Two rods, absolute angles"
+[[coordinate]]
+name = "alpha"
+start = 0.5
+[[coordinate]]
+name = "beta"
+start = 0.9
+[[parameter]]
+name = "r"
+value = 2.0
+range = [0.1, 20.0]
+[[parameter]]
+name = "s"
+value = 0.7
+range = [0.1, 20.0]
+[[parameter]]
+name = "a"
+value = 0.5
+range = [0.1, 20.0]
+[[parameter]]
+name = "b"
+value = 0.3
+range = [0.1, 20.0]
+[[parameter]]
+name = "G"
+value = 9.81
+range = [0.1, 20.0]
+[lagrangian]
+kinetic = "10*(2*r*a*(2*a)^2/6*alpha'^2 + 2*s*b/2*((2*a*alpha'*cos(alpha) + b*beta'/3*cos(beta/3))^2 + (2*a*alpha'*sin(alpha) + b*beta'/3*sin(beta/3))^2) + 2*s*b*(2*b)^2/24*(beta'/3)^2)"
+potential = "-10*G*(2*r*a*a*cos(alpha) + 2*s*b*(2*a*cos(alpha) + b*cos(beta/3)))"
+[[constraint]]
+gap = "7*(beta/3 - alpha)"
+restitution = 0.5
+)toml";
+
+TEST(ZenoCondition, OfARenamedAndRescaledPendulumIsTheSame) {
+    const Condition other = condition(*test::typed(other_pendulum));
+    // m1 = 2 r a, m2 = 2 s b, L1 = 2 a, L2 = 2 b put into the paper's, times 7 for the gap's scale:
+    // 7 * 3 (2ra(2a + 4b) + 4 s b^2)/(4ab(8ra + 6sb)) = 21 (ra(a + 2b) + s b^2)/(2ab(4ra + 3sb))
+    EXPECT_EQ(other.verdict, Verdict::depends);
+    EXPECT_TRUE(other.decisive == "G*sin(alpha)" || other.decisive == "G*sin(beta/3)") << other.decisive;
+    EXPECT_EQ(other.positive, "21*(r*a*(a + 2*b) + s*b^2)/(2*a*b*(4*r*a + 3*s*b))");
+}
+
+TEST(ZenoCondition, SaysWhereTheSignIsAlwaysTheSame) {
+    const Condition bowl = condition("ball_in_bowl"), floor = condition("ball_on_floor");
+    EXPECT_EQ(bowl.hddot, "-(2*c*x'^2 + g)");
+    EXPECT_EQ(bowl.verdict, Verdict::always);
+    EXPECT_EQ(floor.hddot, "-g");
+    EXPECT_EQ(floor.verdict, Verdict::always);
+    const auto up = test::typed(R"toml(
+title = "Pulled off"
+[[coordinate]]
+name = "y"
+start = 1
+[[parameter]]
+name = "k"
+value = 2
+range = [1, 4]
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "-k*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)toml");
+    EXPECT_EQ(condition(*up).verdict, Verdict::never);
+}
+
+// A parameter set to a value outside its range is not taken to be positive.
+TEST(ZenoCondition, BelievesValuesOverRanges) {
+    SystemDescription description = read_system(test::source_file("assets/systems/ball_on_floor.toml"));
+    assign(description, "g=-1");
+    EXPECT_EQ(condition(Model(description)).verdict, Verdict::depends);
+}
+
+// Denominators that only the definiteness of M shows to be positive.
+TEST(ZenoCondition, UsesThatTheMassMatrixIsPositiveDefinite) {
+    const auto model = test::typed(R"toml(
+title = "A mass that depends on where it is"
+[[coordinate]]
+name = "x"
+start = 1
+[[coordinate]]
+name = "y"
+start = 1
+[lagrangian]
+kinetic = "(5 + 3*x)*y'^2/2 + x'^2/2"
+potential = "sin(x)*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)toml");
+    const Condition found = condition(*model);
+    EXPECT_EQ(found.decisive, "-sin(x)");
+    EXPECT_EQ(found.positive, "1/(3*x + 5)");
+    EXPECT_TRUE(found.definite);
+}
+
+// Every system of the gallery: derived in time, equal to differences of L, printed and in balance.
+TEST(CheckReport, HoldsForEverySystem) {
+    for (const auto& file : std::filesystem::directory_iterator(test::source_file("assets/systems"))) {
+        SCOPED_TRACE(file.path().stem().string());
+        const Model model(read_system(file.path()));
+        const auto run = model.default_run();
+        for (const Notation notation : {Notation::text, Notation::latex}) {
+            double disagreement = 1.0;
+            const std::string report = check_report(model, run, 0.001, notation, disagreement);
+            EXPECT_LT(disagreement,
+                      1e-15);  // steps of 1e-11: truncation 1e-22 times fourth derivatives, rounding 1e-28
+            EXPECT_EQ(report, check_report(model, run, 0.001, notation, disagreement));
+            if (notation == Notation::text) {
+                EXPECT_NE(report.find("20 random states"), std::string::npos) << report;
+                continue;
+            }
+            int braces = 0, brackets = 0;
+            for (std::size_t i = 0; i < report.size(); ++i) {
+                if (report[i] == '{' || report[i] == '}') braces += report[i] == '{' ? 1 : -1;
+                if (report[i] == '(' || report[i] == ')') brackets += report[i] == '(' ? 1 : -1;
+                ASSERT_GE(braces, 0) << report.substr(0, i);
+            }
+            EXPECT_EQ(braces, 0) << report;
+            EXPECT_EQ(brackets, 0) << report;
+            for (const auto& [open, close] : {std::pair("\\left(", "\\right)"), std::pair("\\begin{", "\\end{")}) {
+                const auto count = [&](std::string_view word) {
+                    std::size_t found = 0;
+                    for (std::size_t at = 0; (at = report.find(word, at)) != std::string::npos; ++at) ++found;
+                    return found;
+                };
+                EXPECT_EQ(count(open), count(close)) << report;
+            }
+        }
+    }
+}
+
+// A lie: a mass matrix that is not that of L must show.
+TEST(CheckReport, SeesWrongEquations) {
+    const auto model = test::load("ball_on_sine");
+    const auto run = model->default_run();
+    const Simplified right(*model, run);
+    EXPECT_LT(compare_with_differences(*model, run, right).largest(), 1e-15);
+    Simplified wrong(*model, run);
+    wrong.hddot->numerator = wrong.hddot->numerator + Multinomial(1);
+    EXPECT_GT(compare_with_differences(*model, run, wrong).largest(), 0.1);
+    Simplified in_contact(*model, run);
+    in_contact.zeno->positive.number *= 2;
+    EXPECT_GT(compare_with_differences(*model, run, in_contact).largest(), 1e-3);
+}
+
+}  // namespace
+}  // namespace achilles

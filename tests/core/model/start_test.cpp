@@ -1,0 +1,97 @@
+// What a run cannot start from: parameters that have lost digits, energies and gaps without a value.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/systems.hpp"
+#include "model/read_system.hpp"
+#include "number/subnormal.hpp"
+
+namespace achilles {
+namespace {
+
+using test::told;
+
+std::string text_with(const std::string& mass, const std::string& kinetic, const std::string& potential,
+                      const std::string& gap) {
+    return "title = \"edge\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[parameter]]\nname = \"m\"\nvalue = " + mass +
+           "\n[lagrangian]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential +
+           "\"\n[[constraint]]\ngap = \"" + gap + "\"\nrestitution = 0.5\n";
+}
+
+// ---- small parameters ----
+
+TEST(SubnormalParameters, AreNumbersThatHaveLostDigits) {
+    constexpr double least_normal = std::numeric_limits<double>::min();
+    for (const double x : {5e-324, -5e-324, 0.5 * least_normal, std::nextafter(least_normal, 0.0)})
+        EXPECT_TRUE(is_subnormal(x)) << x;
+    for (const double x : {0.0, -0.0, least_normal, -least_normal, 1.0, 1e308, HUGE_VAL}) EXPECT_FALSE(is_subnormal(x));
+}
+
+TEST(SubnormalParameters, AreRefusedWhereTheyStand) {
+    EXPECT_EQ(told(text_with("5e-324", "m*x'^2/2", "m*x", "x")),
+              "f.toml:7:9: the parameter 'm' is 5e-324: so small a number has lost digits\n    value = 5e-324\n"
+              "            ^\n0, or at least 2.3e-308 in size: choose units in which it is larger");
+    EXPECT_EQ(told(text_with("3e-308", "m*x'^2/2", "m*x", "x")), "");
+    EXPECT_EQ(told(text_with("0", "x'^2/2", "m*x", "x")), "");
+}
+
+TEST(SubnormalParameters, AreRefusedWhereTheyAreSet) {
+    SystemDescription description = parse_system(text_with("1", "m*x'^2/2", "m*x", "x"), "f.toml");
+    try {
+        assign(description, "m=-1e-310");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "--set m=-1e-310: the parameter 'm' is -1e-310: so small a number has lost digits\n"
+                  "0, or at least 2.3e-308 in size: choose units in which it is larger");
+    }
+    assign(description, "x=5e-324");  // a start is what it is
+    const auto model = test::typed(text_with("1", "m*x'^2/2", "m*x", "x"));
+    auto run = model->default_run();
+    run.parameters[0] = 5e-324;
+    EXPECT_THROW(model->check(run), InputError);
+}
+
+// ---- what has no value at the start ----
+
+TEST(StartsWithoutAValue, NeedAPotential) {
+    // Its force has a value, 1/(x - 2) = -1: only the potential tells.
+    EXPECT_EQ(told(text_with("1", "x'^2/2", "log(x - 2)", "x")),
+              "f.toml:10:14: the potential is not defined at the start: log(x - 2), with x - 2 = -1\n"
+              "    potential = \"log(x - 2)\"\n                 ^");
+    EXPECT_EQ(told(text_with("1", "x'^2/2", "m*x + 1/(x - 1)", "x")),
+              "f.toml:10:14: the potential is not defined at the start: 1/(x - 1), with x - 1 = 0\n"
+              "    potential = \"m*x + 1/(x - 1)\"\n                 ^");
+    EXPECT_EQ(told(text_with("1", "x'^2/2", "exp(1000*x)", "x")),
+              "f.toml:10:14: the potential is not finite at the start\n"
+              "    potential = \"exp(1000*x)\"\n                 ^");
+    // It has a value, its derivative has none.
+    EXPECT_EQ(told(text_with("1", "x'^2/2", "sqrt(x - 1)", "x")),
+              "f.toml:10:14: a derivative of the potential is not defined at the start: 1/2/sqrt(x - 1), with "
+              "sqrt(x - 1) = 0\n    potential = \"sqrt(x - 1)\"\n                 ^");
+}
+
+TEST(StartsWithoutAValue, NeedAKineticEnergy) {
+    EXPECT_EQ(told(text_with("1", "(5 + log(x - 2))*x'^2/2", "x", "x")),
+              "f.toml:9:12: the kinetic energy is not defined at the start: log(x - 2), with x - 2 = -1\n"
+              "    kinetic = \"(5 + log(x - 2))*x'^2/2\"\n               ^");
+    EXPECT_EQ(told(text_with("1", "x'^2/2/(x - 1)^2", "x", "x")),
+              "f.toml:9:12: the kinetic energy is not defined at the start: x'^2/(x - 1)^2, with (x - 1)^2 = 0\n"
+              "    kinetic = \"x'^2/2/(x - 1)^2\"\n               ^");
+}
+
+TEST(StartsWithoutAValue, NeedAGap) {
+    EXPECT_EQ(told(text_with("1", "x'^2/2", "x", "5 + log(x - 2)")),
+              "f.toml:12:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n"
+              "    gap = \"5 + log(x - 2)\"\n           ^");
+    // A kink where it starts.
+    const std::string message = told(text_with("1", "x'^2/2", "x", "x - sqrt((x - 1)^2)"));
+    EXPECT_EQ(message.substr(0, 57), "f.toml:12:8: a derivative of the gap is not defined at th") << message;
+    const std::string infinite = told(text_with("1", "x'^2/2", "x", "exp(1000*x)"));
+    EXPECT_EQ(infinite.substr(0, 50), "f.toml:12:8: the gap is not finite at the start\n  ") << infinite;
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,88 @@
+// Where a motion leaves the domain of its equations, the run ends and says what ceases to be defined, when and in which
+// state; it neither hangs nor goes on.
+#include "simulate/domain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+
+#include "core/systems.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+namespace {
+
+struct Edge {
+    std::string name, start, rate, kinetic, potential, gap;
+    Outcome::Kind kind;
+    std::string beginning;  // of the message
+    double t;               // the instant, known in closed form
+};
+
+void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.name; }
+
+class Edges : public testing::TestWithParam<Edge> {};
+
+TEST_P(Edges, EndTheRunWithAReason) {
+    const Edge& edge = GetParam();
+    const auto model =
+        test::typed("title = \"edge\"\n[[coordinate]]\nname = \"x\"\nstart = " + edge.start + "\nrate = " + edge.rate +
+                    "\n[lagrangian]\nkinetic = \"" + edge.kinetic + "\"\npotential = \"" + edge.potential +
+                    "\"\n[[constraint]]\ngap = \"" + edge.gap + "\"\nrestitution = 0.5\n[run]\nend_time = 5.0\n");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const std::string& message = trajectory.outcome.message;
+    EXPECT_EQ(trajectory.outcome.kind, edge.kind) << message;
+    EXPECT_EQ(message.substr(0, edge.beginning.size()), edge.beginning) << message;
+    // when, and in which state
+    const std::size_t t = message.find(" t = ");
+    ASSERT_NE(t, message.npos) << message;
+    EXPECT_NEAR(std::stod(message.substr(t + 5)), edge.t, 1e-4 * edge.t) << message;
+    EXPECT_NE(message.find(", q = (", t), message.npos) << message;
+    EXPECT_NE(message.find("), v = (", t), message.npos) << message;
+    EXPECT_NEAR(trajectory.end_time, edge.t, 1e-4 * edge.t);
+    EXPECT_EQ(message.find("nan"), message.npos) << message;
+}
+
+constexpr auto left = Outcome::Kind::left_the_domain;
+const double pi = std::acos(-1.0);
+
+const Edge edges[] = {
+    // x'' = -1/x from rest at 1: t = sqrt(pi/2)
+    {"log", "1.0", "0.0", "x'^2/2", "log(x)", "x + 1", left,
+     "log(x) in the potential ceases to be defined, with x = ", std::sqrt(pi / 2)},
+    {"sqrt", "1.0", "-1.0", "x'^2/2", "0*x + 1e-9*sqrt(x)", "x + 1", left,
+     "sqrt(x) in the potential ceases to be defined, with x = ", 1.0},
+    // no force: x = 1 - t, and the gap is undefined from x = 1/2 on
+    {"gap", "1.0", "-1.0", "x'^2/2", "0", "sqrt(x - 1/2) + 1/2", left,
+     "sqrt(x - 1/2) in the gap ceases to be defined, with x - 1/2 = ", 0.5},
+    {"pole_of_the_gap", "1.0", "1.0", "x'^2/2", "0", "1/(2 - x)", left,
+     "1/(2 - x) in the gap ceases to be defined, with 2 - x = ", 1.0},
+    // x'' = -1/x^2, x = 1/2 (1 + cos(u)), from x' = -1: the cycloid's remainder, t = pi/2 - 1
+    {"division", "1.0", "-1.0", "x'^2/2", "-1/x", "x + 1", left,
+     "(-1)/x in the potential ceases to be defined, with x = ", pi / 2 - 1},
+    // x x'^2 is constant: x^(3/2) = 1 - 3/2 t
+    {"mass", "1.0", "-1.0", "x*x'^2/2", "0", "x + 1", left,
+     "the mass matrix ceases to be positive definite, with the pivot of 'x' at ", 2.0 / 3},
+    // x = 1 - t^2/2 meets h = x^3 at its flat zero
+    {"flat_contact", "1.0", "0.0", "x'^2/2", "x", "x^3", left,
+     "dh = 0 where contact happens: the normal is not defined, at t = ", std::sqrt(2.0)},
+    // and h = x^2 only touches: no number of digits tells whether there is an impact
+    {"touching_contact", "1.0", "0.0", "x'^2/2", "x", "x^2", Outcome::Kind::undecided,
+     "the gap comes closer to zero than the integration knows it", std::sqrt(2.0)},
+};
+
+INSTANTIATE_TEST_SUITE_P(Domain, Edges, testing::ValuesIn(edges), [](const auto& edge) { return edge.param.name; });
+
+// A run away to infinity crosses no edge: it has another outcome.
+TEST(Domain, InfinityIsNoEdge) {
+    const auto model = test::typed(
+        "title = \"away\"\n[[coordinate]]\nname = \"x\"\nstart = 1.0\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
+        "potential = \"-x^4\"\n[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n[run]\nend_time = 5.0\n");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    EXPECT_NE(trajectory.outcome.kind, Outcome::Kind::left_the_domain) << trajectory.outcome.message;
+    EXPECT_NE(trajectory.outcome.kind, Outcome::Kind::end_time);
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,197 @@
+// Never under the floor: a sample of what bench_floor does at length, over every system there is.
+#include "floor/floor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/systems.hpp"
+#include "simulate/many.hpp"
+
+namespace achilles::test {
+namespace {
+
+Run started(const Model& model, const State& start) {
+    Run run = model.default_run();
+    run.q = start.q;
+    run.v = start.v;
+    return run;
+}
+
+class Floor : public testing::TestWithParam<std::string> {};
+
+TEST_P(Floor, IsNeverPassedFromRandomStarts) {
+    const auto model = load(GetParam());
+    Starts starts(model, 7);
+    std::vector<achilles::Run> runs;
+    for (int i = 0; i < 100; ++i) runs.push_back(started(*model, starts.next()));
+    const auto faults = simulate_many(model, runs, [](std::size_t, Attempt&& attempt) {
+        if (std::holds_alternative<InputError>(attempt)) return std::string();  // not defined there
+        const auto& trajectory = std::get<Trajectory>(attempt);
+        // Between the ends of steps dense output is an interpolation, not better than the tolerance allows.
+        const std::string wrong = fault(trajectory, 100.0 * trajectory.run.options.tolerance);
+        return wrong.empty() ? wrong : wrong + start_of(trajectory);
+    });
+    for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
+}
+
+TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
+    const auto model = load(GetParam());
+    Starts starts(model, 9);
+    std::vector<achilles::Run> runs;
+    for (int i = 0; i < 400; ++i) runs.push_back(started(*model, starts.next()));
+    std::vector<std::string> faults(runs.size());
+    simulate_ends(
+        model, runs.size(), [&](std::size_t i) { return runs[i]; },
+        [&](std::size_t i, Attempt&& attempt) {
+            if (std::holds_alternative<InputError>(attempt)) return;
+            const auto& trajectory = std::get<Trajectory>(attempt);
+            faults[i] = fault(trajectory, 0.0);
+            if (!faults[i].empty()) faults[i] += start_of(trajectory);
+        });
+    for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
+}
+
+TEST_P(Floor, IsMetWhenThe34DigitsSay) {
+    const auto model = load(GetParam());
+    Starts starts(model, 8);
+    for (int i = 0; i < (model->n() > 2 ? 1 : 2); ++i) {  // the truth about three links takes seconds
+        auto run = started(*model, starts.next());
+        run.options.tolerance = 1e-12;
+        run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
+        const Trajectory trajectory = simulate(model, run);
+        const Comparison comparison = Judge(model, run).compare(trajectory);
+        EXPECT_TRUE(comparison.agrees()) << comparison.error << " off, sensitivity " << comparison.sensitivity
+                                         << ", at " << comparison.where << start_of(trajectory);
+        const Trajectory end = by_eight(model, run);
+        EXPECT_LE(std::max((end.end.q - trajectory.end.q).norm(), (end.end.v - trajectory.end.v).norm()),
+                  1e-8 * comparison.sensitivity)
+            << start_of(trajectory);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, Floor, testing::ValuesIn(all_systems()),
+                         [](const auto& system) { return system.param; });
+
+// What the comparison must not let pass: an impact left out, and one moved by 1e-6.
+TEST(FloorJudge, CatchesALie) {
+    const auto model = load("ball_on_sine");
+    auto run = model->default_run();
+    run.options.tolerance = 1e-12;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
+    Judge judge(model, run);
+    Trajectory trajectory = simulate(model, run);
+    EXPECT_TRUE(judge.compare(trajectory).agrees());
+    Trajectory moved = trajectory;
+    const double sensitivity = judge.compare(trajectory).sensitivity;
+    EXPECT_LT(sensitivity, 1e4);
+    moved.end.v[0] += 2e-8 * sensitivity;
+    EXPECT_FALSE(judge.compare(moved).agrees());
+    Trajectory fewer = trajectory;
+    fewer.events.erase(fewer.events.begin());
+    EXPECT_FALSE(judge.compare(fewer).agrees());
+    Trajectory under = trajectory;
+    under.statistics.least_gap = -2e-12;
+    EXPECT_NE(fault(under, 1e-8), "");
+    EXPECT_EQ(fault(trajectory, 1e-8), "");
+    under = trajectory;
+    under.coefficients[under.pieces[0].first + 1] -= 5.0;  // y of the first step, below the floor inside it
+    EXPECT_NE(fault(under, 1e-8), "");
+}
+
+// A flight whose least gap is +1e-10, -1e-10 or 1e-13 meets the floor when it should, and not otherwise. The starts
+// were tuned in 34 digits.
+TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
+    int seen = 0;
+    for (const std::string& system : all_systems()) {
+        const auto model = load(system);
+        GrazingStarts source(model, 96);
+        for (const double least : {1e-10, -1e-10, 1e-13}) {
+            for (int i = 0; i < 2; ++i) {
+                const auto found = source.next(least);
+                if (!found) break;
+                const Grazing& grazing = *found;
+                ++seen;
+                for (const double tolerance : {1e-14, model->default_run().options.tolerance}) {
+                    // A dip of 1e-13 at the default is beyond dopri5, which bounds no error: wrong in some systems
+                    // (bench_floor lists them), so not asked here.
+                    if (least == 1e-13 && tolerance > 1e-14) continue;
+                    auto run = started(*model, grazing.start);
+                    run.options.tolerance = tolerance;
+                    run.options.end_time = static_cast<double>(grazing.dip.t) + 0.01;
+                    const Trajectory trajectory = simulate(model, run);
+                    const double until = static_cast<double>(grazing.dip.t) + 0.005;
+                    const bool met = !trajectory.events.empty() && trajectory.events[0].t < until;
+                    if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+                        EXPECT_GT(tolerance, 1e-14) << trajectory.outcome.message << start_of(trajectory);
+                    } else {
+                        EXPECT_EQ(met, grazing.dip.gap < 0) << grazing.dip.gap << start_of(trajectory);
+                    }
+                    run.options.end_time = until;
+                    const Trajectory beside = by_eight(model, run);
+                    if (beside.outcome.kind == Outcome::Kind::undecided) {
+                        EXPECT_GT(tolerance, 1e-14) << beside.outcome.message << start_of(beside);
+                    } else {
+                        EXPECT_EQ(beside.statistics.impacts > 0, grazing.dip.gap < 0)
+                            << grazing.dip.gap << start_of(beside);
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(seen, 20);
+}
+
+// Dips that later steps of a flight once decided as if the earlier ones had made no error, or none in the rate.
+TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
+    struct Known {
+        const char* system;
+        double q[2], v[2], t, gap, tolerance;
+    };
+    for (const Known& dip : {Known{"cart_pendulum",
+                                   {-3.191048979976677, 2.2773008319458494},
+                                   {2.5817853791625947, -4.869985999051176},
+                                   0.570540648,
+                                   1e-10,
+                                   1e-10},
+                             Known{"cart_pendulum",
+                                   {-0.9648433464781354, 0.9525713463017114},
+                                   {1.9053621296297845, 7.076267582465217},
+                                   0.828864869,
+                                   -1e-10,
+                                   1e-10},
+                             Known{"bead_in_ring",
+                                   {0.21661540591617764, 1.7879083218657499},
+                                   {-0.5069320739607583, 14.223896048396128},
+                                   0.342827484,
+                                   1e-13,
+                                   1e-10},
+                             Known{"double_pendulum",
+                                   {1.339918853161482, 0.055544840292523615},
+                                   {1.6533073264742093, -0.3729483604294108},
+                                   0.26692792,
+                                   9.999e-14,
+                                   1e-10},
+                             Known{"ball_on_sine",
+                                   {9.892436125524446, 3.3504934840822407},
+                                   {4.7934857386210155, -1.9906615167365507},
+                                   1.02761306,
+                                   1e-13,
+                                   1e-14}}) {
+        const auto model = test::load(dip.system);
+        auto run = model->default_run();
+        run.options.method = Method::taylor;
+        run.options.tolerance = dip.tolerance;
+        run.options.end_time = dip.t + 0.01;
+        run.q << dip.q[0], dip.q[1];
+        run.v << dip.v[0], dip.v[1];
+        const Trajectory trajectory = simulate(model, run);
+        if (trajectory.outcome.kind == Outcome::Kind::undecided) {
+            EXPECT_NE(dip.tolerance, 1e-14) << dip.system;
+            continue;
+        }
+        const bool met = !trajectory.events.empty() && trajectory.events[0].t < dip.t + 0.005;
+        EXPECT_EQ(met, dip.gap < 0.0) << dip.system << " at t = " << dip.t;
+    }
+}
+
+}  // namespace
+}  // namespace achilles::test

@@ -1,0 +1,488 @@
+// Every mistake of INTERFACE section 6 in a system file: the exact text, its place and its caret. And several at once.
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "core/systems.hpp"
+#include "model/model.hpp"
+#include "model/read_system.hpp"
+
+namespace achilles {
+namespace {
+
+using test::told;
+
+const std::string good = R"toml(title = "drop"
+[[coordinate]]
+name = "x"
+start = 1
+rate = 0.5
+[[coordinate]]
+name = "theta"
+[[parameter]]
+name = "m"
+value = 2
+[[parameter]]
+name = "e"
+value = 0.5
+[lagrangian]
+kinetic = "m/2*(x'^2 + theta'^2)"
+potential = "m*x"
+[[constraint]]
+gap = "x - sin(theta)/9"
+restitution = "e"
+[run]
+end_time = 5
+[truncation]
+eps_q = 1e-6
+[[drawing]]
+shape = "curve"
+over = ["s", -1, 1]
+at = ["s", "s^2"]
+[[view]]
+name = "path"
+x = "x"
+y = ["gap'"]
+)toml";
+
+std::string changed(std::string text, const std::vector<std::pair<std::string, std::string>>& changes) {
+    for (const auto& [from, to] : changes) {
+        const std::size_t at = text.find(from);
+        if (at == text.npos) return "no '" + from + "' to change";
+        text.replace(at, from.size(), to);
+    }
+    return text;
+}
+
+TEST(GoodText, HasNoMistake) { EXPECT_EQ(told(good), ""); }
+
+// One change of the good text, and all that is told about it.
+struct Change {
+    std::string from, to, message;
+};
+
+void PrintTo(const Change& change, std::ostream* out) { *out << change.to; }
+
+class Mistakes : public testing::TestWithParam<Change> {};
+
+TEST_P(Mistakes, AreToldWithTheirPlace) {
+    const Change& change = GetParam();
+    EXPECT_EQ(told(changed(good, {{change.from, change.to}})), change.message);
+}
+
+const Change in_toml[] = {
+    {"\"drop\"\n", "\n", "f.toml:1:9: not valid TOML: expected value, saw '\\n'\n    title = \n            ^"},
+    {"start = 1\n", "start 1\n", "f.toml:4:7: not valid TOML: expected '=', saw '1'\n    start 1\n          ^"},
+    {"\"m*x\"\n", "\"m*x\n",
+     "f.toml:16:17: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly prohibited\n   "
+     " potential = \"m*x\n                    ^"},
+    {"[lagrangian]", "[lagrangian",
+     "f.toml:14:12: not valid TOML: expected ']', saw '\\n'\n    [lagrangian\n               ^"},
+    {"value = 2\n", "value = 2\nvalue = 3\n",
+     "f.toml:11:9: not valid TOML: cannot redefine existing integer 'value'\n    value = 3\n            ^"},
+    {"start = 1\n", "start = 1e\n",
+     "f.toml:4:11: not valid TOML: expected decimal digit, saw '\\n'\n    start = 1e\n              ^"},
+};
+INSTANTIATE_TEST_SUITE_P(Toml, Mistakes, testing::ValuesIn(in_toml));
+
+const Change in_keys[] = {
+    {"start = 1", "strat = 1",
+     "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n    strat = 1\n    ^\nknown here: "
+     "name, start, rate, unit, range, rate_range"},
+    {"[lagrangian]", "[langrangian]",
+     "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
+     "^\nknown here: title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, "
+     "extra"},
+    {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
+     "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown here: "
+     "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, extra"},
+    {"end_time = 5", "zeno = 5",
+     "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown here: end_time, tolerance, method, "
+     "max_impacts, max_steps"},
+    {"eps_q", "epsq",
+     "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown here: "
+     "eps_q, eps_v, eps_t, conditions, reinitialization"},
+    {"title = \"drop\"\n", "", "f.toml:1:1: missing title\nassets/systems has complete examples"},
+    {"name = \"x\"\n", "", "f.toml:2:1: missing key 'name' in [[coordinate]]\n    [[coordinate]]\n    ^"},
+    {"value = 2\n", "", "f.toml:8:1: missing key 'value' in [[parameter]]\n    [[parameter]]\n    ^"},
+    {"kinetic = \"m/2*(x'^2 + theta'^2)\"\n", "",
+     "f.toml:14:1: missing key 'kinetic' in [lagrangian]\n    [lagrangian]\n    ^"},
+    {"potential = \"m*x\"\n", "", "f.toml:14:1: missing key 'potential' in [lagrangian]\n    [lagrangian]\n    ^"},
+    {"restitution = \"e\"\n", "",
+     "f.toml:17:1: missing key 'restitution' in [[constraint]]\n    [[constraint]]\n    ^"},
+    {"over = [\"s\", -1, 1]\n", "",
+     "f.toml:24:1: missing key 'over' in [[drawing]] of shape curve\n    [[drawing]]\n    ^"},
+    {"x = \"x\"\n", "", "f.toml:28:1: missing key 'x' in [[view]]\n    [[view]]\n    ^"},
+    {"[[constraint]]\ngap = \"x - sin(theta)/9\"\nrestitution = \"e\"\n", "",
+     "f.toml:1:1: missing [[constraint]]\nassets/systems has complete examples"},
+    {"[[constraint]]", "[[constraint]]\ngap = \"x\"\nrestitution = 0\n[[constraint]]",
+     "f.toml:20:1: more than one [[constraint]]\n    [[constraint]]\n    ^\nAchilles simulates systems with exactly "
+     "one unilateral constraint"},
+};
+INSTANTIATE_TEST_SUITE_P(Keys, Mistakes, testing::ValuesIn(in_keys));
+
+const Change in_types[] = {
+    {"title = \"drop\"", "title = 1",
+     "f.toml:1:9: 'title' in a system file must be a string, not a number\n    title = 1\n            ^"},
+    {"start = 1", "start = \"1\"",
+     "f.toml:4:9: 'start' in [[coordinate]] must be a number, not a string\n    start = \"1\"\n            ^"},
+    {"rate = 0.5", "rate = [0.5]",
+     "f.toml:5:8: 'rate' in [[coordinate]] must be a number, not an array\n    rate = [0.5]\n           ^"},
+    {"value = 2", "value = true",
+     "f.toml:10:9: 'value' in [[parameter]] must be a number, not true or false\n    value = true\n            ^"},
+    {"value = 2", "value = 2020-01-02",
+     "f.toml:10:9: 'value' in [[parameter]] must be a number, not a date\n    value = 2020-01-02\n            ^"},
+    {"\"m*x\"", "[\"m*x\"]",
+     "f.toml:16:13: 'potential' in [lagrangian] must be an expression (a string or a number), not an array\n    "
+     "potential = [\"m*x\"]\n                ^"},
+    {"[[constraint]]", "[constraint]",
+     "f.toml:17:2: 'constraint' must be an array of tables, not a table\n    [constraint]\n     ^\nwrite "
+     "[[constraint]], once for each"},
+    {"[run]\nend_time = 5\n", "[[run]]\nend_time = 5\n",
+     "f.toml:20:1: [run] must be a table, not an array\n    [[run]]\n    ^"},
+    {"end_time = 5", "end_time = \"5\"",
+     "f.toml:21:12: 'end_time' in [run] must be a number, not a string\n    end_time = \"5\"\n               ^"},
+    {"[\"s\", \"s^2\"]", "\"s\"",
+     "f.toml:27:6: 'at' in [[drawing]] of shape curve must be a point [x, y], not a string\n    at = \"s\"\n         "
+     "^"},
+    {"[\"s\", \"s^2\"]", "[\"s\", \"s^2\", \"s\"]",
+     "f.toml:27:6: a point of 'at' in [[drawing]] of shape curve has two coordinates, not 3\n    at = [\"s\", \"s^2\", "
+     "\"s\"]\n         ^"},
+    {"[\"s\", -1, 1]", "[\"s\", -1]",
+     "f.toml:26:8: 'over' in [[drawing]] must be [\"name\", low, high]\n    over = [\"s\", -1]\n           ^"},
+    {"\"x - sin(theta)/9\"", "\"\"",
+     "f.toml:18:8: 'gap' in [[constraint]] is empty\n    gap = \"\"\n           ^\nan expression is expected"},
+    {"y = [\"gap'\"]", "y = []",
+     "f.toml:31:5: 'y' in [[view]] is empty\n    y = []\n        ^\none expression for each curve"},
+    {"y = [\"gap'\"]", "y = true",
+     "f.toml:31:5: 'y' in [[view]] must be an expression (a string or a number), not true or false\n    y = true\n     "
+     "   ^"},
+    {"shape = \"curve\"", "shape = \"curv\"",
+     "f.toml:25:10: unknown shape 'curv'; did you mean 'curve'?\n    shape = \"curv\"\n             ^\nshapes are: "
+     "disc, segment, curve, polyline, text"},
+    {"shape = \"curve\"", "shape = \"curve\"\ncolor = \"red\"",
+     "f.toml:26:10: 'red' is not a colour\n    color = \"red\"\n             ^\na colour is \"#rrggbb\""},
+    {"shape = \"curve\"", "shape = \"curve\"\nfill = 1",
+     "f.toml:26:8: 'fill' in [[drawing]] of shape curve must be true or false, not a number\n    fill = 1\n           "
+     "^"},
+};
+INSTANTIATE_TEST_SUITE_P(Types, Mistakes, testing::ValuesIn(in_types));
+
+const Change in_values[] = {
+    {"start = 1", "start = nan",
+     "f.toml:4:9: 'start' in [[coordinate]] must be finite, not nan\n    start = nan\n            ^"},
+    {"rate = 0.5", "rate = -inf",
+     "f.toml:5:8: 'rate' in [[coordinate]] must be finite, not -inf\n    rate = -inf\n           ^"},
+    {"value = 2", "value = inf",
+     "f.toml:10:9: 'value' in [[parameter]] must be finite, not inf\n    value = inf\n            ^"},
+    {"end_time = 5", "end_time = 0",
+     "f.toml:21:12: 'end_time' in [run] must be positive, not 0\n    end_time = 0\n               ^"},
+    {"end_time = 5", "tolerance = -1e-3",
+     "f.toml:21:13: 'tolerance' in [run] must be positive, not -0.001\n    tolerance = -1e-3\n                ^"},
+    {"end_time = 5", "max_impacts = 1.5",
+     "f.toml:21:15: 'max_impacts' in [run] must be a whole number up to 2147483647\n    max_impacts = 1.5\n            "
+     "      ^"},
+    {"end_time = 5", "max_steps = 9999999999",
+     "f.toml:21:13: 'max_steps' in [run] must be a whole number up to 2147483647\n    max_steps = 9999999999\n         "
+     "   "
+     "    ^"},
+    {"end_time = 5", "max_impacts = 0",
+     "f.toml:21:15: 'max_impacts' in [run] must be positive, not 0\n    max_impacts = 0\n                  ^"},
+    {"end_time = 5", "method = \"tailor\"",
+     "f.toml:21:11: unknown method 'tailor'; did you mean 'taylor'?\n    method = \"tailor\"\n              ^\nknown: "
+     "taylor, dopri5"},
+    {"eps_q = 1e-6", "eps_v = 0.0",
+     "f.toml:23:9: 'eps_v' in [truncation] must be positive, not 0\n    eps_v = 0.0\n            ^"},
+    {"eps_q = 1e-6", "eps_t = inf",
+     "f.toml:23:9: 'eps_t' in [truncation] must be finite, not inf\n    eps_t = inf\n            ^"},
+    {"eps_q = 1e-6", "conditions = \"papre\"",
+     "f.toml:23:15: unknown conditions 'papre'; did you mean 'paper'?\n    conditions = \"papre\"\n                  "
+     "^\nknown: sharp, paper"},
+    {"eps_q = 1e-6", "reinitialization = \"kinetics\"",
+     "f.toml:23:21: unknown reinitialization 'kinetics'; did you mean 'kinetic'?\n    reinitialization = "
+     "\"kinetics\"\n                        ^\nknown: kinetic, euclidean"},
+    {"start = 1", "start = 1\nrange = [2, 1]",
+     "f.toml:5:9: 'range' in [[coordinate]] must be finite with low < high\n    range = [2, 1]\n            ^"},
+    {"start = 1", "start = 1\nrange = [2]",
+     "f.toml:5:9: 'range' in [[coordinate]] must be two numbers, [low, high]\n    range = [2]\n            ^"},
+    {"value = 2", "value = 2\nrange = [1, 1]",
+     "f.toml:11:9: 'range' in [[parameter]] must be finite with low < high\n    range = [1, 1]\n            ^"},
+    {"restitution = \"e\"", "restitution = 1.5",
+     "f.toml:19:15: the restitution must lie in [0, 1], but it is 1.5\n    restitution = 1.5\n                  ^\n0 "
+     "is plastic, 1 is elastic"},
+    {"restitution = \"e\"", "restitution = \"1 - 3/2\"",
+     "f.toml:19:16: the restitution must lie in [0, 1], but it is -0.5\n    restitution = \"1 - 3/2\"\n                "
+     "   ^\n0 is plastic, 1 is elastic"},
+};
+INSTANTIATE_TEST_SUITE_P(Values, Mistakes, testing::ValuesIn(in_values));
+
+const Change in_namesof[] = {
+    {"name = \"theta\"", "name = \"sin\"",
+     "f.toml:7:9: the name 'sin' is reserved\n    name = \"sin\"\n            ^\nfunctions, t, pi, gap, lambda and "
+     "energy keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2)\"\n                           ^"},
+    {"name = \"m\"", "name = \"gap\"",
+     "f.toml:9:9: the name 'gap' is reserved\n    name = \"gap\"\n            ^\nfunctions, t, pi, gap, lambda and "
+     "energy keep their meaning: choose another name\n\nf.toml:15:12: unknown name 'm'\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2)\"\n               ^"},
+    {"name = \"theta\"", "name = \"floor\"",
+     "f.toml:7:9: the name 'floor' is reserved\n    name = \"floor\"\n            ^\nfunctions, t, pi, gap, lambda and "
+     "energy keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2)\"\n                           ^"},
+    {"name = \"theta\"", "name = \"x\"",
+     "f.toml:7:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is the name at line 3 already"},
+    {"name = \"m\"", "name = \"x\"",
+     "f.toml:9:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is the name at line 3 already"},
+    {"name = \"theta\"", "name = \"2x\"",
+     "f.toml:7:9: '2x' is not a name\n    name = \"2x\"\n            ^\na name is a letter, then letters, digits and "
+     "underscores"},
+    {"name = \"theta\"", "name = \"the ta\"",
+     "f.toml:7:9: 'the ta' is not a name\n    name = \"the ta\"\n            ^\na name is a letter, then letters, "
+     "digits and underscores"},
+    {"[\"s\", -1, 1]", "[\"x\", -1, 1]",
+     "f.toml:26:10: the name 'x' is used twice\n    over = [\"x\", -1, 1]\n             ^\na curve's own parameter "
+     "needs a name of its own"},
+    {"[\"s\", -1, 1]", "[\"t\", -1, 1]",
+     "f.toml:26:10: the name 't' is reserved\n    over = [\"t\", -1, 1]\n             ^"},
+    {"y = [\"gap'\"]\n", "y = [\"gap'\"]\n[[view]]\nname = \"path\"\nx = \"t\"\ny = \"x\"\n",
+     "f.toml:33:9: the name 'path' is used twice\n    name = \"path\"\n            ^\neach [[view]] needs a name of "
+     "its own"},
+};
+INSTANTIATE_TEST_SUITE_P(Names, Mistakes, testing::ValuesIn(in_namesof));
+
+const Change in_expression[] = {
+    {"\"m*x\"", "\"m*xx\"",
+     "f.toml:16:16: unknown name 'xx'; did you mean 'x'?\n    potential = \"m*xx\"\n                   ^"},
+    {"\"m*x\"", "\"mm*x + 2*mm\"",
+     "f.toml:16:14: unknown name 'mm'; did you mean 'm'?\n    potential = \"mm*x + 2*mm\"\n                 ^"},
+    {"\"m*x\"", "\"m*x + velocity\"",
+     "f.toml:16:20: unknown name 'velocity'\n    potential = \"m*x + velocity\"\n                       ^"},
+    {"\"m*x\"", "\"m*x'\"",
+     "f.toml:16:16: the rate x' may not stand in the potential: it depends on coordinates alone\n    potential = "
+     "\"m*x'\"\n                   ^"},
+    {"\"m*x\"", "\"m'*x\"",
+     "f.toml:16:14: 'm' is a parameter: it has no rate\n    potential = \"m'*x\"\n                 ^"},
+    {"\"m*x\"", "\"m*x''\"",
+     "f.toml:16:16: the acceleration x'' may not stand in an expression: it follows from them\n    potential = "
+     "\"m*x''\"\n                   ^"},
+    {"\"m*x\"", "\"m*t\"",
+     "f.toml:16:16: 't' may stand in a [[view]] only: a system does not depend on time\n    potential = \"m*t\"\n      "
+     "             ^"},
+    {"\"m*x\"", "\"m*lambda\"",
+     "f.toml:16:16: 'lambda' may stand in a [[view]] only\n    potential = \"m*lambda\"\n                   ^"},
+    {"\"x - sin(theta)/9\"", "\"x + theta'\"",
+     "f.toml:18:12: the rate theta' may not stand in the gap: it depends on coordinates alone\n    gap = \"x + "
+     "theta'\"\n               ^"},
+    {"restitution = \"e\"", "restitution = \"e*x\"",
+     "f.toml:19:18: the coordinate 'x' may not stand in the restitution: parameters alone\n    restitution = \"e*x\"\n "
+     "                    ^"},
+    {"\"m*x\"", "\"m*(x + 1\"",
+     "f.toml:16:16: this '(' is never closed\n    potential = \"m*(x + 1\"\n                   ^"},
+    {"\"m*x\"", "\"m*x)\"", "f.toml:16:17: this ')' closes nothing\n    potential = \"m*x)\"\n                    ^"},
+    {"\"m*x\"", "\"m x\"",
+     "f.toml:16:16: an operator is missing here; write '*' for a product\n    potential = \"m x\"\n                   "
+     "^"},
+    {"\"m*x\"", "\"2x\"",
+     "f.toml:16:15: an operator is missing here; write '*' for a product\n    potential = \"2x\"\n                  ^"},
+    {"\"m*x\"", "\"m*x +\"",
+     "f.toml:16:19: the expression ends where a value is expected\n    potential = \"m*x +\"\n                      ^"},
+    {"\"m*x\"", "\"m**x\"",
+     "f.toml:16:15: unknown operator '**'; write '^' for a power\n    potential = \"m**x\"\n                  ^"},
+    {"\"m*x\"", "\"m*x^theta\"",
+     "f.toml:16:17: the exponent of '^' must be a number, or its base a positive number\n    potential = "
+     "\"m*x^theta\"\n                    ^"},
+    {"\"m*x\"", "\"m*x/0\"", "f.toml:16:17: division by zero\n    potential = \"m*x/0\"\n                    ^"},
+    {"\"m*x\"", "\"m*abs(x)\"",
+     "f.toml:16:16: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
+     "potential = \"m*abs(x)\"\n                   ^"},
+    {"\"m*x\"", "\"min(m, x)\"",
+     "f.toml:16:14: 'min' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
+     "potential = \"min(m, x)\"\n                 ^"},
+    {"\"m*x\"", "\"floor(x)\"",
+     "f.toml:16:14: 'floor' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
+     "potential = \"floor(x)\"\n                 ^"},
+    {"\"m*x\"", "\"sni(x)\"",
+     "f.toml:16:14: unknown function 'sni'; did you mean 'sin'?\n    potential = \"sni(x)\"\n                 ^"},
+    {"\"m*x\"", "\"ln(x)\"",
+     "f.toml:16:14: unknown function 'ln'; did you mean 'log'?\n    potential = \"ln(x)\"\n                 ^"},
+    {"\"m*x\"", "\"sin x\"",
+     "f.toml:16:14: the function 'sin' needs parentheses: sin(...)\n    potential = \"sin x\"\n                 ^"},
+    {"\"m*x\"", "\"sin(x, m)\"",
+     "f.toml:16:19: the function 'sin' takes one argument\n    potential = \"sin(x, m)\"\n                      ^"},
+    {"\"m*x\"", "\"m*x # y\"", "f.toml:16:18: unexpected '#'\n    potential = \"m*x # y\"\n                     ^"},
+    {"\"m*x\"", "\"\"\"\nm*x\n  + bb\"\"\"", "f.toml:18:5: unknown name 'bb'\n      + bb\"\"\"\n        ^"},
+    {"\"m*x\"", "\"m*x + θ + k\"",
+     "f.toml:16:20: unexpected 'θ' where a value is expected\n    potential = \"m*x + θ + k\"\n                       "
+     "^"},
+    {"\"s^2\"", "\"r^2\"", "f.toml:27:13: unknown name 'r'\n    at = [\"s\", \"r^2\"]\n                ^"},
+    {"\"s^2\"", "\"x'\"",
+     "f.toml:27:13: the rate x' may not stand in the drawing: it depends on coordinates alone\n    at = [\"s\", "
+     "\"x'\"]\n                ^"},
+    {"y = [\"gap'\"]", "y = [\"t\", \"gap'''\"]",
+     "f.toml:31:12: unknown name gap'''; did you mean gap''?\n    y = [\"t\", \"gap'''\"]\n               ^"},
+    {"y = [\"gap'\"]", "y = [\"lamda\"]",
+     "f.toml:31:7: unknown name 'lamda'; did you mean 'lambda'?\n    y = [\"lamda\"]\n          ^"},
+};
+INSTANTIATE_TEST_SUITE_P(Expression, Mistakes, testing::ValuesIn(in_expression));
+
+const Change in_kinetic[] = {
+    {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + x'",
+     "f.toml:15:36: the term x' of the kinetic energy is of degree 1 in the rates\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2) + x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in "
+     "m/2*x'^2"},
+    {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) - 3*x*x'^3",
+     "f.toml:15:36: the term 3*x*x'^3 of the kinetic energy is of degree 3 in the rates\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2) - 3*x*x'^3\"\n                                       ^\nkinetic energy must be quadratic in the rates, "
+     "as in m/2*x'^2"},
+    {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + m*x",
+     "f.toml:15:36: the term m*x of the kinetic energy is of degree 0 in the rates\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2) + m*x\"\n                                       ^\nwhat has no rate in it belongs to the potential, "
+     "with the other sign"},
+    {"m/2*(x'^2 + theta'^2)", "(x' + 1)^2 + theta'^2",
+     "f.toml:15:12: the term 1 of the kinetic energy is of degree 0 in the rates\n    kinetic = \"(x' + 1)^2 + "
+     "theta'^2\"\n               ^\nwhat has no rate in it belongs to the potential, with the other sign"},
+    {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + sqrt(x'^2 + 1)",
+     "f.toml:15:36: the kinetic energy is no polynomial in the rates: sqrt(x'^2 + 1)\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2) + sqrt(x'^2 + 1)\"\n                                       ^\nkinetic energy must be quadratic in the "
+     "rates, as in m/2*x'^2"},
+    {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + 1/x'",
+     "f.toml:15:36: the kinetic energy is no polynomial in the rates: 1/x'\n    kinetic = \"m/2*(x'^2 + theta'^2) + "
+     "1/x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
+    {"m/2*(x'^2 + theta'^2)", "x'^2 + x'*theta'",
+     "f.toml:15:12: the kinetic energy has no term in theta'^2\n    kinetic = \"x'^2 + x'*theta'\"\n               "
+     "^\nevery coordinate needs a positive inertia"},
+    {"m/2*(x'^2 + theta'^2)", "x'^9 + theta'^2",
+     "f.toml:15:12: the kinetic energy is of a degree above 8 in the rates: x'^9\n    kinetic = \"x'^9 + theta'^2\"\n  "
+     "             ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
+    {"m/2*(x'^2 + theta'^2)", "0",
+     "f.toml:15:12: the kinetic energy has no term in x'^2\n    kinetic = \"0\"\n               ^\nevery coordinate "
+     "needs a positive inertia"},
+    {"\"x - sin(theta)/9\"", "\"m\"",
+     "f.toml:18:8: dh = 0 everywhere: the gap does not change with any coordinate\n    gap = \"m\"\n           ^"},
+};
+INSTANTIATE_TEST_SUITE_P(Kinetic, Mistakes, testing::ValuesIn(in_kinetic));
+
+const Change in_start[] = {
+    {"start = 1", "start = -1",
+     "f.toml:18:8: the gap is negative at the start: h = -1\n    gap = \"x - sin(theta)/9\"\n           ^\nchoose a "
+     "start with h(q) >= 0"},
+    {"value = 0.5", "value = 1.5",
+     "f.toml:19:16: the restitution must lie in [0, 1], but it is 1.5\n    restitution = \"e\"\n                   "
+     "^\n0 is plastic, 1 is elastic"},
+    {"value = 2", "value = -2",
+     "f.toml:15:12: the mass matrix is not positive definite at the start (the pivot of 'x' is -2)\n    kinetic = "
+     "\"m/2*(x'^2 + theta'^2)\"\n               ^\nevery coordinate needs a positive inertia"},
+    {"value = 2", "value = 0",
+     "f.toml:15:12: the mass matrix is not positive definite at the start (the pivot of 'x' is 0)\n    kinetic = "
+     "\"m/2*(x'^2 + theta'^2)\"\n               ^\nevery coordinate needs a positive inertia"},
+    {"\"x - sin(theta)/9\"", "\"(x - 1)^2\"",
+     "f.toml:18:8: dh = 0 at the start, which is in contact: the normal is not defined\n    gap = \"(x - 1)^2\"\n      "
+     "     ^"},
+    {"\"x - sin(theta)/9\"", "\"log(x - 2)\"",
+     "f.toml:18:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n    gap = \"log(x - 2)\"\n      "
+     "     ^"},
+    {"\"m*x\"", "\"m*sqrt(x - 2)\"",
+     "f.toml:16:14: the potential is not defined at the start: sqrt(x - 2), with x - 2 = -1\n    potential = "
+     "\"m*sqrt(x - 2)\"\n                 ^"},
+};
+INSTANTIATE_TEST_SUITE_P(Start, Mistakes, testing::ValuesIn(in_start));
+
+// ---- several at once ----
+
+std::vector<InputError> all_of(const std::string& text) {
+    try {
+        const Model model(parse_system(text, "f.toml"));
+        model.check(model.default_run());
+    } catch (const InputError& error) {
+        return each_of(error);
+    }
+    return {};
+}
+
+TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
+    const std::string text = changed(good, {{"start = 1\n", "strat = 1\n"},
+                                            {"value = 2\n", "value = \"2\"\n"},
+                                            {"\"m*x\"", "\"m*abs(x)\""},
+                                            {"end_time = 5", "end_time = -5"},
+                                            {"[\"gap'\"]", "[\"lamda\", \"y\"]"}});
+    EXPECT_EQ(told(text),
+              "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n"
+              "    strat = 1\n"
+              "    ^\n"
+              "known here: name, start, rate, unit, range, rate_range\n"
+              "\n"
+              "f.toml:10:9: 'value' in [[parameter]] must be a number, not a string\n"
+              "    value = \"2\"\n"
+              "            ^\n"
+              "\n"
+              "f.toml:16:16: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives\n"
+              "    potential = \"m*abs(x)\"\n"
+              "                   ^\n"
+              "\n"
+              "f.toml:21:12: 'end_time' in [run] must be positive, not -5\n"
+              "    end_time = -5\n"
+              "               ^\n"
+              "\n"
+              "f.toml:31:7: unknown name 'lamda'; did you mean 'lambda'?\n"
+              "    y = [\"lamda\", \"y\"]\n"
+              "          ^\n"
+              "\n"
+              "f.toml:31:16: unknown name 'y'\n"
+              "    y = [\"lamda\", \"y\"]\n"
+              "                   ^");
+}
+
+TEST(SeveralMistakes, CarryTheirPlacesAsData) {
+    const std::vector<InputError> all = all_of(changed(good, {{"rate = 0.5", "rate = inf"}, {"\"m*x\"", "\"m*\""}}));
+    ASSERT_EQ(all.size(), 2u);
+    EXPECT_EQ(all[0].at.line, 5);
+    EXPECT_EQ(all[0].at.column, 8);
+    EXPECT_EQ(all[0].message, "'rate' in [[coordinate]] must be finite, not inf");
+    EXPECT_EQ(all[1].at.line, 16);
+    EXPECT_EQ(all[1].at.column, 16);
+    EXPECT_EQ(all[1].message, "the expression ends where a value is expected");
+    EXPECT_EQ(all[1].file, "f.toml");
+    EXPECT_EQ(all_of("title = \n").size(), 1u);
+    EXPECT_EQ(all_of(good).size(), 0u);
+}
+
+TEST(SeveralMistakes, AreAtMostTenAndTheOthersAreCounted) {
+    std::string text = good + "[extra]\n";
+    for (int i = 0; i < 13; ++i) text = "wrong" + std::to_string(i) + " = 1\n" + text;
+    const std::string message = told(text);
+    EXPECT_EQ(message.substr(0, 42), "f.toml:1:1: unknown key 'wrong12' in a sys");
+    EXPECT_EQ(message.substr(message.size() - 12), "\n\nand 3 more");
+    EXPECT_NE(message.find("\nf.toml:10:1: "), message.npos);
+    EXPECT_EQ(message.find("\nf.toml:11:1: "), message.npos);
+    EXPECT_EQ(all_of(text).size(), 10u);
+}
+
+TEST(SeveralMistakes, OfTheStartAreToldTogether) {
+    const std::vector<InputError> all =
+        all_of(changed(good, {{"start = 1", "start = -1"}, {"value = 2", "value = -2"}, {"value = 0.5", "value = 5"}}));
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(all[0].message, "the mass matrix is not positive definite at the start (the pivot of 'x' is -2)");
+    EXPECT_EQ(all[1].message, "the gap is negative at the start: h = -1");
+    EXPECT_EQ(all[2].message, "the restitution must lie in [0, 1], but it is 5");
+}
+
+// One cause, one message.
+TEST(OneMistake, DoesNotBringOthers) {
+    const auto only = [](const std::string& from, const std::string& to, const std::string& message) {
+        const std::vector<InputError> all = all_of(changed(good, {{from, to}}));
+        ASSERT_EQ(all.size(), 1u) << to;
+        EXPECT_EQ(all[0].message, message);
+    };
+    // a name that stands in four expressions, with and without prime
+    only("name = \"theta\"", "name = \"thteta\"", "unknown name theta'; did you mean thteta'?");
+    only("name = \"theta\"", "naem = \"theta\"", "unknown key 'naem' in [[coordinate]]; did you mean 'name'?");
+    only("name = \"m\"", "name = \"1m\"", "'1m' is not a name");
+    only("[[parameter]]\nname = \"m\"", "[[constant]]\nname = \"m\"",
+         "unknown key 'constant' in a system file; did you mean 'constraint'?");
+    only("[lagrangian]", "[Lagrangian]", "unknown key 'Lagrangian' in a system file; did you mean 'lagrangian'?");
+    only("over = ", "ovr = ", "unknown key 'ovr' in [[drawing]] of shape curve; did you mean 'over'?");
+    only("(x'^2 + ", "(xx^x + ", "unknown name 'xx'; did you mean 'x'?");  // no word of the exponent
+}
+
+}  // namespace
+}  // namespace achilles
