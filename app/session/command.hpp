@@ -11,8 +11,8 @@
 //     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
 //     zoom 1 0 5 -1 2.5        fit 1     range 1 x 0 5     log 1 y on    curve 1 2 off
 //     method dopri5            max-impacts 1000
-//     export ball.svg          export run.json overwrite (.svg and .png the plots, .json and .csv the run, .journal
-//     all) copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
+//     export ball.svg          export run.json overwrite (.svg, .png the plots; .json, .csv the run; .journal all)
+//     copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
 //     say "Look at the ball."  wait 2.5 (s; passes at once without a window)         replay the_ball
 //     theme dark               hide plots         size controls 0.3 (a share of the window)   size events auto
 //     reset (every value and option as the file has it)     done (what follows is another change)

@@ -6,8 +6,7 @@
 //
 //     c1 = a_min (1 - e')/(2 e) eps_t          c2 = a_min (1 - e')/(2 e beta) eps_q'
 //     c3 = eps_v' / ((1 + e) eta/(1 - e'') + 2 e zeta/(a_min (1 - e')) + 1/|g(q*)|)      Euclidean R*
-//     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic: the restart is s
-//     itself
+//     c3 = eps_v' / ((e + e'') eta/(1 - e'') + 2 e zeta/(a_min (1 - e')))                kinetic, restart at s
 //
 // w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q', |v_inf - v*| < eps_v'.
 //

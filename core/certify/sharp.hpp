@@ -18,12 +18,13 @@
 //                c_q = max |B - ndot| I_h,   c_s = max |dA/dq n + dA/ds B - Bdot| I_h + a_max max |D| I_h
 //                E_q = c_q + K max(c_q, c_s),  E_s = c_s + K max(c_q, c_s),  K = exp(kap T) - 1,
 //                kap = max(1, row sums of |dA/d(q,s)|)
-//            X must also contain the shifted variables: h <= h_m = (e w)^2/(2 a_min) moves them by max |n| h_m, max
-//            |B| h_m. The comparison motion is the case sigma = 0, so it is inside X as well.
+//            X must also contain the shifted variables: h <= h_m = (e w)^2/(2 a_min) moves them by max |n| h_m and by
+//            max |B| h_m. The comparison motion is the case sigma = 0, so it is inside X as well.
 //
-// uniform    At every instant from tau_k to tau_inf, with q~ the constrained motion:  |q_i - q~_i| <= E_q,i + max |n_i|
-//            h_m. The integrals of h and hdot^2 up to any time are at most those up to tau_inf, since both only grow;
-//            so (q^, s^) is within E at all times, and q = q^ + n h.
+// uniform    At every instant from tau_k to tau_inf, with q~ the constrained motion:
+//                |q_i - q~_i| <= E_q,i + max |n_i| h_m
+//            The integrals of h and hdot^2 up to any time are at most those up to tau_inf, since both only grow; so
+//            (q^, s^) is within E at all times, and q = q^ + n h.
 //
 // Euclidean  v* = s + d, d_i = w |n_i - g_i/|g|^2|: |v_inf - v*| gains d, E_q gains K max d, E_s gains d + K max d, if
 //            d_i + max |A_i| T is inside X's radius of s_i.

@@ -7,8 +7,7 @@
 
 namespace achilles {
 
-// Where each input of a program stands: q (n), v (n), the parameters (p), then t, contact, sigma and a drawn curve's
-// own.
+// Where each input of a program stands: q (n), v (n), the parameters (p), then t, contact, sigma, a drawn curve's own.
 struct Layout {
     std::uint32_t n = 0, p = 0;  // coordinates, parameters
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
@@ -34,8 +33,9 @@ struct Equations {
 
 // Completes equations whose M, kinetic, potential, gap and restitution are set.
 //     M(q) a + b(q,v) = 0,   b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i,   f = -M^-1 b
-//     g = dh,  W = g M^-1 g',  n = M^-1 g'/W,  hddot = v'Hv + g f,  lambda = -hddot/W,  f_c = f - n hddot,  s = v - n
-//     hdot
+//     g = dh,   W = g M^-1 g',   n = M^-1 g'/W,   s = v - n hdot
+//     hddot = v'Hv + g f,   lambda = -hddot/W,   f_c = f - n hddot
+//     jerk = hddot_q v + hddot_v f_c
 // M^-1 is applied through an L D L' factorisation unrolled in the graph. Throws std::domain_error where a pivot or W is
 // 0 everywhere (M is not positive definite, or dh = 0), TooLarge where the graph would be.
 void derive(Equations& equations, const Layout& layout, Graph& graph);

@@ -37,7 +37,7 @@ struct Options {
     double tolerance = 1e-10;        // local error per step, absolute and relative
     Method method = Method::taylor;  // the faster one from any tolerance on that is worth asking for
     int max_impacts = 200000;        // over the run; then Outcome "too many impacts"
-    int max_steps = 2000000;         // of the integration, over the run: all are kept; then Outcome \"too many steps\"
+    int max_steps = 2000000;         // of the integration, over the run: all are kept; then Outcome "too many steps"
     Truncation truncation;
 };
 

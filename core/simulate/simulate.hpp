@@ -11,8 +11,7 @@ namespace achilles {
 
 // A run as another thread sees it: it can be told to stop, and it says how far it is.
 struct Watch {
-    std::stop_token
-        stop;  // asked for, the run ends at its next step, as Outcome "cancelled"; set before the run starts
+    std::stop_token stop;  // once asked for, the run ends at its next step, as "cancelled"; set before the run starts
     std::atomic<double> time{0.0};  // s, reached so far
     std::atomic<long> impacts{0};   // so far
 };

@@ -43,7 +43,8 @@
 //   other weights in the order's cost                                   within 3 percent
 //   accelerations carried in registers from one order to the next, code
 //   that begins with a cache line, no errno, AVX2 for all of the core   none
-//   older rows laid out without a loop, with a jump to where they begin none of a run (26 orders in a loop: -6 percent)
+//   older rows laid out without a loop, with a jump to where they
+//   begin                                                               none (26 orders in a loop: -6 percent)
 //   the last terms of inner sums one by one, from registers             +10 percent from order 14 on
 //   the newest of the older rows last                                   within 2 percent of 26 orders
 //   operands of a rule by when they are known                           +10 percent with cold caches

@@ -1,8 +1,7 @@
 // How long the explorer's hand waits: medians, of the processor's time where one thread works, else by the clock.
 //     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 500 ms
 //     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
-//     of
-//                               100 000 impacts are made one after the other
+//                               of 100 000 impacts are made one after the other
 #include <fmt/format.h>
 #include <imgui.h>
 

@@ -1,5 +1,6 @@
 // What must not change a motion: another zero of the potential, L in other units of energy, other units of time and of
-// the coordinates, a gap times a positive function. The texts of the system are rewritten, so that everything is derived and certified anew.
+// the coordinates, a gap times a positive function. The texts of the system are rewritten, so that everything is
+// derived and certified anew.
 #include <cctype>
 
 #include "laws/laws.hpp"
