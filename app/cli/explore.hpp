@@ -25,7 +25,7 @@ struct ScreenshotOptions : ExploreOptions {
     std::string out;  // the PNG
 };
 
-// Both return the exit status (INTERFACE section 2). Throw InputError for bad input.
+// Both return the exit status. Throw InputError for bad input.
 int explore(const ExploreOptions& options);
 int screenshot(const ScreenshotOptions& options, Studio& studio);
 

@@ -1,4 +1,4 @@
-// What the command line changes in a system: the top of "command line over file over default" (INTERFACE section 5).
+// What the command line changes in a system: the top of "command line over file over default".
 #pragma once
 
 #include <filesystem>

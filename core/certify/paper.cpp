@@ -163,7 +163,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.position_bound = (b.position * b.w).hi();
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
-    // The sharper interval for tau_inf (THEORY section 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
+    // The sharper interval for tau_inf (theory.md 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
     const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
     set_zeno_time(certificate, collision.t, wait,
                   estimated_wait(trend_at(trend_, collision), mid(e_), collision.speed));

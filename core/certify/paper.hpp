@@ -1,4 +1,4 @@
-// The paper's reliable truncation (Def. 7, Thm. 3; THEORY section 3), proved by interval evaluation.
+// The paper's reliable truncation (Def. 7, Thm. 3; theory.md 3), proved by interval evaluation.
 //
 // Over a neighbourhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*), here the box around it
 // together with v-, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r), beta = |v*| +
@@ -13,7 +13,7 @@
 // c3 adds up the jumps of every impact, though they cancel nearly. Where Thm. 3 holds, V is proved to contain the whole
 // bouncing, so the tangential velocity s, which impacts do not change (model/bouncing.hpp), gives a closer bound:
 //
-//     |v_inf - v*| <= |s_k - v*| + T max |s'|     T: the attained bound of section 4,  |hdot| <= w,  s in V - n [-w, w]
+//     |v_inf - v*| <= |s_k - v*| + T max |s'|     T = A w (theory.md 4),  |hdot| <= w,  s in V - n [-w, w]
 //
 // The certificate's velocity bound is the smaller of the two; c3 and with it the decision remain the paper's.
 //

@@ -95,7 +95,7 @@ void SharpConditions::remember(double speed, double too_wide, int power) {
     power_ = power;
 }
 
-// The attained bound of section 4, if X allows it.
+// The attained bound of theory.md 4, if X allows it.
 std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     for (std::size_t i = 0; i < n_; ++i) {
         variables_[i] = widened(box_.q0[i], box_.q_radius[i]);
@@ -125,8 +125,8 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
     if (third.hi() < time.wait.latest.hi()) time.wait.latest = third;
 }
 
-// Is the motion until tau_inf proved to stay inside X, with the shifted variables of section 5, and the comparison
-// motion where it starts from v*? If not, X grows to what was asked for, and a fifth more.
+// Is the motion until tau_inf proved to stay inside X, with the shifted variables of theory.md 5.2, and the
+// comparison motion where it starts from v*? If not, X grows to what was asked for, and a fifth more.
 bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
     bool inside = true;

@@ -1,5 +1,5 @@
-// The truncation conditions that choose their own neighbourhood (THEORY sections 4 to 6, THEORY-truncation sections 2
-// to 4): conditions = "sharp".
+// The truncation conditions that choose their own neighbourhood (theory.md 4 to 6, theory-truncation.md 2 to 4):
+// conditions = "sharp".
 //
 // In the coordinates (q, s) of model/bouncing.hpp the motion is continuous through impacts. X is a box around (q, s) at
 // the collision, sigma = hdot runs over [-w, w]. With -hddot in [a_min, a_max] on X, r = a_max/a_min and e^2 r < 1:

@@ -5,7 +5,7 @@
 
 namespace achilles {
 
-// tau_inf - tau_k wherever -hddot stays in [a_min, a_max] and e^2 a_max/a_min < 1 (THEORY section 4): attained bounds
+// tau_inf - tau_k wherever -hddot stays in [a_min, a_max] and e^2 a_max/a_min < 1 (theory.md 4): attained bounds
 //     A_lo w <= tau_inf - tau_k <= A w,   A = 2 e (1+e)/(a_min (1 - e^2 r)),   A_lo = 2 e (1+e)/(a_max (1 - e^2/r)).
 struct Wait {
     Interval earliest, latest;
@@ -18,7 +18,7 @@ struct Trend {
     double a = 0.0, b = 0.0, c = 0.0;
 };
 
-// The wait to second order in w, an estimate (THEORY-truncation section 3):
+// The wait to second order in w, an estimate (theory-truncation.md 3):
 //     T0 - T0^2 (b/(3a) + c/6),   T0 = 2 e w/(a (1 - e)).    Needs a > 0, e < 1.
 double estimated_wait(const Trend& trend, double e, double w);
 
@@ -30,7 +30,7 @@ struct Drift {
     Interval P, Phi, Xi;  // over the box
 };
 
-// Encloses the wait to third order in w (THEORY-truncation section 4): `trend` may be any doubles with a > 0, and is
+// Encloses the wait to third order in w (theory-truncation.md 4): `trend` may be any doubles with a > 0, and is
 // best that of the collision. With T the latest end of the wait, h_m = (e w)^2/(2 a_min) and K = (1+e)/(1-e),
 //     delta = -hddot - a = b t + c hdot + R,   |R| <= rho
 //     rho = |G(q,s,0) - a| + |G_sigma - c| w + |P - b| T + |mid Phi| h_m + rad(Phi) w T + |Xi| w^2 T

@@ -1,5 +1,4 @@
-// The bouncing in coordinates that impacts do not disturb: (q, s) with s the tangential velocity (THEORY sections 5,
-// 6).
+// The bouncing in coordinates that impacts do not disturb: (q, s) with s the tangential velocity (theory.md 5.1).
 //
 //     q' = s + n sigma,   s' = A(q,s) + B(q,s) sigma + D(q,s) sigma^2,   sigma = hdot
 //
@@ -21,7 +20,7 @@ struct Bouncing {
     Program trend;
     // The gradient again (it shares most of its work with what follows); A (n), n (n), B (n), D (n), ndot (n), Bdot
     // (n), dA/dq (n x n), dA/ds (n x n), row by row; then P, Phi, Xi, by which hddot(q, s) moves along the bouncing,
-    // d/dt = P + Phi sigma + Xi sigma^2 (THEORY-truncation section 4):
+    // d/dt = P + Phi sigma + Xi sigma^2 (theory-truncation.md 4):
     //     P = hddot_q s + hddot_s A,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
     Program shadow;
 };

@@ -1,4 +1,4 @@
-// The equations of motion from T, V, h and e, symbolically (THEORY section 1).
+// The equations of motion from T, V, h and e, symbolically (theory.md 1).
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What the machine evaluates: the equations of motion of one system, derived symbolically once (THEORY section 1).
+// What the machine evaluates: the equations of motion of one system, derived symbolically once (theory.md 1).
 //
 //     M(q) a + b(q,v) = 0                      free motion,  f = -M^-1 b
 //     g = dh,  W = g M^-1 g',  n = M^-1 g'/W    normal direction, g n = 1

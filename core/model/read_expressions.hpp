@@ -1,5 +1,5 @@
 // What the expressions of a system file mean: its names as symbols, which of them may stand where, and the equations'
-// ingredients T, V, h, e and M (THEORY section 1).
+// ingredients T, V, h, e and M (theory.md 1).
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // Interval: a closed set of reals [lo, hi] that provably contains the exact value. The only file that knows rounding.
 //
-// Sound in round-to-nearest (THEORY section 9; rounding modes do not reach libm, and optimisers ignore them): every
+// Sound in round-to-nearest (theory.md 9.5; rounding modes do not reach libm, and optimisers ignore them): every
 // result is widened outward. An IEEE operation is off by at most half an ulp, and ulp(x) <= 2^-52 |x| for normal x, so
 //     exact value of x op y  in  fl(x op y) +- (2^-52 |fl(x op y)| + least denormal).
 // Not 2^-53: at a power of two 1 + 2^-53 rounds back to 1, and the widening is lost.

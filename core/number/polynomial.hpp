@@ -19,7 +19,8 @@ struct Polynomial {
 // The polynomial of degree 4 through values at theta = 0, 1/4, 1/2, 3/4, 1. The first value is met exactly.
 Polynomial interpolate(const std::array<double, 5>& values);
 
-// Where a quantity that is known to within a remainder first goes from positive to negative.
+// Where a quantity that is known to within a remainder first goes from positive to negative. What a run makes of it
+// stands in theory-truncation.md 6.
 struct Descent {
     enum class Kind {
         none,       // it stays positive

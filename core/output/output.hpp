@@ -1,4 +1,4 @@
-// A trajectory as JSON (INTERFACE section 4) and CSV, and as a summary for a person. No number that is not finite:
+// A trajectory as JSON and CSV, and as a summary for a person. No number that is not finite:
 // null, or empty.
 #pragma once
 

@@ -11,8 +11,8 @@
 namespace achilles {
 
 enum class Method { dopri5, taylor };
-enum class Conditions { paper, sharp };              // THEORY sections 3 and 6
-enum class Reinitialization { euclidean, kinetic };  // R* of Def. 7, and the plastic impact (section 5)
+enum class Conditions { paper, sharp };              // theory.md 3 and 6
+enum class Reinitialization { euclidean, kinetic };  // R* of Def. 7, and the plastic impact (theory.md 5)
 
 std::string_view to_text(Method);
 std::string_view to_text(Conditions);

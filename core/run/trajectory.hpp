@@ -52,7 +52,7 @@ struct Certificate {
     double zeno_time = 0.0;                                        // its best estimate, inside
     double position_bound = 0.0;                                   // on |q_inf - q*|
     double velocity_bound = 0.0;                                   // on |v_inf - v*|
-    std::optional<double> shadowing_position, shadowing_velocity;  // THEORY section 5, at tau_inf
+    std::optional<double> shadowing_position, shadowing_velocity;  // theory.md 5.2, at tau_inf
     std::optional<double> uniform_position;                        // on |q - q~| at all times from tau_k to tau_inf
     double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
     std::string_view decisive;                                     // the inequality with the least margin, or why

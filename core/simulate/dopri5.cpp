@@ -3,7 +3,7 @@
 // The quantity whose zero ends the stretch is integrated along with the motion, under the same error control: in flight
 // the gap (h, hdot with (h, hdot)' = (hdot, hddot)), in contact hddot (with rate h'''). So a step is never longer than
 // that quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers
-// (THEORY section 9).
+// (theory.md 9.3).
 #include <algorithm>
 
 // Must stand first: dense_output_runge_kutta.hpp forgets to include it.

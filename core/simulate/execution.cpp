@@ -160,7 +160,7 @@ bool Execution::is_well_resolved(double speed) const {
     return last_step_ > 1e-6 * (1.0 + t_) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
 
-// THEORY section 6: the next flight is lower than the rounding of h, or shorter than that of t.
+// theory.md 6.3: the next flight is lower than the rounding of h, or shorter than that of t.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;

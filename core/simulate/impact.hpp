@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-// The contact quantities at one state (THEORY section 1).
+// The contact quantities at one state (theory.md 1).
 struct Contact {
     double h = 0.0, hdot = 0.0, W = 0.0;
     Vector n;  // M^-1 g'/W, so that g n = 1: the direction of every impulse

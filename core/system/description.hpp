@@ -56,7 +56,7 @@ Location place_in(const Text& text, std::size_t offset);
 struct CoordinateDescription {
     std::string name, unit;
     double start = 0.0, rate = 0.0;
-    std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // for sliders; defaults as INTERFACE section 5 says
+    std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // of its sliders
     Location at, start_at, rate_at;
 };
 
@@ -100,7 +100,7 @@ struct SystemDescription {
     Text kinetic, potential, gap, restitution;
     Options options;                           // defaults overridden by [run] and [truncation]
     std::vector<DrawingDescription> drawings;  // as written; none is a valid answer
-    std::vector<ViewDescription> views;        // as written, or the defaults of INTERFACE section 5
+    std::vector<ViewDescription> views;        // as written, or default_views()
 
     // An error at a place in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;

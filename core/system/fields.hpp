@@ -58,7 +58,7 @@ std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistak
 // The names of these entries as a list for a person: "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 
-// [[drawing]] and [[view]] (INTERFACE section 3), and the views of a system that brings none (section 5).
+// [[drawing]] and [[view]], and the views of a system that brings none.
 // Parts with a mistake are left empty; the first two throw where the rest cannot be read.
 DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes);
 ViewDescription read_view(Fields& fields, Mistakes& mistakes);

@@ -25,7 +25,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The slider's default: 0 to twice the value, -1 to 1 at 0 (INTERFACE section 5).
+// The slider's default: 0 to twice the value, -1 to 1 at 0.
 std::array<double, 2> range_around(double value) {
     if (value == 0.0) return {-1.0, 1.0};
     return {std::min(0.0, 2.0 * value), std::max(0.0, 2.0 * value)};

@@ -1,4 +1,4 @@
-// What a user sees on the command line: statuses, messages, files (INTERFACE sections 2, 5, 6).
+// What a user sees on the command line: statuses, messages, files.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Def. 7 of the paper (THEORY section 3) written out once more, for any neighbourhood, to compare core/certify with.
+// Def. 7 of the paper (theory.md 3.1) written out once more, for any neighbourhood, to compare core/certify with.
 #pragma once
 
 #include <optional>

@@ -33,7 +33,7 @@ double eta_with_M(const Model& model, const Run& run, const State& state) {
     return norm(evaluator, 0, n);
 }
 
-// The interval of THEORY section 4 with the two extremes mixed up.
+// The interval of theory.md 4 with the two extremes mixed up.
 void swap_accelerations(Certificate& c, double e, double w) {
     const double a_min = c.a_max, a_max = c.a_min, r = a_max / a_min;
     c.zeno_low = 2.0 * e * (1.0 + e) * w / (a_max * (1.0 - e * e / r));

@@ -1,5 +1,5 @@
 // Every program of every model against finite differences of L and h, in 50 digits, where these differences are as good
-// as exact: what simulate() evaluates is what Euler, Lagrange and THEORY section 1 say.
+// as exact: what simulate() evaluates is what Euler, Lagrange and theory.md 1 say.
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <functional>
 #include <random>
@@ -148,8 +148,8 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
     }
 }
 
-// In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and what the shadowing bound differentiates (THEORY section
-// 5).
+// In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and what the shadowing bound differentiates (theory.md 5.1
+// and 5.2).
 TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
     const Bouncing& bouncing = model_->bouncing();
     for (const Reals& x : states()) {

@@ -1,5 +1,5 @@
 // The commands of the program, one function each: it adds its subcommand to the command line; when that was chosen, the
-// callback does the work and leaves the exit status (INTERFACE section 2).
+// callback does the work and leaves the exit status.
 #pragma once
 
 namespace CLI {

@@ -20,7 +20,7 @@ struct SimulateArguments {
     std::vector<std::string> settings;
     OptionOverrides overrides;
     bool verbose = false;
-    int width = 0, height = 0;  // common options (INTERFACE section 2) that mean nothing here
+    int width = 0, height = 0;  // common options that mean nothing here
     double scale = 1.0;
 };
 

@@ -173,7 +173,7 @@ TEST(SharpCertificates, AreNotPutOffInTheGallery) {
     EXPECT_EQ(cuts.late, 0);
 }
 
-// THEORY section 3: w < min(c1, c2, c3) is what held, and what the certificate says follows from its own numbers.
+// theory.md 3.1 and 3.2: w < min(c1, c2, c3) is what held, and what the certificate says follows from its own numbers.
 TEST(PaperCertificates, RestOnTheirOwnNumbers) {
     for (const auto& problem : test::problems) {
         const auto model = test::load(problem.asset);

@@ -1,5 +1,5 @@
 // What is drawn is true at every instant: the uniform bound of the sharp conditions, the impact at which a bouncing is
-// cut, and the Zeno time to third order (THEORY-truncation sections 2 to 4).
+// cut, and the Zeno time to third order (theory-truncation.md 2 to 4).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -180,7 +180,7 @@ TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
 }
 
-// The enclosure of third order is THEORY-truncation section 4's, evaluated here from what is printed there: with none
+// The enclosure of third order is that of theory-truncation.md 4, evaluated here from what is printed there: with none
 // of the six terms of rho (0), with each of them alone, so that no other hides it, and with all of them (7).
 TEST(Truncation, TheThirdOrderIntervalIsThatOfTheTheory) {
     const Trend trend{2.0, 0.3, 0.7};

@@ -100,7 +100,7 @@ TEST(Truth, DoesNotDependOnWhereItStops) {
     EXPECT_LT(distance(usual->point.v, patient->point.v), 1e-15);
 }
 
-// THEORY section 5: the slope of log(error at a fixed later time) against log(w), over four decades of w, for
+// theory.md 5: the slope of log(error at a fixed later time) against log(w), over four decades of w, for
 // collisions that share (q, s) with the first Zeno point and differ in speed.
 double order_of(const std::string& system, Reinitialization kind) {
     const auto model = load(system);
@@ -179,7 +179,7 @@ TEST(Truth, CertificatesAreTrue) {
     }
 }
 
-// THEORY section 3: with the least V that proves itself, the conditions hold wherever they do with any eps' <= eps of a
+// theory.md 3.3: with the least V that proves itself, the conditions hold wherever they do with any eps' <= eps of a
 // logarithmic grid, and never with a worse bound than eps' = eps gives.
 TEST(Truth, NoNeighbourhoodOfAGridDoesBetter) {
     constexpr int points = 13;  // over four decades
@@ -300,7 +300,7 @@ struct FloorCollision {
     std::optional<Certificate> certificate;
 };
 
-// THEORY section 6, rounding: the certificate holds for every exact state that the computed one may stand for. Its box
+// theory.md 6.3: the certificate holds for every exact state that the computed one may stand for. Its box
 // reaches 2^-50 of a number to either side: four ulps of 1. Here hddot = -1 - 1e6 (a - 1): an ulp of a changes the Zeno
 // time by 2e-10 of itself, and a certificate of the computed state alone, whose difference a - 1 is exact, would be
 // 1e-14 of it wide.
@@ -319,7 +319,7 @@ TEST(Truth, HoldsForEveryStateThatTheComputedOneMayStandFor) {
     }
 }
 
-// THEORY section 5 in closed form. Of V = b + k a b - 25 a^2 with the gap b at a = a' = 0, and k so small that hddot is
+// theory.md 5.2 in closed form. Of V = b + k a b - 25 a^2 with the gap b at a = a' = 0, and k so small that hddot is
 // -1: I_h = 2 e^3 w^3/(3 (1 - e^3)), c = (0, k I_h), kap = 50, T = 2 e w/(1 - e), and so E_q = K k I_h (1, 1) and
 // E_s = E_q + k I_h (1, 0) with K = exp(kap T) - 1. T = 0.12 makes K 402; to first order it would be 6. Gronwall gives
 // so much away that no motion comes near, so it is the number that is asked for, and the truth that it is not below.

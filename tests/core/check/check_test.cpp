@@ -1,4 +1,4 @@
-// The Zeno condition as a person reads it, and the report of `achilles check` (THEORY sections 1, 2, 7, 8).
+// The Zeno condition as a person reads it, and the report of `achilles check` (theory.md 1, 2 and 7).
 #include "check/check.hpp"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ TEST(ZenoCondition, OfTheBallIsThePapers) {
     EXPECT_EQ(ball.verdict, Verdict::depends);
 }
 
-// g sin(theta1)/L~ < 0 with 3(m1(L1 + 2L2) + m2 L2) in 1/L~ (THEORY section 7).
+// g sin(theta1)/L~ < 0 with 3(m1(L1 + 2L2) + m2 L2) in 1/L~ (theory.md 7).
 TEST(ZenoCondition, OfTheDoublePendulumIsThePapers) {
     const Condition pendulum = condition("double_pendulum");
     EXPECT_EQ(pendulum.solved, "theta2 = 0, theta2' = 0");

@@ -49,7 +49,7 @@ TEST(Model, TheBallHasItsClosedForm) {
     }
 }
 
-// THEORY section 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. For all ones the
+// theory.md 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. For all ones the
 // paper's condition is g sin(theta1)/L~ < 0, whatever the rates.
 TEST(Model, ThePendulumLocksWhereSinTheta1IsNegative) {
     const auto model = test::load("double_pendulum");

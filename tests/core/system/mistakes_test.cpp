@@ -1,4 +1,4 @@
-// Every mistake of INTERFACE section 6 in a system file: the exact text, its place and its caret. And several at once.
+// Every kind of mistake in a system file: the exact text, its place and its caret. And several at once.
 #include <gtest/gtest.h>
 
 #include <ostream>
