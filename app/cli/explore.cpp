@@ -224,7 +224,7 @@ int explore(const ExploreOptions& options) {
     const std::vector<Command> more = parse_steps(options.steps);
     journal.insert(journal.end(), more.begin(), more.end());
     const std::string name = options.system ? *options.system : first_system();
-    Library library;
+    SystemSource library;
     library.find = find_system;
     library.journal = [](const std::string& wanted) { return journal_file(find_journal(wanted)); };
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
@@ -241,25 +241,24 @@ int explore(const ExploreOptions& options) {
     return reached_end;
 }
 
-int screenshot(const ScreenshotOptions& options, Studio& studio) {
-    studio.add(options.out);
-    Inputs& inputs = studio.inputs();
+int screenshot(const ScreenshotOptions& options, PictureJob& job) {
+    job.add(options.out);
+    Inputs& inputs = job.inputs();
     std::vector<Command> journal;
     if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
-    const std::string name = options.system        ? *options.system
-                             : studio.reproduces() ? inputs.first_system()
-                                                   : first_system();
-    Session session =
-        open_session(name, inputs.system(name), options.settings, options.overrides, library_of(studio), {});
+    const std::string name = options.system     ? *options.system
+                             : job.reproduces() ? inputs.first_system()
+                                                : first_system();
+    Session session = open_session(name, inputs.system(name), options.settings, options.overrides, source_of(job), {});
     for (const Command& command : journal) session.apply(command);
     for (const Command& command : parse_steps(options.steps)) session.apply(command);
     PanelState state = panel_state(false);
-    studio.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
+    job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
         Offscreen surface(surface_options(options));
         const Image image = surface.frame([&] { explorer(session, state); }, 3);
         return with_notes(png_bytes(image), notes);
     });
-    studio.commit();
+    job.commit();
     return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
 }
 

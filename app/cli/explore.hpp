@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/overrides.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 
 namespace achilles {
 
@@ -27,6 +27,6 @@ struct ScreenshotOptions : ExploreOptions {
 
 // Both return the exit status. Throw InputError for bad input.
 int explore(const ExploreOptions& options);
-int screenshot(const ScreenshotOptions& options, Studio& studio);
+int screenshot(const ScreenshotOptions& options, PictureJob& job);
 
 }  // namespace achilles

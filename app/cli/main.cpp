@@ -12,7 +12,7 @@
 #include "cli/commands/commands.hpp"
 #include "expression/nearest.hpp"
 #include "output/output.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -65,8 +65,8 @@ int run(std::vector<std::string> words) {
     int status = reached_end;
     add_explore(program, status);
     add_simulate(program, status);
-    Studio studio(words);
-    add_pictures(program, status, studio);
+    PictureJob job(words);
+    add_pictures(program, status, job);
     add_reproduce(program, status);
     add_check(program, status);
     add_list(program, status);

@@ -210,7 +210,7 @@ double rest_time_with_threshold(const Trajectory& ball, double speed) {
     for (int zeno = 0; zeno < 2; ++zeno) {
         run.options.end_time = ball.run.options.end_time - elapsed;
         const Trajectory motion = simulate(ball.model, run);
-        Surface surface(*ball.model, run);
+        ContactKinematics surface(*ball.model, run);
         const Event* cut = nullptr;
         for (const Event& event : motion.events) {
             if (event.kind != Event::Kind::impact || event.impact_speed >= speed) continue;

@@ -11,7 +11,7 @@
 #include "journal/journal.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 
 namespace achilles {

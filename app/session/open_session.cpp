@@ -16,24 +16,24 @@ std::string first_system() {
 }
 
 Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
-                     const OptionOverrides& overrides, Library library, Patience patience) {
+                     const OptionOverrides& overrides, SystemSource library, Patience patience) {
     library.finish = [overrides](SystemDescription& description) { apply(overrides, description.options); };
     SystemDescription description = adjusted(std::move(first), settings, overrides);
     warn(description.options);
     return {name, std::move(description), std::move(library), patience};
 }
 
-Library library_of(Studio& studio) {
-    Library library;
-    library.open = [&studio](const std::string& name) {
+SystemSource source_of(PictureJob& job) {
+    SystemSource library;
+    library.open = [&job](const std::string& name) {
         const std::filesystem::path path(name);
         const bool is_path = path.has_parent_path() || path.extension() == ".toml";
-        const std::string text = studio.inputs().text(name);
+        const std::string text = job.inputs().text(name);
         return Document{name, is_path ? name : "", name, text, text, {}};
     };
-    library.journal = [&studio](const std::string& name) { return studio.inputs().journal(name); };
-    library.exports = !studio.reproduces();
-    if (studio.reproduces())
+    library.journal = [&job](const std::string& name) { return job.inputs().journal(name); };
+    library.exports = !job.reproduces();
+    if (job.reproduces())
         library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
     return library;
 }

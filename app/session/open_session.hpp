@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -17,9 +17,9 @@ std::string first_system();
 // A session on a system as the command line changes it: `settings` for this one, `overrides` for every one that is
 // opened. Throws InputError.
 Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
-                     const OptionOverrides& overrides, Library library, Patience patience);
+                     const OptionOverrides& overrides, SystemSource library, Patience patience);
 
 // A picture's systems and journals. What its journal writes is written only when it is made for the first time.
-Library library_of(Studio& studio);
+SystemSource source_of(PictureJob& job);
 
 }  // namespace achilles

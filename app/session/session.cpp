@@ -63,7 +63,7 @@ Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const 
       dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
-Session::Session(const std::string& name, const SystemDescription& first, Library library, Patience patience)
+Session::Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience)
     : library_(std::move(library)),
       patience_(patience),
       document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},

@@ -23,7 +23,7 @@
 namespace achilles {
 
 // How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
-struct Library {
+struct SystemSource {
     std::function<std::filesystem::path(const std::string& system)> find{};  // its file
     std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
     std::function<Document(const std::string& system)> open{};                                // empty: from its file
@@ -39,7 +39,7 @@ struct Library {
 class Session {
  public:
     // Opens `first`, known as `name`. Throws InputError if it cannot be derived or cannot start.
-    Session(const std::string& name, const SystemDescription& first, Library library, Patience patience = {});
+    Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience = {});
 
     // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
     // text is no system.
@@ -181,7 +181,7 @@ class Session {
     void place(const Command& command);
     void move_to(double time);
 
-    Library library_;
+    SystemSource library_;
     Patience patience_;
     Theme theme_ = light_theme();
     Document document_;

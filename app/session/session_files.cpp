@@ -12,7 +12,7 @@ namespace {
 InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
 // The text that a command line finds under a system's name; nothing where there is no such file.
-std::optional<std::string> held_by_file(const Library& library, const std::string& system) {
+std::optional<std::string> held_by_file(const SystemSource& library, const std::string& system) {
     try {
         return (library.open ? library.open(system) : open_document(system, library.find(system))).text;
     } catch (const InputError&) {

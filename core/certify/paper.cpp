@@ -28,27 +28,27 @@ struct PaperConditions::Bounds {
 
 PaperConditions::PaperConditions(const Model& model, const Run& run, const Ground& ground)
     : TruncationConditions(ground),
-      n_(static_cast<std::size_t>(model.n())),
+      dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
-      point_(model.evaluator(model.bounds(), run.parameters)),
+      point_(model.evaluator(model.definition7_terms(), run.parameters)),
       trend_(model.evaluator(model.bouncing().trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
-      box_(model.evaluator<Interval>(model.bounds(), run.parameters)),
+      box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
       motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
-bool PaperConditions::hopeless(const Collision& collision) {
-    put(point_, State{collision.before.q, collision.restart});
+bool PaperConditions::fails_at_point(const Collision& collision) {
+    set_state(point_, State{collision.before.q, collision.restart});
     point_.run();
     const double e = mid(e_), w = collision.speed, a = -point_.output(0);
     if (!(a > 0.0) || !(e < 1.0)) return true;
     const double time = 2.0 * e * w / (a * (1.0 - e));
-    const double eta = norm(point_, 1, n_), zeta = norm(point_, 1 + n_, n_);
+    const double eta = norm(point_, 1, dof_), zeta = norm(point_, 1 + dof_, dof_);
     const double velocity = 2.0 * e * eta / (1.0 - e) * w + zeta * time;
     constexpr double margin = 1.0 - 1e-9;
     return margin * time > truncation_.eps_t || margin * time * collision.restart.norm() > truncation_.eps_q ||
@@ -58,20 +58,21 @@ bool PaperConditions::hopeless(const Collision& collision) {
 std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collision& collision, double eps_q,
                                                                     double eps_v) {
     std::vector<Interval> box, n, f, g, v;
-    for (std::size_t i = 0; i < n_; ++i) box.push_back(around(collision.before.q[static_cast<Eigen::Index>(i)], eps_q));
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i)
+        box.push_back(around(collision.before.q[static_cast<Eigen::Index>(i)], eps_q));
+    for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         box.push_back(hull(around(collision.restart[k], eps_v), Interval(collision.before.v[k])));
         v.emplace_back(collision.restart[k]);
     }
-    for (std::size_t i = 0; i < 2 * n_; ++i) box_.input(i) = box[i];
+    for (std::size_t i = 0; i < 2 * dof_; ++i) box_.input(i) = box[i];
     box_.run();
-    put(surface_, collision.before);
+    set_state(surface_, collision.before);
     surface_.run();
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         n.push_back(box_.output(1 + i));
-        f.push_back(box_.output(1 + n_ + i));
-        g.push_back(surface_.output(2 + n_ + i));
+        f.push_back(box_.output(1 + dof_ + i));
+        g.push_back(surface_.output(2 + dof_ + i));
     }
     box.emplace_back(0.0);  // sigma: the box holds velocities themselves
     const Interval a = -hddot_.over(box), eta = norm(n), zeta = norm(f), one(1.0), two(2.0);
@@ -125,18 +126,18 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
 // |s_k - v*| + T max |s'| over V; see the header. Relies on surface_ being at this collision.
 Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b, const Interval& wait) {
     const Interval speeds(-b.w.hi(), b.w.hi());
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         motion_.input(i) = b.box[i];
-        motion_.input(n_ + i) = b.box[n_ + i] - b.n[i] * speeds;
+        motion_.input(dof_ + i) = b.box[dof_ + i] - b.n[i] * speeds;
     }
     motion_.input(sigma_) = speeds;
     motion_.run();
     std::vector<Interval> distance;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         const Interval s = Interval(collision.before.v[k]) - surface_.output(2 + i) * surface_.output(1);
         distance.push_back(abs(s - Interval(collision.restart[k])) +
-                           Interval(mag(motion_.output(n_ + i))) * Interval(wait.hi()));
+                           Interval(mag(motion_.output(dof_ + i))) * Interval(wait.hi()));
     }
     return norm(distance);
 }
@@ -174,11 +175,11 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     return certificate;
 }
 
-std::optional<Certificate> PaperConditions::certify(const Collision& collision) {
+std::optional<Certificate> PaperConditions::do_certify(const Collision& collision) {
     return prove(collision, truncation_);
 }
 
-std::optional<Certificate> PaperConditions::certify_widest(const Collision& collision) {
+std::optional<Certificate> PaperConditions::do_prove_any(const Collision& collision) {
     constexpr double any = 1e6;
     auto certificate = prove(collision, {any, any, any, Conditions::paper, truncation_.reinitialization});
     if (certificate) certificate->below_rounding = true;

@@ -32,12 +32,12 @@ class PaperConditions : public TruncationConditions {
  public:
     PaperConditions(const Model& model, const Run& run, const Ground& ground);
 
-    bool hopeless(const Collision& collision) override;
+    bool fails_at_point(const Collision& collision) override;
 
  protected:
-    std::optional<Certificate> certify(const Collision& collision) override;
+    std::optional<Certificate> do_certify(const Collision& collision) override;
     // The same with tolerances that nothing exceeds.
-    std::optional<Certificate> certify_widest(const Collision& collision) override;
+    std::optional<Certificate> do_prove_any(const Collision& collision) override;
 
  private:
     struct Bounds;
@@ -46,7 +46,7 @@ class PaperConditions : public TruncationConditions {
     Certificate certificate_of(const Collision& collision, const Bounds& bounds);
     Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& wait);
 
-    std::size_t n_;
+    std::size_t dof_;
     std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;

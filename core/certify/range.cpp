@@ -68,7 +68,7 @@ Interval Range::over(const std::vector<Interval>& box) {
 
 std::vector<std::uint32_t> bouncing_slots(const Layout& layout) {
     std::vector<std::uint32_t> slots;
-    for (std::uint32_t i = 0; i < 2 * layout.n; ++i) slots.push_back(i);
+    for (std::uint32_t i = 0; i < 2 * layout.dof; ++i) slots.push_back(i);
     slots.push_back(layout.sigma());
     return slots;
 }

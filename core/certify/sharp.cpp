@@ -43,7 +43,7 @@ struct SharpConditions::Time {
 
 SharpConditions::SharpConditions(const Model& model, const Run& run, const Ground& ground)
     : TruncationConditions(ground),
-      n_(static_cast<std::size_t>(model.n())),
+      dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
@@ -52,22 +52,22 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Groun
       surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
       trend_(model.evaluator(model.bouncing().trend, run.parameters)),
       guess_(model.evaluator(model.bouncing().motion, run.parameters)),
-      box_{std::vector<Interval>(n_),
-           std::vector<Interval>(n_),
-           std::vector<double>(n_),
-           std::vector<double>(n_),
-           std::vector<Interval>(n_),
+      box_{std::vector<Interval>(dof_),
+           std::vector<Interval>(dof_),
+           std::vector<double>(dof_),
+           std::vector<double>(dof_),
+           std::vector<Interval>(dof_),
            {},
            {}},
-      shadow_{std::vector<Interval>(n_), std::vector<Interval>(n_), std::vector<Interval>(n_)},
-      variables_(2 * n_ + 1),
-      need_q_(n_),
-      need_s_(n_),
-      rising_(2 * n_) {}
+      shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
+      variables_(2 * dof_ + 1),
+      need_q_(dof_),
+      need_s_(dof_),
+      rising_(2 * dof_) {}
 
 // A guess of what a proof would find, in double. Where even that is too much, trying is put off to the next impact. It
 // never replaces a proof. The bounds fall with a power of w, so what the last proof or guess found tells.
-bool SharpConditions::hopeless_at(double speed) {
+bool SharpConditions::fails_by_speed(double speed) {
     if (speed > last_speed_) too_wide_ = 0.0;  // another bouncing
     last_speed_ = speed;
     const double slower = speed / wide_speed_;
@@ -75,8 +75,8 @@ bool SharpConditions::hopeless_at(double speed) {
 }
 
 // Else, to leading order, how far the first flight that would not be drawn goes from the surface.
-bool SharpConditions::hopeless(const Collision& collision) {
-    if (hopeless_at(collision.speed)) return true;
+bool SharpConditions::fails_at_point(const Collision& collision) {
+    if (fails_by_speed(collision.speed)) return true;
     const Trend trend = trend_at(trend_, collision);
     const double e = mid(e_), w = collision.speed;
     if (!(trend.a > 0.0) || !(e < 1.0)) return true;
@@ -97,11 +97,11 @@ void SharpConditions::remember(double speed, double too_wide, int power) {
 
 // The attained bound of theory.md 4, if X allows it.
 std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = widened(box_.q0[i], box_.q_radius[i]);
-        variables_[n_ + i] = widened(box_.s0[i], box_.s_radius[i]);
+        variables_[dof_ + i] = widened(box_.s0[i], box_.s_radius[i]);
     }
-    variables_[2 * n_] = box_.sigma;
+    variables_[2 * dof_] = box_.sigma;
     const Interval a = -hddot_.over(variables_);
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
@@ -112,13 +112,13 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
 
 // Cuts the interval with the one of third order. Relies on hddot_ having looked at X.
 void SharpConditions::sharpen(Time& time, const Trend& trend) {
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = box_.q0[i];
-        variables_[n_ + i] = box_.s0[i];
+        variables_[dof_ + i] = box_.s0[i];
     }
-    variables_[2 * n_] = Interval(0.0);
-    const auto rate = [&](std::size_t i) { return -hddot_.further(6 * n_ + 2 * n_ * n_ + i); };
-    const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * n_), rate(0), rate(1), rate(2)};
+    variables_[2 * dof_] = Interval(0.0);
+    const auto rate = [&](std::size_t i) { return -hddot_.further(6 * dof_ + 2 * dof_ * dof_ + i); };
+    const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), rate(0), rate(1), rate(2)};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
     if (third.lo() > time.wait.earliest.lo()) time.wait.earliest = third;
@@ -130,10 +130,10 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
 bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
     bool inside = true;
-    for (std::size_t i = 0; i < n_; ++i) {
-        const Interval &A = hddot_.further(i), &n = hddot_.further(n_ + i), &B = hddot_.further(2 * n_ + i),
-                       &D = hddot_.further(3 * n_ + i);
-        need_q_[i] = times(variables_[n_ + i] + n * box_.sigma, T);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        const Interval &A = hddot_.further(i), &n = hddot_.further(dof_ + i), &B = hddot_.further(2 * dof_ + i),
+                       &D = hddot_.further(3 * dof_ + i);
+        need_q_[i] = times(variables_[dof_ + i] + n * box_.sigma, T);
         need_s_[i] = times(A + B * box_.sigma + D * square(box_.sigma), T);
         const double q = need_q_[i] + times(n, h);
         const double s = std::max(need_s_[i] + times(B, h), mag(box_.d[i]) + times(A, T));
@@ -150,18 +150,20 @@ void SharpConditions::find_shadow(const Time& time) {
     const Interval e3 = e_ * square(e_), e2 = e_ * sqrt(time.r), one(1.0);
     const Interval gap_integral =
         Interval(2.0) * e3 * box_.w * square(box_.w) / (Interval(3.0) * square(time.a_min) * (one - e2 * square(e2)));
-    const auto n = [&](std::size_t i) { return hddot_.further(n_ + i); };
-    const auto B = [&](std::size_t i) { return hddot_.further(2 * n_ + i); };
-    const auto D = [&](std::size_t i) { return hddot_.further(3 * n_ + i); };
-    const auto ndot = [&](std::size_t i) { return hddot_.further(4 * n_ + i); };
-    const auto Bdot = [&](std::size_t i) { return hddot_.further(5 * n_ + i); };
-    const auto dA_dq = [&](std::size_t i, std::size_t j) { return hddot_.further(6 * n_ + i * n_ + j); };
-    const auto dA_ds = [&](std::size_t i, std::size_t j) { return hddot_.further(6 * n_ + n_ * n_ + i * n_ + j); };
+    const auto n = [&](std::size_t i) { return hddot_.further(dof_ + i); };
+    const auto B = [&](std::size_t i) { return hddot_.further(2 * dof_ + i); };
+    const auto D = [&](std::size_t i) { return hddot_.further(3 * dof_ + i); };
+    const auto ndot = [&](std::size_t i) { return hddot_.further(4 * dof_ + i); };
+    const auto Bdot = [&](std::size_t i) { return hddot_.further(5 * dof_ + i); };
+    const auto dA_dq = [&](std::size_t i, std::size_t j) { return hddot_.further(6 * dof_ + i * dof_ + j); };
+    const auto dA_ds = [&](std::size_t i, std::size_t j) {
+        return hddot_.further(6 * dof_ + dof_ * dof_ + i * dof_ + j);
+    };
 
     double lipschitz = 1.0, largest_c = 0.0, largest_d = 0.0;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         Interval drift = -Bdot(i), row(0.0);
-        for (std::size_t j = 0; j < n_; ++j) {
+        for (std::size_t j = 0; j < dof_; ++j) {
             drift = drift + dA_dq(i, j) * n(j) + dA_ds(i, j) * B(j);
             row = row + abs(dA_dq(i, j)) + abs(dA_ds(i, j));
         }
@@ -175,7 +177,7 @@ void SharpConditions::find_shadow(const Time& time) {
     }
     const Interval K = exp(Interval(lipschitz) * time.longest) - one;
     const Interval grown = K * (Interval(largest_c) + Interval(largest_d));
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         shadow_.E_q[i] = shadow_.E_q[i] + grown;
         shadow_.E_s[i] = shadow_.E_s[i] + grown + Interval(mag(box_.d[i]));
         shadow_.uniform[i] = shadow_.E_q[i] + abs(n(i)) * time.height;
@@ -184,17 +186,17 @@ void SharpConditions::find_shadow(const Time& time) {
 
 // The box that the collision stands for.
 void SharpConditions::begin_box(const Collision& collision) {
-    put(surface_, collision.before);
+    set_state(surface_, collision.before);
     surface_.run();
     box_.w = abs(surface_.output(1));
     box_.sigma = Interval(-box_.w.hi(), box_.w.hi());
     const bool euclidean = truncation_.reinitialization == Reinitialization::euclidean;
     Interval g2(0.0);
-    for (std::size_t i = 0; i < n_; ++i) g2 = g2 + square(surface_.output(2 + n_ + i));
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) g2 = g2 + square(surface_.output(2 + dof_ + i));
+    for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         const double v = std::abs(collision.before.v[k]);
-        const Interval &n = surface_.output(2 + i), &g = surface_.output(2 + n_ + i);
+        const Interval &n = surface_.output(2 + i), &g = surface_.output(2 + dof_ + i);
         box_.q0[i] = rounded(collision.before.q[k], std::abs(collision.before.q[k]));
         box_.s0[i] = rounded(collision.tangential[k], v + (abs(n) * box_.w).hi());
         box_.d[i] = euclidean ? box_.w * abs(n - g / g2) : Interval(0.0);
@@ -205,19 +207,19 @@ void SharpConditions::begin_box(const Collision& collision) {
 void SharpConditions::predict_radii(const Collision& collision, const Trend& trend) {
     const double e = mid(e_), w = collision.speed;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), h = e * w * e * w / (2.0 * trend.a);
-    put(guess_, State{collision.before.q, collision.tangential});
+    set_state(guess_, State{collision.before.q, collision.tangential});
     for (const double sigma : {w, -w}) {
         guess_.input(sigma_) = sigma;
         guess_.run();
-        for (std::size_t i = 0; sigma > 0.0 && i < 2 * n_; ++i) rising_[i] = guess_.output(i);
+        for (std::size_t i = 0; sigma > 0.0 && i < 2 * dof_; ++i) rising_[i] = guess_.output(i);
     }
     const auto need = [&](std::size_t i) {  // max |rate| T, and by how much h shifts it
         const double falling = guess_.output(i);
         return std::max(std::abs(rising_[i]), std::abs(falling)) * T + std::abs(rising_[i] - falling) / (2.0 * w) * h;
     };
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         box_.q_radius[i] = inflated(need(i));
-        box_.s_radius[i] = inflated(mag(box_.d[i]) + need(n_ + i));
+        box_.s_radius[i] = inflated(mag(box_.d[i]) + need(dof_ + i));
     }
 }
 
@@ -245,7 +247,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     c.reinitialization = truncation_.reinitialization;
     set_zeno_time(c, collision.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
     Interval q(0.0), v(0.0);
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         q = q + square(Interval(need_q_[i]));
         v = v + square(Interval(need_s_[i]) + Interval(mag(box_.d[i])));
     }
@@ -272,7 +274,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     return c;
 }
 
-std::optional<Certificate> SharpConditions::certify(const Collision& collision) {
+std::optional<Certificate> SharpConditions::do_certify(const Collision& collision) {
     auto certificate = prove(collision);
     if (!certificate || !certificate->uniform_position) return std::nullopt;
     const double time = certificate->inequalities[0].left / truncation_.eps_t;
@@ -288,7 +290,7 @@ std::optional<Certificate> SharpConditions::certify(const Collision& collision) 
     return std::nullopt;
 }
 
-std::optional<Certificate> SharpConditions::certify_widest(const Collision& collision) {
+std::optional<Certificate> SharpConditions::do_prove_any(const Collision& collision) {
     auto certificate = prove(collision);
     if (certificate) certificate->below_rounding = true;
     return certificate;

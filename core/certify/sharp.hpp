@@ -41,13 +41,13 @@ namespace achilles {
 class SharpConditions : public TruncationConditions {
  public:
     SharpConditions(const Model& model, const Run& run, const Ground& ground);
-    bool hopeless(const Collision& collision) override;
-    bool hopeless_at(double speed) override;
+    bool fails_at_point(const Collision& collision) override;
+    bool fails_by_speed(double speed) override;
     void forget() override { wide_speed_ = too_wide_ = last_speed_ = 0.0; }
 
  protected:
-    std::optional<Certificate> certify(const Collision& collision) override;
-    std::optional<Certificate> certify_widest(const Collision& collision) override;
+    std::optional<Certificate> do_certify(const Collision& collision) override;
+    std::optional<Certificate> do_prove_any(const Collision& collision) override;
 
  private:
     struct Time;
@@ -72,7 +72,7 @@ class SharpConditions : public TruncationConditions {
     Certificate certificate_of(const Collision& collision, const Time& time, const Trend& trend) const;
     void remember(double speed, double too_wide, int power);
 
-    std::size_t n_;
+    std::size_t dof_;
     std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;

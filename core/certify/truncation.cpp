@@ -22,7 +22,7 @@ Interval norm(const std::vector<Interval>& x) {
 }
 
 Trend trend_at(Evaluator<double>& program, const Collision& collision) {
-    put(program, State{collision.before.q, collision.tangential});
+    set_state(program, State{collision.before.q, collision.tangential});
     program.run();
     return {-program.output(0), -program.output(1), -program.output(2)};
 }

@@ -27,26 +27,26 @@ class TruncationConditions {
     explicit TruncationConditions(const Ground&) {}
     virtual ~TruncationConditions() = default;
     // Quick: true where they can be seen not to hold.
-    virtual bool hopeless(const Collision& collision) = 0;
+    virtual bool fails_at_point(const Collision& collision) = 0;
     // Quicker: the same by the impact speed w alone, and what the collisions before have shown.
-    virtual bool hopeless_at(double /*speed*/) { return false; }
+    virtual bool fails_by_speed(double /*speed*/) { return false; }
     // Another run begins: what its collisions have shown is none of the next one's business.
     virtual void forget() {}
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
-    // Takes long: ask hopeless() first.
-    std::optional<Certificate> hold(const Collision& collision) {
+    // Takes long: ask fails_at_point() first.
+    std::optional<Certificate> certify(const Collision& collision) {
         const Ground ground;
-        return certify(collision);
+        return do_certify(collision);
     }
     // What can be proved here whatever the tolerances, for a collision after which no further flight can be resolved.
-    std::optional<Certificate> widest(const Collision& collision) {
+    std::optional<Certificate> prove_any(const Collision& collision) {
         const Ground ground;
-        return certify_widest(collision);
+        return do_prove_any(collision);
     }
 
  protected:
-    virtual std::optional<Certificate> certify(const Collision& collision) = 0;
-    virtual std::optional<Certificate> certify_widest(const Collision& collision) = 0;
+    virtual std::optional<Certificate> do_certify(const Collision& collision) = 0;
+    virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
 };
 
 // The conditions that the run asks for.

@@ -38,10 +38,10 @@ class Report {
         page_.heading("Energies, gap, restitution");
         given();
         page_.heading("Free motion: M q'' + bias = 0");
-        matrix({"M", "M"}, simplified_.M, model_.layout().n);
+        matrix({"M", "M"}, simplified_.M, model_.layout().dof);
         matrix({"bias", "b"}, simplified_.bias, 1);
         page_.heading("Contact");
-        matrix({"dh", "\\mathrm{d}h"}, simplified_.dh, model_.layout().n);
+        matrix({"dh", "\\mathrm{d}h"}, simplified_.dh, model_.layout().dof);
         formula({"hdot", "\\dot{h}"}, simplified_.hdot, {"dh q'", "\\mathrm{d}h\\,\\dot{q}"});
         formula({"hddot", "\\ddot{h}"}, simplified_.hddot,
                 {"q'^T Hess(h) q' - dh M^-1 bias",
@@ -62,7 +62,7 @@ class Report {
 
     void coordinates() {
         std::vector<std::vector<std::string>> rows;
-        for (int i = 0; i < model_.n(); ++i) {
+        for (int i = 0; i < model_.dof(); ++i) {
             const auto& coordinate = model_.description().coordinates[static_cast<std::size_t>(i)];
             const auto start = [&](const std::string& symbol, double value) {
                 return in_line(fmt::format("{}(0) = {}", symbol, value));

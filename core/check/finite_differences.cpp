@@ -26,15 +26,15 @@ struct Point {
 class Functions {
  public:
     Functions(const Model& model, const Run& run, const std::vector<Expression>& outputs)
-        : n_(model.layout().n), program_(outputs, model.layout().slots()) {
+        : dof_(model.layout().dof), program_(outputs, model.layout().slots()) {
         evaluator_ = model.evaluator<Real>(program_, run.parameters);
     }
     Functions(const Functions&) = delete;
 
     Reals operator()(const Point& at) {
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             evaluator_.input(i) = at.q[static_cast<Eigen::Index>(i)];
-            evaluator_.input(n_ + i) = at.v[static_cast<Eigen::Index>(i)];
+            evaluator_.input(dof_ + i) = at.v[static_cast<Eigen::Index>(i)];
         }
         evaluator_.run();
         Reals values(static_cast<Eigen::Index>(program_.output_count()));
@@ -44,7 +44,7 @@ class Functions {
     }
 
  private:
-    std::size_t n_;
+    std::size_t dof_;
     Program program_;
     Evaluator<Real> evaluator_;
 };
@@ -65,7 +65,7 @@ Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals
 class Differences {
  public:
     Differences(const Model& model, const Run& run)
-        : n_(model.n()),
+        : dof_(model.dof()),
           lagrangian_(model, run, {model.equations().kinetic - model.equations().potential}),
           gap_(model, run, {model.equations().gap}) {}
 
@@ -73,12 +73,12 @@ class Differences {
     Reals operator()(const Point& at) {
         const auto L = [&](const Point& x) { return lagrangian_(x)[0]; };
         const auto h = [&](const Point& x) { return gap_(x)[0]; };
-        Matrix M(n_, n_);
-        Reals b(n_), g(n_);
-        for (Eigen::Index i = 0; i < n_; ++i) {
+        Matrix M(dof_, dof_);
+        Reals b(dof_), g(dof_);
+        for (Eigen::Index i = 0; i < dof_; ++i) {
             const auto momentum = [&](const Point& x) { return slope(L, x, &Point::v, i); };
             b[i] = -slope(L, at, &Point::q, i);
-            for (Eigen::Index j = 0; j < n_; ++j) {
+            for (Eigen::Index j = 0; j < dof_; ++j) {
                 M(i, j) = slope(momentum, at, &Point::v, j);
                 b[i] += slope(momentum, at, &Point::q, j) * at.v[j];
             }
@@ -90,13 +90,13 @@ class Differences {
         const auto later = [&](const Real& t) { return h({at.q + at.v * t + f * (t * t / 2), at.v}); };
         const Real hddot = (later(step) - 2 * later(0) + later(-step)) / (step * step);
         const Reals impulse = inverse.solve(g);
-        Reals all(n_ * n_ + 2 * n_ + 2);
+        Reals all(dof_ * dof_ + 2 * dof_ + 2);
         all << M.reshaped(), b, g, hddot, -hddot / g.dot(impulse);
         return all;
     }
 
  private:
-    Eigen::Index n_;
+    Eigen::Index dof_;
     Functions lagrangian_, gap_;
 };
 
@@ -183,7 +183,7 @@ double Disagreement::largest() const {
 
 Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified, int states) {
     const Equations& e = model.equations();
-    const auto n = static_cast<Eigen::Index>(model.n());
+    const auto n = static_cast<Eigen::Index>(model.dof());
     std::vector<Expression> all = e.M;
     std::vector<std::string> names(all.size(), "M");
     const auto add = [&](const char* name, const std::vector<Expression>& some) {

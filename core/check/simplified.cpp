@@ -27,7 +27,7 @@ Simplified::Simplified(const Model& model, const Run& run)
     const Equations& e = model.equations();
     const Layout& layout = model.layout();
     ranks_.assign(layout.count(), 0);
-    for (std::size_t i = 0; i < layout.n; ++i) {
+    for (std::size_t i = 0; i < layout.dof; ++i) {
         ranks_[layout.q(i)] = 1;
         ranks_[layout.v(i)] = 2;
     }

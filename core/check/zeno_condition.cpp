@@ -19,7 +19,7 @@ class ParameterSigns {
     ParameterSigns(const Model& model, const Run& run) : model_(model), run_(run) {
         const Layout& layout = model.layout();
         for (std::uint32_t slot = 0; slot < layout.count(); ++slot)
-            if (slot < 2 * layout.n || slot >= 2 * layout.n + layout.p) others_.push_back(slot);
+            if (slot < 2 * layout.dof || slot >= 2 * layout.dof + layout.p) others_.push_back(slot);
     }
 
     Sign operator()(Expression e) const {
@@ -93,7 +93,7 @@ class Search {
     std::vector<Solution> coordinates() const {
         std::vector<Solution> result{{}};
         std::vector<std::uint32_t> all;
-        for (std::size_t i = 0; i < layout_.n; ++i) all.push_back(layout_.q(i));
+        for (std::size_t i = 0; i < layout_.dof; ++i) all.push_back(layout_.q(i));
         for (const std::uint32_t slot : all) {
             const auto value = solve(graph_.adopt(e_.gap), slot);
             if (!value) continue;
@@ -107,7 +107,7 @@ class Search {
     std::vector<Solution> with_rates(const Solution& coordinate) const {
         std::vector<Solution> result{coordinate};
         const Expression hdot = on(e_.hdot, coordinate);
-        for (std::size_t i = 0; i < layout_.n; ++i) {
+        for (std::size_t i = 0; i < layout_.dof; ++i) {
             const std::uint32_t slot = layout_.v(i);
             const auto value = solve(hdot, slot);
             if (!value) continue;

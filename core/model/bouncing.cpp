@@ -38,7 +38,7 @@ Row sum(const Row& a, const Row& b) {
 
 Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     Graph graph(equations.gap.graph());
-    const std::size_t count = layout.n;
+    const std::size_t count = layout.dof;
     std::vector<std::uint32_t> q, v;
     Row s;
     for (std::size_t i = 0; i < count; ++i) {
@@ -47,7 +47,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         s.push_back(graph.symbol(layout.v(i)));
     }
     const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
-    const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.n);
+    const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.impulse_direction);
     const Row slope = along(A, v, n);  // df_c/dv n
     const Row bend = along(slope, v, n), turn = along(n, q, s), twist = along(n, q, n);
     Row velocity, B, D, rate, slopes;

@@ -14,7 +14,7 @@ using Row = std::vector<Expression>;
 // because it is there before the division.
 class Factorisation {
  public:
-    Factorisation(const Row& M, std::size_t n, Graph& graph) : n_(n), lower_(n * n, graph.number(0)), pivots_(n) {
+    Factorisation(const Row& M, std::size_t n, Graph& graph) : dof_(n), lower_(n * n, graph.number(0)), pivots_(n) {
         Row product(n * n, graph.number(0));  // L D
         for (std::size_t j = 0; j < n; ++j) {
             pivots_[j] = M[j * n + j];
@@ -33,16 +33,16 @@ class Factorisation {
 
     // M^-1 right
     Row solve(Row x) const {
-        for (std::size_t i = 0; i < n_; ++i)
-            for (std::size_t k = 0; k < i; ++k) x[i] = x[i] - lower_[i * n_ + k] * x[k];
-        for (std::size_t i = 0; i < n_; ++i) x[i] = x[i] / pivots_[i];
-        for (std::size_t i = n_; i-- > 0;)
-            for (std::size_t k = i + 1; k < n_; ++k) x[i] = x[i] - lower_[k * n_ + i] * x[k];
+        for (std::size_t i = 0; i < dof_; ++i)
+            for (std::size_t k = 0; k < i; ++k) x[i] = x[i] - lower_[i * dof_ + k] * x[k];
+        for (std::size_t i = 0; i < dof_; ++i) x[i] = x[i] / pivots_[i];
+        for (std::size_t i = dof_; i-- > 0;)
+            for (std::size_t k = i + 1; k < dof_; ++k) x[i] = x[i] - lower_[k * dof_ + i] * x[k];
         return x;
     }
 
  private:
-    std::size_t n_;
+    std::size_t dof_;
     Row lower_, pivots_;
 };
 
@@ -89,7 +89,7 @@ Expression cancelled(Expression quotient, Graph& graph) {
 }  // namespace
 
 void derive(Equations& e, const Layout& layout, Graph& graph) {
-    const std::size_t n = layout.n;
+    const std::size_t n = layout.dof;
     std::vector<std::uint32_t> q_slots, v_slots;
     Row v;
     for (std::size_t i = 0; i < n; ++i) {
@@ -115,14 +115,14 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     const Row impulse = mass.solve(e.g);  // M^-1 g'
     e.W = dot(e.g, impulse, graph);
     if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
-    for (const Expression u : impulse) e.n.push_back(u.is_zero() ? u : cancelled(u / e.W, graph));
+    for (const Expression u : impulse) e.impulse_direction.push_back(u.is_zero() ? u : cancelled(u / e.W, graph));
 
     e.hddot = curvature + dot(e.g, e.f, graph);
     e.lambda = -(e.hddot / e.W);
     for (std::size_t i = 0; i < n; ++i) {
-        e.f_c.push_back(e.f[i] - e.n[i] * e.hddot);
+        e.f_c.push_back(e.f[i] - e.impulse_direction[i] * e.hddot);
         e.f_by_force.push_back(e.f[i] + impulse[i] * e.lambda);
-        e.s.push_back(v[i] - e.n[i] * e.hdot);
+        e.s.push_back(v[i] - e.impulse_direction[i] * e.hdot);
     }
     e.energy = e.kinetic + e.potential;
     e.jerk = dot(gradient(e.hddot, q_slots), v, graph) + dot(gradient(e.hddot, v_slots), e.f_c, graph);

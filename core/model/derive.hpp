@@ -9,21 +9,21 @@ namespace achilles {
 
 // Where each input of a program stands: q (n), v (n), the parameters (p), then t, contact, sigma, a drawn curve's own.
 struct Layout {
-    std::uint32_t n = 0, p = 0;  // coordinates, parameters
+    std::uint32_t dof = 0, p = 0;  // coordinates, parameters
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
-    std::uint32_t v(std::size_t i) const { return n + static_cast<std::uint32_t>(i); }
-    std::uint32_t parameter(std::size_t i) const { return 2 * n + static_cast<std::uint32_t>(i); }
-    std::uint32_t t() const { return 2 * n + p; }
-    std::uint32_t contact() const { return 2 * n + p + 1; }  // 1 in contact, 0 in flight
-    std::uint32_t sigma() const { return 2 * n + p + 2; }    // stands for hdot where v = s + n sigma
-    std::uint32_t own() const { return 2 * n + p + 3; }      // a drawn curve's own parameter
-    std::uint32_t count() const { return 2 * n + p + 4; }
-    Slots slots() const { return {count(), 2 * n, 2 * n + p}; }
+    std::uint32_t v(std::size_t i) const { return dof + static_cast<std::uint32_t>(i); }
+    std::uint32_t parameter(std::size_t i) const { return 2 * dof + static_cast<std::uint32_t>(i); }
+    std::uint32_t t() const { return 2 * dof + p; }
+    std::uint32_t contact() const { return 2 * dof + p + 1; }  // 1 in contact, 0 in flight
+    std::uint32_t sigma() const { return 2 * dof + p + 2; }    // stands for hdot where v = s + n sigma
+    std::uint32_t own() const { return 2 * dof + p + 3; }      // a drawn curve's own parameter
+    std::uint32_t count() const { return 2 * dof + p + 4; }
+    Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }
 };
 
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.
 struct Equations {
-    std::vector<Expression> M, bias, f, g, H, n, s, f_c;
+    std::vector<Expression> M, bias, f, g, H, impulse_direction, s, f_c;
     Expression kinetic, potential, gap, restitution;
     std::vector<Expression> f_by_force;  // f_c as f + M^-1 g' lambda
     Expression W, hdot, hddot, lambda, energy;

@@ -44,7 +44,7 @@ std::vector<Edge> edges_of(Expression function, const char* place) {
 
 std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
     std::vector<std::uint32_t> moving;
-    for (std::uint32_t slot = 0; slot < 2 * layout.n; ++slot) moving.push_back(slot);
+    for (std::uint32_t slot = 0; slot < 2 * layout.dof; ++slot) moving.push_back(slot);
     const std::array<std::pair<Expression, const char*>, 3> written{{{equations.kinetic, "the kinetic energy"},
                                                                      {equations.potential, "the potential"},
                                                                      {equations.gap, "the gap"}}};
@@ -57,7 +57,7 @@ std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
             if (is_leaf(Builder::node(function).operation)) continue;
             for (const Edge& edge : edges_of(function, place)) {
                 const auto is_known = [&](const Edge& known) {
-                    return known.watched == edge.watched && known.kind == edge.kind;
+                    return known.event_function == edge.event_function && known.kind == edge.kind;
                 };
                 if (depends_on(edge.argument, moving) && std::none_of(edges.begin(), edges.end(), is_known))
                     edges.push_back(edge);

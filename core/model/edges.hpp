@@ -27,8 +27,8 @@ struct Edge {
     static constexpr double growth = 4.0;
     Expression function;  // as it stands in T, V or h
     Expression argument;
-    Expression watched;  // d, above zero where the function is smooth; or u
-    const char* place;   // "the gap", for messages
+    Expression event_function;  // d, above zero where the function is smooth; or u
+    const char* place;          // "the gap", for messages
     Kind kind;
 };
 

@@ -51,22 +51,22 @@ void Model::compile() {
     flight_ = program({e.f, {e.hddot}, e.pivots});
     contact_ = program({e.f_c, {e.hddot}, e.pivots, {e.jerk}});
     gap_ = program({{e.gap}});
-    normal_ = program({{e.hddot}});
+    normal_acceleration_ = program({{e.hddot}});
     release_ = program({{e.hddot, e.jerk}});
-    surface_ = program({{e.gap, e.hdot}, e.n, e.g, {e.W}});
-    bounds_ = program({{e.hddot}, e.n, e.f});
+    surface_ = program({{e.gap, e.hdot}, e.impulse_direction, e.g, {e.W}});
+    definition7_terms_ = program({{e.hddot}, e.impulse_direction, e.f});
     energy_ = program({{e.energy, e.kinetic, e.potential}});
     force_ = program({{e.lambda}});
     restitution_ = program({{e.restitution}});
     start_ = program({e.f, {e.hddot}, e.pivots, {e.kinetic, e.potential}});
-    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.n + 1);
+    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.dof + 1);
     // Two ways to say the same; one takes fewer products.
-    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.n + 1);
-    SeriesProgram by_force(program({e.f_by_force, {e.hddot}, e.pivots}), layout_.n + 1);
+    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.dof + 1);
+    SeriesProgram by_force(program({e.f_by_force, {e.hddot}, e.pivots}), layout_.dof + 1);
     if (by_force.inner_sums() < contact_series_.inner_sums()) contact_series_ = std::move(by_force);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
-    for (const Edge& edge : edges_) distances.push_back(edge.watched);
+    for (const Edge& edge : edges_) distances.push_back(edge.event_function);
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), distances.size());
 }
 
@@ -87,9 +87,9 @@ Run Model::default_run() const {
     Run run;
     run.options = description_.options;
     for (const auto& parameter : description_.parameters) run.parameters.push_back(parameter.value);
-    run.q.resize(n());
-    run.v.resize(n());
-    for (int i = 0; i < n(); ++i) {
+    run.q.resize(dof());
+    run.v.resize(dof());
+    for (int i = 0; i < dof(); ++i) {
         run.q[i] = description_.coordinates[static_cast<std::size_t>(i)].start;
         run.v[i] = description_.coordinates[static_cast<std::size_t>(i)].rate;
     }

@@ -34,26 +34,28 @@ class Model {
 
     const SystemDescription& description() const { return description_; }
     const Layout& layout() const { return layout_; }
-    int n() const { return static_cast<int>(layout_.n); }
+    int dof() const { return static_cast<int>(layout_.dof); }
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
     // Programs, compiled once; their outputs in order.
-    const Program& flight() const { return flight_; }    // f (n), hddot, pivots (n)
-    const Program& contact() const { return contact_; }  // f_c (n), hddot, pivots (n), jerk
-    const Program& gap() const { return gap_; }          // h
-    const Program& normal() const { return normal_; }    // hddot
-    const Program& release() const { return release_; }  // hddot, jerk
-    const Program& surface() const { return surface_; }  // h, hdot, n (n), g (n), W
-    const Program& bounds() const { return bounds_; }    // hddot, n (n), f (n): what Def. 7 needs over a box
-    const Program& energy() const { return energy_; }    // T + V, T, V
-    const Program& force() const { return force_; }      // lambda
+    const Program& flight() const { return flight_; }                            // f (n), hddot, pivots (n)
+    const Program& contact() const { return contact_; }                          // f_c (n), hddot, pivots (n), jerk
+    const Program& gap() const { return gap_; }                                  // h
+    const Program& normal_acceleration() const { return normal_acceleration_; }  // hddot
+    const Program& release() const { return release_; }                          // hddot, jerk
+    const Program& surface() const { return surface_; }                          // h, hdot, n (n), g (n), W
+    const Program& definition7_terms() const {
+        return definition7_terms_;
+    }                                                  // hddot, n (n), f (n): what Def. 7 needs over a box
+    const Program& energy() const { return energy_; }  // T + V, T, V
+    const Program& force() const { return force_; }    // lambda
     const Program& restitution() const { return restitution_; }
 
     // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
     const SeriesProgram& flight_series() const { return flight_series_; }
     const SeriesProgram& contact_series() const { return contact_series_; }
-    LanePrograms lane_programs() const { return {layout_.n, flight_series_, contact_series_, surface_}; }
+    LanePrograms lane_programs() const { return {layout_.dof, flight_series_, contact_series_, surface_}; }
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }
@@ -74,8 +76,8 @@ class Model {
 
     // The same, made where it is first asked for: a run needs few of those that it may need.
     template <class Scalar>
-    Evaluator<Scalar>& made(std::optional<Evaluator<Scalar>>& evaluator, const Program& program,
-                            std::span<const double> parameters) const {
+    Evaluator<Scalar>& lazily(std::optional<Evaluator<Scalar>>& evaluator, const Program& program,
+                              std::span<const double> parameters) const {
         if (!evaluator) evaluator = this->evaluator<Scalar>(program, parameters);
         return *evaluator;
     }
@@ -111,7 +113,8 @@ class Model {
     mutable std::unique_ptr<const Bouncing> bouncing_;
     SeriesProgram flight_series_, contact_series_, edge_series_;
     std::vector<Edge> edges_;
-    Program flight_, contact_, gap_, normal_, release_, surface_, bounds_, energy_, force_, restitution_;
+    Program flight_, contact_, gap_, normal_acceleration_, release_, surface_, definition7_terms_, energy_, force_,
+        restitution_;
     Program start_;  // f (n), hddot, pivots (n), T, V: what must be defined where a run starts
 };
 

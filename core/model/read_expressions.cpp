@@ -136,7 +136,7 @@ class Reader {
 
 std::vector<std::uint32_t> rate_slots(const Layout& layout) {
     std::vector<std::uint32_t> slots;
-    for (std::size_t i = 0; i < layout.n; ++i) slots.push_back(layout.v(i));
+    for (std::size_t i = 0; i < layout.dof; ++i) slots.push_back(layout.v(i));
     return slots;
 }
 
@@ -149,7 +149,7 @@ int degree(const RatePolynomial::key_type& exponents) {
 // One term of a polynomial in the rates, multiplied out.
 Expression term_of(const RatePolynomial::value_type& entry, const Layout& layout) {
     Expression term = entry.second;
-    for (std::size_t i = 0; i < layout.n; ++i) term = term * power(term.graph().symbol(layout.v(i)), entry.first[i]);
+    for (std::size_t i = 0; i < layout.dof; ++i) term = term * power(term.graph().symbol(layout.v(i)), entry.first[i]);
     return term;
 }
 
@@ -200,7 +200,7 @@ Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePol
 // M from T = v'Mv/2, expanded in the rates. Throws Mistake.
 void read_mass_matrix(const SystemDescription& system, const Layout& layout, const TextParts& parts,
                       Equations& equations) {
-    const std::size_t n = layout.n;
+    const std::size_t n = layout.dof;
     const std::vector<std::string> names = slot_names(system, layout);
     Graph& graph = equations.kinetic.graph();
     Expression offender;
@@ -225,7 +225,7 @@ void read_mass_matrix(const SystemDescription& system, const Layout& layout, con
 
 void check_gap(const Text& text, Expression gap, const Layout& layout) {
     std::vector<std::uint32_t> q;
-    for (std::size_t i = 0; i < layout.n; ++i) q.push_back(layout.q(i));
+    for (std::size_t i = 0; i < layout.dof; ++i) q.push_back(layout.q(i));
     const std::vector<Expression> slope = gradient(gap, q);
     if (std::all_of(slope.begin(), slope.end(), [](Expression e) { return e.is_zero(); }))
         throw Mistake{text.at, "dh = 0 everywhere: the gap does not change with any coordinate", {}};

@@ -38,7 +38,7 @@ void Model::check(const Run& run) const {
         if (is_subnormal(run.parameters[i]))
             refuse(parameter.at, subnormal_parameter(parameter.name, run.parameters[i]), subnormal_hint);
     }
-    for (int i = 0; i < n(); ++i) {
+    for (int i = 0; i < dof(); ++i) {
         const auto& coordinate = description_.coordinates[static_cast<std::size_t>(i)];
         if (!std::isfinite(run.q[i]))
             refuse(coordinate.start_at, fmt::format("the start of '{}' is not finite", coordinate.name));
@@ -47,7 +47,7 @@ void Model::check(const Run& run) const {
     }
     if (mistakes.count() == before) {
         auto start = evaluator(start_, run.parameters);
-        put(start, State{run.q, run.v});
+        set_state(start, State{run.q, run.v});
         start.run();
         mistakes.attempt([&] { check_restitution(run); });
         // What follows from an energy or a gap without a value has none either: it is told once.
@@ -85,7 +85,7 @@ Mistake no_value(const Model& model, const Run& run, Location at, const char* wh
 
 // T and V have values.
 void Model::check_energies(const Run& run, const Evaluator<double>& start) const {
-    const std::size_t first = 2 * std::size_t{layout_.n} + 1;
+    const std::size_t first = 2 * std::size_t{layout_.dof} + 1;
     if (!std::isfinite(start.output(first)))
         throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.kinetic, 1});
     if (!std::isfinite(start.output(first + 1)))
@@ -96,7 +96,7 @@ void Model::check_energies(const Run& run, const Evaluator<double>& start) const
 void Model::check_gap(const Run& run) const {
     const State start{run.q, run.v};
     auto gap = evaluator<Interval>(gap_, run.parameters);
-    put(gap, start);
+    set_state(gap, start);
     gap.run();
     const Interval h = gap.output(0);
     const double error = rad(h);
@@ -106,18 +106,18 @@ void Model::check_gap(const Run& run) const {
                       "choose a start with h(q) >= 0"};
     if (std::abs(mid(h)) > 4.0 * error) return;
     auto surface = evaluator(surface_, run.parameters);
-    put(surface, start);
+    set_state(surface, start);
     surface.run();
     bool is_flat = true;
-    for (std::size_t i = 0; i < layout_.n; ++i) is_flat = is_flat && surface.output(2 + layout_.n + i) == 0.0;
+    for (std::size_t i = 0; i < layout_.dof; ++i) is_flat = is_flat && surface.output(2 + layout_.dof + i) == 0.0;
     if (is_flat)
         throw Mistake{description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined", {}};
 }
 
 // M is positive definite.
 void Model::check_mass(const Evaluator<double>& start) const {
-    for (std::size_t i = 0; i < layout_.n; ++i) {
-        const double pivot = start.output(layout_.n + 1 + i);
+    for (std::size_t i = 0; i < layout_.dof; ++i) {
+        const double pivot = start.output(layout_.dof + 1 + i);
         if (pivot > 0.0) continue;
         throw Mistake{description_.kinetic.at,
                       fmt::format("the mass matrix is not positive definite at the start (the pivot of '{}' is {})",
@@ -129,15 +129,15 @@ void Model::check_mass(const Evaluator<double>& start) const {
 // The equations of motion have values. Where they have none, a derivative of V, h or T is to blame.
 void Model::check_acceleration(const Run& run, const Evaluator<double>& start) const {
     bool finite = true;
-    for (std::size_t i = 0; i <= layout_.n; ++i) finite = finite && std::isfinite(start.output(i));
+    for (std::size_t i = 0; i <= layout_.dof; ++i) finite = finite && std::isfinite(start.output(i));
     if (finite) return;
     Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
     std::vector<std::uint32_t> q;
-    for (std::size_t i = 0; i < layout_.n; ++i) q.push_back(layout_.q(i));
+    for (std::size_t i = 0; i < layout_.dof; ++i) q.push_back(layout_.q(i));
     const auto blame = [&](const Text& text, const char* what, const std::vector<Expression>& parts) {
         const Program program(parts, layout_.slots());
         auto value = evaluator(program, run.parameters);
-        put(value, State{run.q, run.v});
+        set_state(value, State{run.q, run.v});
         value.run();
         for (std::size_t i = 0; i < parts.size(); ++i)
             if (!std::isfinite(value.output(i))) throw no_value(*this, run, text.at, what, parts);

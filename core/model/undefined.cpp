@@ -19,7 +19,7 @@ std::string shortened(const Model& model, Expression expression) {
 double value_at(const Model& model, std::span<const double> parameters, Expression expression, const State& state) {
     const Program program(std::span(&expression, 1), model.layout().slots());
     auto value = model.evaluator(program, parameters);
-    put(value, state);
+    set_state(value, state);
     value.run();
     return value.output(0);
 }

@@ -23,7 +23,7 @@ void append(std::string& row, double x) {
 std::string to_csv(const Trajectory& trajectory) {
     const Ground ground;
     const Model& model = *trajectory.model;
-    const auto n = static_cast<std::size_t>(model.n());
+    const auto n = static_cast<std::size_t>(model.dof());
     std::string text = "t,phase";
     for (std::size_t i = 0; i < 2 * n; ++i) text += "," + model.slot_names()[i];
     text += ",gap,gap rate,lambda,energy,j\n";
@@ -36,12 +36,12 @@ std::string to_csv(const Trajectory& trajectory) {
     const auto between = static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size()));
     for (const Sample& sample : Sampler(trajectory).all(between)) {
         for (auto* program : {&surface, &force, &energy}) {
-            put(*program, sample.state);
+            set_state(*program, sample.state);
             program->run();
         }
         text += fmt::format("{},{}", sample.t + 0.0, to_text(sample.phase));
-        for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.q[i]);
-        for (Eigen::Index i = 0; i < model.n(); ++i) append(text, sample.state.v[i]);
+        for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.q[i]);
+        for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.v[i]);
         append(text, surface.output(0));
         append(text, surface.output(1));
         append(text, sample.contact ? force.output(0) : 0.0);

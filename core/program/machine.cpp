@@ -23,7 +23,7 @@ std::shared_ptr<const MachineCode> MachineCode::of(const std::vector<std::uint8_
 
 MachineCode::~MachineCode() { munmap(memory_, size_); }
 
-std::optional<Width> widest_code() {
+std::optional<Width> best_width() {
     static const std::optional<Width> widest = []() -> std::optional<Width> {
         __builtin_cpu_init();
         if (!__builtin_cpu_supports("avx2")) return std::nullopt;
@@ -36,7 +36,7 @@ std::optional<Width> widest_code() {
 
 std::shared_ptr<const MachineCode> MachineCode::of(const std::vector<std::uint8_t>&) { return nullptr; }
 MachineCode::~MachineCode() = default;
-std::optional<Width> widest_code() { return std::nullopt; }
+std::optional<Width> best_width() { return std::nullopt; }
 
 #endif
 

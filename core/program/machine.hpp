@@ -42,7 +42,7 @@ class MachineCode {
 enum class Width : unsigned { one = 1, two = 2, four = 4, eight = 8 };
 
 // The widest that this processor and system can run; none where no code can.
-std::optional<Width> widest_code();
+std::optional<Width> best_width();
 
 // Writes x86-64 code on doubles (AVX encodings: three operands). A number stands at an index, counted in doubles, from
 // an address in a register of the processor. Of the vector registers 0 .. 15 the first few are free for use; results

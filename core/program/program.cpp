@@ -62,7 +62,7 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
         const Graph::Node& node = graph.node(id);
         if (node.operation == Operation::symbol) {
             place[id] = node.a;
-            moving[id] = node.a < slots.fixed_begin || node.a >= slots.fixed_end;
+            moving[id] = node.a < slots.parameters_begin || node.a >= slots.parameters_end;
         } else if (node.operation == Operation::number) {
             place[id] = slots.count + static_cast<std::uint32_t>(constants_.size());
             constants_.push_back(graph.constant(id));

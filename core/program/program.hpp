@@ -1,6 +1,6 @@
 // A flat program: a list of expressions, every common subexpression evaluated once, over any scalar type.
 //
-// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [fixed_begin, fixed_end) are parameters:
+// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [parameters_begin, parameters_end) are parameters:
 // what depends on them alone is evaluated by fix(), once a run, and the rest by run(), with no allocation.
 #pragma once
 
@@ -18,9 +18,9 @@ namespace achilles {
 class MachineCode;
 
 struct Slots {
-    std::uint32_t count = 0;        // all inputs
-    std::uint32_t fixed_begin = 0;  // the parameters among them
-    std::uint32_t fixed_end = 0;
+    std::uint32_t count = 0;             // all inputs
+    std::uint32_t parameters_begin = 0;  // the parameters among them
+    std::uint32_t parameters_end = 0;
 };
 
 struct Instruction {

@@ -236,8 +236,8 @@ void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
 
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
                                                 Width width) {
-    if (const auto widest = widest_code();
-        !widest || width > *widest || instructions.empty() || instructions.size() > most_instructions)
+    if (const auto best = best_width();
+        !best || width > *best || instructions.empty() || instructions.size() > most_instructions)
         return nullptr;
     Assembler code(Assembler::Base::rbx, 2, width);
     code.enter();

@@ -15,7 +15,7 @@ struct State {
 
 // Puts a state into the inputs of a program (slots 0 .. 2n - 1, see model/derive.hpp).
 template <class Evaluator>
-void put(Evaluator& evaluator, const State& state) {
+void set_state(Evaluator& evaluator, const State& state) {
     const auto n = state.q.size();
     for (Eigen::Index i = 0; i < n; ++i) {
         evaluator.input(static_cast<std::size_t>(i)) = state.q[i];

@@ -24,9 +24,9 @@ class SeriesCompiler {
         first_moving_ = first + static_cast<std::uint32_t>(program_.fixed_);
         series_.coefficients_.push_back({});  // the number 1
         series_.hidden_ = next_register_ = count;
-        next_series_ = 1 + slots.fixed_begin;
+        next_series_ = 1 + slots.parameters_begin;
         forms_.resize(count);
-        for (std::uint32_t i = 0; i < slots.fixed_begin; ++i) forms_[i] = {{1 + i, one}};
+        for (std::uint32_t i = 0; i < slots.parameters_begin; ++i) forms_[i] = {{1 + i, one}};
         for (std::uint32_t reg = first_moving_; reg < count; ++reg) {
             const Instruction& in = program_.instructions_[reg - first];
             function_registers_.emplace(std::pair(in.operation, in.a), reg);
@@ -67,7 +67,7 @@ class SeriesCompiler {
                operation == Operation::acos || operation == Operation::real_power;
     }
 
-    bool moves(std::uint32_t reg) const { return reg < program_.slots_.fixed_begin || reg >= first_moving_; }
+    bool moves(std::uint32_t reg) const { return reg < program_.slots_.parameters_begin || reg >= first_moving_; }
 
     // ---- coefficients ----
 
@@ -149,7 +149,7 @@ class SeriesCompiler {
     // The series of an output, scaled. One that is an input is copied: the inputs of the next order may be written
     // while outputs are still read.
     std::uint32_t written_apart(const Operand& output) {
-        const bool is_input = output.series != 0 && output.series <= program_.slots_.fixed_begin;
+        const bool is_input = output.series != 0 && output.series <= program_.slots_.parameters_begin;
         if (!is_input && output.scale == one) return output.series;
         const std::uint32_t copy = next_series_++;
         combine(copy, {output.series, 0, 0}, {output.scale, one, one});
@@ -382,7 +382,7 @@ class SeriesCompiler {
 
 SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program) {
     SeriesCompiler(*this).compile(wanted);
-    if (const auto widest = widest_code()) code_ = OrderCode::of(plan_, *widest);
+    if (const auto best = best_width()) code_ = OrderCode::of(plan_, *best);
 }
 
 }  // namespace achilles

@@ -14,7 +14,7 @@ class LaneAccess {
     static std::uint32_t output_of(const SeriesProgram& series, std::size_t index) { return series.outputs_[index]; }
     static std::size_t registers_of(const SeriesProgram& series) { return series.registers_; }
     static std::size_t coefficients_of(const SeriesProgram& series) { return series.coefficients_.size(); }
-    static std::size_t moving_inputs(const Program& program) { return program.slots_.fixed_begin; }
+    static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
     template <class Lanes>
     static const Program*& program_of(Evaluator<Lanes>& evaluator) {
         return evaluator.program_;

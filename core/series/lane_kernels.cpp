@@ -46,7 +46,7 @@ namespace achilles {
 #ifdef ACHILLES_HAS_AVX512
 
 namespace {
-const bool has_avx512 = widest_code() == Width::eight;
+const bool has_avx512 = best_width() == Width::eight;
 }
 
 void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {

@@ -200,7 +200,7 @@ class LaneOrderWriter {
 };
 
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, const LanePlan& lanes) {
-    if (widest_code() != Width::eight || plan.rules.size() > most_rules_in_code) return nullptr;
+    if (best_width() != Width::eight || plan.rules.size() > most_rules_in_code) return nullptr;
     LaneOrderWriter writer(plan, lanes);
     writer.write();
     auto orders = std::make_shared<LaneOrderCode>();

@@ -24,7 +24,8 @@ struct LanePrograms {
 
 // Of eight runs: what a step starts from, and after it what it came to.
 struct LaneStep {
-    explicit LaneStep(std::size_t coordinates) : q_and_v(2 * coordinates), n(coordinates), g(coordinates) {}
+    explicit LaneStep(std::size_t coordinates)
+        : q_and_v(2 * coordinates), impulse_direction(coordinates), g(coordinates) {}
 
     Eight t, until;     // s: now, and where the motion ends at the latest
     Eight state_error;  // as in Gap
@@ -37,7 +38,7 @@ struct LaneStep {
     // In contact: how many steps were made, of which only the last may not be plain; the least gap at their ends.
     Eight least_gap;
     long steps = 0;
-    std::vector<Eight> q_and_v, n, g;  // the state; M^-1 g'/W and dh where the step ends
+    std::vector<Eight> q_and_v, impulse_direction, g;  // the state; M^-1 g'/W and dh where the step ends
     // How it ended. After one that is not plain t is as before, in contact q_and_v and the duration are those before
     // it, and nothing else has a meaning.
     enum class End : char { not_plain, no_event, impact };

@@ -24,7 +24,7 @@ std::size_t room(const SeriesPlan& plan) {
 
 SeriesEvaluator::SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters)
     : program_(&program),
-      inputs_(program.program_.slots_.fixed_begin),
+      inputs_(program.program_.slots_.parameters_begin),
       zero_(program.program_),
       factors_(program.plan_.rules.size()),
       tables_block_(std::make_unique_for_overwrite<double[]>(room(program.plan_))) {

@@ -14,7 +14,7 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     record_.impact(t_, state_, impact(contact_, state_.v, restitution_), collision.speed);
     state_ = {collision.before.q, collision.restart};
     record_.stretch(state_);
-    hold_ = {};
+    constrained_start_ = {};
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -33,7 +33,7 @@ void Execution::wait_for_zeno_point() {
     bool vanished = false;
     do {
         flow().stay(t_, state_, start.state_error);
-        vanished = stay(contact_until());
+        vanished = advance_constrained(contact_until());
     } while (doubt_ && try_exactly(start));
     settle();
     Event event = std::move(*completion_);
@@ -58,22 +58,22 @@ void Execution::stay_until_release() {
     do {
         flow().stay(t_, state_, start.state_error);
         record_.stretch(state_);
-        vanished = stay(run_.options.end_time);
+        vanished = advance_constrained(run_.options.end_time);
     } while (doubt_ && try_exactly(start));
     settle();
     if (vanished) release();
 }
 
 // Moves on the surface until a time (false) or until the contact force vanishes (true).
-bool Execution::stay(double until) {
+bool Execution::advance_constrained(double until) {
     while (!outcome_ && !doubt_ && until - t_ > 1e-15 * std::abs(t_))
-        if (stay_step(until)) return true;
+        if (constrained_step(until)) return true;
     if (!outcome_ && !doubt_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
     return false;
 }
 
 // One step of it. True if the contact force vanishes where it ends.
-bool Execution::stay_step(double until) {
+bool Execution::constrained_step(double until) {
     if (!advance(until)) return false;
     Descent descent = flow().stays_negative() ? Descent{} : force_descent();
     if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
@@ -86,32 +86,32 @@ bool Execution::stay_step(double until) {
             if (locate_release(descent.theta)) return !outcome_;
             break;  // the step became shorter
         case Descent::Kind::rose:
-            if (!knows_its_start() || hold_.asked_again) return doubt_force(0.0);
+            if (!knows_its_start() || constrained_start_.asked_again) return doubt_force(0.0);
             break;
         case Descent::Kind::open:
             // As in flight: a dip that holds the end of a step lies inside the next one.
-            asked_again = !hold_.asked_again && end_step_at(descent.theta);
+            asked_again = !constrained_start_.asked_again && end_step_at(descent.theta);
             if (!asked_again && !(knows_its_start() && flow().end_time() >= until)) return doubt_force(descent.theta);
             break;
         case Descent::Kind::undecided:
             return doubt_force(descent.theta);
     }
-    hold_ = {0, asked_again};
-    take_in_contact();
+    constrained_start_ = {0, asked_again};
+    accept_constrained_step();
     return false;
 }
 
 // Accepts the flow's last step, moved onto the surface. False, and the run is over, if it cannot be.
-bool Execution::take_in_contact() {
-    const auto projected = surface_.project(flow().moved_end(), false);
-    take(projected ? *projected : surface_.at(flow().end()));
-    if (!projected) leave_contact(t_, state_);
+bool Execution::accept_constrained_step() {
+    const auto projected = kinematics_.project(flow().edit_end(), false);
+    accept_step(projected ? *projected : kinematics_.at(flow().end()));
+    if (!projected) fail_projection(t_, state_);
     return projected.has_value();
 }
 
 // Whether the force vanishes cannot be told from theta on: the motion goes there, and ends in doubt. Always false.
 bool Execution::doubt_force(double theta) {
-    if (end_step_at(theta) && !take_in_contact()) return false;
+    if (end_step_at(theta) && !accept_constrained_step()) return false;
     doubt_ = "the contact force comes closer to zero than the integration knows it just after " + where(t_, state_);
     return false;
 }
@@ -119,49 +119,49 @@ bool Execution::doubt_force(double theta) {
 // Where the contact force vanishes along the last step: -hddot = W lambda. At theta = 0 if it did before, to within
 // rounding.
 Descent Execution::force_descent() {
-    Polynomial force = flow().watched();
+    Polynomial force = flow().event_function();
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow().is_expansion()) {
         State end = flow().end();
-        surface_.project(end, false);
-        force.c[2] += -surface_.normal_acceleration(end) - force(1.0);
+        kinematics_.project(end, false);
+        force.c[2] += -kinematics_.normal_acceleration(end) - force(1.0);
     }
-    if (hold_.known > 0) {
+    if (constrained_start_.known > 0) {
         force.c[0] = 0.0;
     } else if (!(force.c[0] > 0.0)) {
         return {Descent::Kind::root, 0.0};
     }
-    return first_descent(force, hold_.known, flow().remainder(force));
+    return first_descent(force, constrained_start_.known, flow().remainder(force));
 }
 
 // The same as locate_impact, for hddot = 0 along the constrained motion.
 bool Execution::locate_release(double theta) {
     double duration = theta * flow().duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow().retake(duration); obstacle != Obstacle::none) {
-            leave(obstacle);
+        if (const auto failure = flow().redo_step(duration); failure != StepFailure::none) {
+            stop_at(failure);
             return true;
         }
-        const auto projected = surface_.project(flow().moved_end(), false);
+        const auto projected = kinematics_.project(flow().edit_end(), false);
         if (!projected || flow().duration() < duration * (1.0 - 1e-12)) return false;
         const State& end = flow().end();
-        const double correction = -surface_.normal_acceleration(end) / surface_.jerk(end);
+        const double correction = -kinematics_.normal_acceleration(end) / kinematics_.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             flow().shift_end(correction);
-            surface_.project(flow().moved_end(), false);
+            kinematics_.project(flow().edit_end(), false);
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides
         duration = std::max(duration + correction, 0.5 * duration);
     }
-    take(surface_.at(flow().end()));
+    accept_step(kinematics_.at(flow().end()));
     return true;
 }
 
 // lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
 void Execution::release() {
-    if (!certainly_positive(surface_.normal(state_).jerk)) {
+    if (!certainly_positive(kinematics_.normal(state_).jerk)) {
         stop(Outcome::Kind::undecided,
              "the contact force touches zero and h''' > 0 is not proved at " + where(t_, state_));
         return;
@@ -175,8 +175,8 @@ void Execution::release() {
     record_.close(t_);
     record_.open(Phase::Kind::hybrid, t_);
     constrained_ = false;
-    hold_ = {};
-    takeoff_ = {{0.0, 0.0}, 3};
+    constrained_start_ = {};
+    flight_start_ = {{0.0, 0.0}, 3};
     first_step_ = 0.0;
 }
 

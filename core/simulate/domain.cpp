@@ -26,7 +26,7 @@ std::string undefined_among(const Model& model, const Run& run, std::span<const 
 std::string first_edge(const Model& model, const Run& run, const State& state, const Values& box) {
     for (const Edge& edge : model.edges()) {
         if (edge.kind != Edge::Kind::edge) continue;
-        const Program program(std::span(&edge.watched, 1), model.layout().slots());
+        const Program program(std::span(&edge.event_function, 1), model.layout().slots());
         auto distance = model.evaluator<Interval>(program, run.parameters);
         for (std::size_t i = 0; i < box.size(); ++i) distance.input(i) = box[i];
         distance.run();
@@ -45,7 +45,7 @@ std::string first_bad_pivot(const Model& model, const Run& run, const State& sta
     auto value = model.evaluator(program, run.parameters);
     for (std::size_t i = 0; i < box.size(); ++i) enclosure.input(i) = box[i];
     enclosure.run();
-    put(value, state);
+    set_state(value, state);
     value.run();
     for (std::size_t i = 0; i < program.output_count(); ++i) {
         const Interval pivot = enclosure.output(i);

@@ -32,18 +32,18 @@ bool is_finite(const Values& values) {
 class Dopri5 : public Stepper {
  public:
     Dopri5(const Model& model, const Run& run)
-        : n_(static_cast<std::size_t>(model.n())),
+        : dof_(static_cast<std::size_t>(model.dof())),
           tolerance_(run.options.tolerance),
           dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
           flight_(model.evaluator(model.flight(), run.parameters)),
           contact_(model.evaluator(model.contact(), run.parameters)) {}
 
     void initialize(Motion motion, const State& state, const Gap& gap) override;
-    Obstacle do_step(double longest, double first, double least) override;
-    Obstacle redo_step(double duration, double least) override;
+    StepFailure do_step(double longest, double first, double least) override;
+    StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override { return to_; }
-    Polynomial watched() const override { return component(2 * n_); }
+    Polynomial event_function() const override { return component(2 * dof_); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(const Polynomial& p) const override;
     void add_error(const Polynomial& p, Gap& end) const override;
@@ -57,9 +57,9 @@ class Dopri5 : public Stepper {
     }
     void guess_first_step();
     void set(double dt);
-    Obstacle advance(double dt, double least);
-    Obstacle accept();
-    Obstacle obstacle_here() const;
+    StepFailure advance(double dt, double least);
+    StepFailure accept();
+    StepFailure failure_here() const;
     double own_remainder(const Polynomial& p) const;
     double drifting(const Polynomial& p) const;
     double earlier_error(const Polynomial& p) const;
@@ -68,7 +68,7 @@ class Dopri5 : public Stepper {
         return interpolate({nodes_[0][i], nodes_[1][i], nodes_[2][i], nodes_[3][i], nodes_[4][i]});
     }
 
-    std::size_t n_;
+    std::size_t dof_;
     double tolerance_;
     Dense dense_;
     Evaluator<double> flight_, contact_;
@@ -87,23 +87,23 @@ class Dopri5 : public Stepper {
 void Dopri5::derivative(const Values& y, Values& dydt) {
     ++evaluations_;
     Evaluator<double>& program = motion_ == Motion::flight ? flight_ : contact_;
-    for (std::size_t i = 0; i < 2 * n_; ++i) program.input(i) = y[i];
+    for (std::size_t i = 0; i < 2 * dof_; ++i) program.input(i) = y[i];
     program.run();
     bool regular = true;
-    for (std::size_t i = 0; i < n_; ++i) regular = regular && program.output(n_ + 1 + i) > 0.0;
-    for (std::size_t i = 0; i < n_; ++i) {
-        dydt[i] = y[n_ + i];
-        dydt[n_ + i] = regular ? program.output(i) : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < dof_; ++i) regular = regular && program.output(dof_ + 1 + i) > 0.0;
+    for (std::size_t i = 0; i < dof_; ++i) {
+        dydt[i] = y[dof_ + i];
+        dydt[dof_ + i] = regular ? program.output(i) : std::numeric_limits<double>::quiet_NaN();
     }
-    dydt[2 * n_] = motion_ == Motion::flight ? y[2 * n_ + 1] : program.output(2 * n_ + 1);
-    dydt[2 * n_ + 1] = motion_ == Motion::flight ? program.output(n_) : 0.0;
+    dydt[2 * dof_] = motion_ == Motion::flight ? y[2 * dof_ + 1] : program.output(2 * dof_ + 1);
+    dydt[2 * dof_ + 1] = motion_ == Motion::flight ? program.output(dof_) : 0.0;
 }
 
 Values Dopri5::values_of(const State& state) const {
-    Values y(2 * n_ + 2, 0.0);
-    for (std::size_t i = 0; i < n_; ++i) {
+    Values y(2 * dof_ + 2, 0.0);
+    for (std::size_t i = 0; i < dof_; ++i) {
         y[i] = state.q[static_cast<Eigen::Index>(i)];
-        y[n_ + i] = state.v[static_cast<Eigen::Index>(i)];
+        y[dof_ + i] = state.v[static_cast<Eigen::Index>(i)];
     }
     return y;
 }
@@ -118,11 +118,11 @@ void Dopri5::initialize(Motion motion, const State& state, const Gap& gap) {
 
 // The first stretch of a run: a guess from the first derivative, which the error control corrects at once.
 void Dopri5::guess_first_step() {
-    Values dydt(2 * n_ + 2);
+    Values dydt(2 * dof_ + 2);
     const Values y = values_of(to_);
     derivative(y, dydt);
     double size = 1e-3, rate = 1e-3;
-    for (std::size_t i = 0; i < 2 * n_; ++i) {
+    for (std::size_t i = 0; i < 2 * dof_; ++i) {
         size = std::max(size, std::abs(y[i]));
         rate = std::max(rate, std::abs(dydt[i]));
     }
@@ -132,93 +132,94 @@ void Dopri5::guess_first_step() {
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
     if (motion_ == Motion::flight) {
-        y[2 * n_] = gap_.h;
-        y[2 * n_ + 1] = gap_.hdot;
+        y[2 * dof_] = gap_.h;
+        y[2 * dof_ + 1] = gap_.hdot;
     } else {  // hddot of the state itself
-        for (std::size_t i = 0; i < 2 * n_; ++i) contact_.input(i) = y[i];
+        for (std::size_t i = 0; i < 2 * dof_; ++i) contact_.input(i) = y[i];
         contact_.run();
-        y[2 * n_] = contact_.output(n_);
+        y[2 * dof_] = contact_.output(dof_);
     }
     dense_.initialize(y, 0.0, dt);
 }
 
 // What a step that never became finite means: the state itself tells.
-Obstacle Dopri5::obstacle_here() const {
+StepFailure Dopri5::failure_here() const {
     for (const double y : values_of(from_))
-        if (!(std::abs(y) < 1e150)) return Obstacle::not_a_number;  // it ran away to infinity
-    return Obstacle::left_the_domain;
+        if (!(std::abs(y) < 1e150)) return StepFailure::not_a_number;  // it ran away to infinity
+    return StepFailure::left_the_domain;
 }
 
 // Reads the step that was just made. Dense output at theta = 0, 1/4, 1/2, 3/4, 1: a quartic is known by these.
-Obstacle Dopri5::accept() {
+StepFailure Dopri5::accept() {
     const double begin = dense_.previous_time();
     span_ = dense_.current_time() - begin;
     for (std::size_t k = 0; k < 5; ++k) {
-        nodes_[k].resize(2 * n_ + 2);
+        nodes_[k].resize(2 * dof_ + 2);
         if (k == 0) nodes_[k] = dense_.previous_state();
         if (k == 4) nodes_[k] = dense_.current_state();
         if (k > 0 && k < 4) dense_.calc_state(begin + 0.25 * static_cast<double>(k) * span_, nodes_[k]);
-        if (!is_finite(nodes_[k])) return Obstacle::not_a_number;
+        if (!is_finite(nodes_[k])) return StepFailure::not_a_number;
     }
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         to_.q[static_cast<Eigen::Index>(i)] = nodes_[4][i];
-        to_.v[static_cast<Eigen::Index>(i)] = nodes_[4][n_ + i];
+        to_.v[static_cast<Eigen::Index>(i)] = nodes_[4][dof_ + i];
     }
-    return Obstacle::none;
+    return StepFailure::none;
 }
 
 // Steps from `from` by dt, or less if the error control or the domain asks for it.
-Obstacle Dopri5::advance(double dt, double least) {
+StepFailure Dopri5::advance(double dt, double least) {
     bool finite = true;
     while (dt > least) {
         set(dt);
         try {
             dense_.do_step(system());
         } catch (const odeint::odeint_error&) {  // 500 rejections in a row
-            return Obstacle::step_too_small;
+            return StepFailure::step_too_small;
         }
-        finite = accept() == Obstacle::none;
-        if (finite) return span_ > least ? Obstacle::none : Obstacle::step_too_small;
+        finite = accept() == StepFailure::none;
+        if (finite) return span_ > least ? StepFailure::none : StepFailure::step_too_small;
         dt *= 0.25;
     }
-    return finite ? Obstacle::step_too_small : obstacle_here();
+    return finite ? StepFailure::step_too_small : failure_here();
 }
 
-Obstacle Dopri5::do_step(double longest, double first, double least) {
+StepFailure Dopri5::do_step(double longest, double first, double least) {
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
-    if (continuing_) gap_ = {nodes_[4][2 * n_], nodes_[4][2 * n_ + 1], gap_.error, gap_.rate_error, gap_.state_error};
+    if (continuing_)
+        gap_ = {nodes_[4][2 * dof_], nodes_[4][2 * dof_ + 1], gap_.error, gap_.rate_error, gap_.state_error};
     from_ = to_;
-    Obstacle obstacle = Obstacle::not_a_number;
+    StepFailure failure = StepFailure::not_a_number;
     if (continuing_ && !by_order) {
         try {
             dense_.do_step(system());
-            obstacle = accept();
+            failure = accept();
         } catch (const odeint::odeint_error&) {
-            return Obstacle::step_too_small;
+            return StepFailure::step_too_small;
         }
     }
-    if (obstacle != Obstacle::none) obstacle = advance(std::min(wanted, longest), least);
-    if (obstacle != Obstacle::none) return obstacle;
+    if (failure != StepFailure::none) failure = advance(std::min(wanted, longest), least);
+    if (failure != StepFailure::none) return failure;
     // A step that was short by order says nothing about what the error control would allow.
     const double next = dense_.current_time_step();
     natural_ = by_order ? std::max(next, natural_) : next;
     continuing_ = true;
-    return obstacle;
+    return failure;
 }
 
-Obstacle Dopri5::redo_step(double duration, double least) {
+StepFailure Dopri5::redo_step(double duration, double least) {
     continuing_ = false;
     return advance(duration, least);
 }
 
 std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
     const std::size_t first = coefficients.size();
-    coefficients.resize(first + 10 * n_);
-    for (std::size_t i = 0; i < 2 * n_; ++i) {
+    coefficients.resize(first + 10 * dof_);
+    for (std::size_t i = 0; i < 2 * dof_; ++i) {
         Polynomial p = component(i);
         p.c[1] += nodes_[4][i] - p(1.0);
-        for (std::size_t k = 0; k <= 4; ++k) coefficients[first + 2 * n_ * k + i] = p.c[k];
+        for (std::size_t k = 0; k <= 4; ++k) coefficients[first + 2 * dof_ * k + i] = p.c[k];
     }
     return 4;
 }

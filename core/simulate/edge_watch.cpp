@@ -23,7 +23,7 @@ double tail(const Polynomial& p) {
 
 EdgeWatch::EdgeWatch(const Model& model, const Run& run)
     : edges_(model.edges()),
-      block_(2 * static_cast<std::size_t>(model.n())),
+      block_(2 * static_cast<std::size_t>(model.dof())),
       series_(model.edge_series(), run.parameters),
       distances_(edges_.size()),
       signs_(edges_.size()) {}

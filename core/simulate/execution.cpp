@@ -32,7 +32,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Watch* 
       state_{run.q, run.v},
       flow_(*model_, run_),
       record_(model_, run_, keep),
-      surface_(*model_, run_),
+      kinematics_(*model_, run_),
       restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)) {}
 
 bool Execution::restart(const Run& run) {
@@ -48,8 +48,8 @@ bool Execution::restart(const Run& run) {
     other_evaluations_ = -flow_.evaluations() - (exact_ ? exact_->evaluations() : 0);
     state_ = {run.q, run.v};
     contact_ = {};
-    takeoff_ = {};
-    hold_ = {};
+    flight_start_ = {};
+    constrained_start_ = {};
     doubt_.reset();
     constrained_ = at_impact_ = false;
     completion_.reset();
@@ -60,27 +60,27 @@ bool Execution::restart(const Run& run) {
 // ---- the start ----
 
 void Execution::begin() {
-    const Contact contact = contact_ = surface_.at(state_);
-    takeoff_ = {{contact.h, contact.hdot}, 0};
-    if (contact.h <= 4.0 * surface_.gap_error(state_)) {  // |h| and |hdot| within rounding count as zero
-        takeoff_ = {{0.0, contact.hdot}, 1};
-        const double error = 4.0 * surface_.hdot_error(state_);
+    const Contact contact = contact_ = kinematics_.at(state_);
+    flight_start_ = {{contact.h, contact.hdot}, 0};
+    if (contact.h <= 4.0 * kinematics_.gap_error(state_)) {  // |h| and |hdot| within rounding count as zero
+        flight_start_ = {{0.0, contact.hdot}, 1};
+        const double error = 4.0 * kinematics_.hdot_error(state_);
         at_impact_ = contact.hdot < -error;
-        if (std::abs(contact.hdot) <= error) start_in_contact(surface_.normal(state_));
+        if (std::abs(contact.hdot) <= error) start_in_contact(kinematics_.normal(state_));
     }
     record_.open(constrained_ ? Phase::Kind::constrained : Phase::Kind::hybrid, t_);
 }
 
 // h = 0 and hdot = 0: the sign of hddot decides, and where it is zero the sign of h'''.
-void Execution::start_in_contact(const Surface::Normal& normal) {
-    state_.v = reinitialize(surface_.at(state_), state_.v, Reinitialization::kinetic);
+void Execution::start_in_contact(const ContactKinematics::Normal& normal) {
+    state_.v = reinitialize(kinematics_.at(state_), state_.v, Reinitialization::kinetic);
     if (certainly_positive(normal.hddot)) {
-        takeoff_ = {{0.0, 0.0}, 2};
+        flight_start_ = {{0.0, 0.0}, 2};
     } else if (certainly_negative(normal.hddot) || certainly_negative(normal.jerk)) {
         constrained_ = true;
-        if (!certainly_negative(normal.hddot)) hold_.known = 1;
+        if (!certainly_negative(normal.hddot)) constrained_start_.known = 1;
     } else if (certainly_positive(normal.jerk)) {
-        takeoff_ = {{0.0, 0.0}, 3};
+        flight_start_ = {{0.0, 0.0}, 3};
     } else {
         stop(Outcome::Kind::undecided,
              "the contact force and its rate are zero to within rounding: contact or release cannot be decided at " +
@@ -104,7 +104,8 @@ void Execution::land() {
         return;
     }
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
-    if (restitution_ > 0.0 && conditions_ && conditions_->hopeless_at(-contact.hdot) && is_well_resolved(-contact.hdot))
+    if (restitution_ > 0.0 && conditions_ && conditions_->fails_by_speed(-contact.hdot) &&
+        is_well_resolved(-contact.hdot))
         return bounce(contact, restitution_);
     const Vector tangential = reinitialize(contact, state_.v, Reinitialization::kinetic);
     const Reinitialization kind = run_.options.truncation.reinitialization;
@@ -114,11 +115,11 @@ void Execution::land() {
     if (restitution_ == 0.0) {
         capture(collision);
     } else if (auto certificate =
-                   may_be_cut(collision) ? prove(&TruncationConditions::hold, collision) : std::nullopt) {
+                   could_truncate(collision) ? prove(&TruncationConditions::certify, collision) : std::nullopt) {
         complete(collision, std::move(*certificate));
     } else if (too_short_to_resolve(collision, restitution_)) {
-        if (auto widest = prove(&TruncationConditions::widest, collision)) {
-            complete(collision, std::move(*widest));
+        if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
+            complete(collision, std::move(*proved));
         } else {
             stop(Outcome::Kind::undecided,
                  "flights became shorter than floating point resolves, and no truncation is certified at " +
@@ -130,12 +131,12 @@ void Execution::land() {
 }
 
 // The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
-bool Execution::may_be_cut(const Collision& collision) {
+bool Execution::could_truncate(const Collision& collision) {
     if (!conditions_) conditions_ = timed([&] { return truncation_conditions(*model_, run_); });
-    return !conditions_->hopeless(collision);
+    return !conditions_->fails_at_point(collision);
 }
 
-// Asks for a proof, after may_be_cut().
+// Asks for a proof, after could_truncate().
 std::optional<Certificate> Execution::prove(
     std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
     return timed([&] { return ((*conditions_).*question)(collision); });
@@ -147,10 +148,10 @@ void Execution::bounce(const Contact& contact, double e) {
     record_.impact(t_, state_, v_after, -contact.hdot);
     state_.v = v_after;
     const double hdot = -e * contact.hdot;
-    takeoff_ = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+    flight_start_ = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
     first_step_ = 0.0;
     if (flow().is_expansion()) return;
-    const double hddot = surface_.normal_acceleration(state_);
+    const double hddot = kinematics_.normal_acceleration(state_);
     first_step_ = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
@@ -164,16 +165,16 @@ bool Execution::is_well_resolved(double speed) const {
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;
-    const double a = -surface_.normal_acceleration({collision.before.q, collision.tangential});
+    const double a = -kinematics_.normal_acceleration({collision.before.q, collision.tangential});
     if (!(a > 0.0)) return false;
-    return u * u / (2.0 * a) < 4.0 * surface_.gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
+    return u * u / (2.0 * a) < 4.0 * kinematics_.gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
 }
 
 // e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and the completion is exact.
 void Execution::capture(const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
-    const Interval hddot = surface_.normal({collision.before.q, collision.restart}).hddot;
+    const Interval hddot = kinematics_.normal({collision.before.q, collision.restart}).hddot;
     if (certainly_negative(hddot)) {
         Certificate certificate;
         certificate.certified = true;
@@ -188,7 +189,7 @@ void Execution::capture(const Collision& before) {
         complete(collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
         bounce(contact_, 0.0);
-        takeoff_ = {{0.0, 0.0}, 2};
+        flight_start_ = {{0.0, 0.0}, 2};
     } else {
         stop(Outcome::Kind::undecided,
              "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +
@@ -223,40 +224,40 @@ bool Execution::advance(double until) {
         return false;
     }
     // Steps of the resolution of time, one after the other, round back to the same state for ever.
-    const auto obstacle = stalled_ > most_stalled ? Obstacle::step_too_small : flow().step(until);
-    if (obstacle != Obstacle::none) leave(obstacle);
-    return obstacle == Obstacle::none;
+    const auto failure = stalled_ > most_stalled ? StepFailure::step_too_small : flow().step(until);
+    if (failure != StepFailure::none) stop_at(failure);
+    return failure == StepFailure::none;
 }
 
 // Accepts the flow's last step; `contact` is that of its end.
-void Execution::take(const Contact& contact) {
+void Execution::accept_step(const Contact& contact) {
     contact_ = contact;
     record_.step(flow(), contact.h);
-    pass(flow().duration(), flow().end_time());
+    advance_clock(flow().duration(), flow().end_time());
     state_ = flow().end();
 }
 
 // Time goes on to t, by a last step of this duration.
-void Execution::pass(double duration, double t) {
+void Execution::advance_clock(double duration, double t) {
     stalled_ = t - t_ > 0x1p-51 * std::abs(t_) ? 0 : stalled_ + 1;
     t_ = t;
     last_step_ = duration;
 }
 
-void Execution::leave(Obstacle obstacle) {
+void Execution::stop_at(StepFailure failure) {
     const std::string place = where(t_, state_);
-    if (obstacle == Obstacle::not_a_number)
+    if (failure == StepFailure::not_a_number)
         return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
     const std::string edge = edge_of_domain(*model_, run_, t_, state_);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, just after {}", edge, place));
-    if (obstacle == Obstacle::left_the_domain)
+    if (failure == StepFailure::left_the_domain)
         return stop(Outcome::Kind::left_the_domain,
                     "M is not positive definite, or a function undefined, just after " + place);
     stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
 }
 
 // A state that cannot be moved onto the surface.
-void Execution::leave_contact(double t, const State& state) {
+void Execution::fail_projection(double t, const State& state) {
     stop(Outcome::Kind::left_the_domain,
          fmt::format("{}, at {}", edge_of_contact(*model_, run_, state), where(t, state)));
 }
@@ -276,13 +277,14 @@ double Execution::state_error() const {
 }
 
 Execution::Beginning Execution::beginning() const {
-    return {state_, takeoff_, hold_, record_.mark(), t_, last_step_, first_step_, state_error(), stalled_};
+    return {state_,     flight_start_, constrained_start_, record_.mark(), t_,
+            last_step_, first_step_,   state_error(),      stalled_};
 }
 
 void Execution::go_back(const Beginning& to) {
     state_ = to.state;
-    takeoff_ = to.takeoff;
-    hold_ = to.hold;
+    flight_start_ = to.flight_start;
+    constrained_start_ = to.constrained_start;
     record_.go_back(to.recorded);
     t_ = to.t;
     last_step_ = to.last_step;

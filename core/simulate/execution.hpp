@@ -47,27 +47,27 @@ class Execution {
 
     // How the gap leaves zero at the start of a flight, or of a step of it: h, hdot, and how many of h, hdot, hddot are
     // zero there.
-    struct Takeoff {
+    struct FlightStart {
         Gap gap;
         int multiplicity = 0;
         bool asked_again = false;  // the step before was ended where the gap entered its remainder
     };
     // The same of the contact force in a constrained motion.
-    struct Hold {
+    struct ConstrainedStart {
         int known = 0;  // 1 where it starts from zero
         bool asked_again = false;
     };
     // Where a stretch of motion began.
     struct Beginning {
         State state;
-        Takeoff takeoff;
-        Hold hold;
+        FlightStart flight_start;
+        ConstrainedStart constrained_start;
         Recorder::Mark recorded;
         double t, last_step, first_step, state_error;
         int stalled;
     };
 
-    void start_in_contact(const Surface::Normal& normal);
+    void start_in_contact(const ContactKinematics::Normal& normal);
     Polynomial gap_along();
     bool find_impact();
     bool end_step_at(double theta);
@@ -86,7 +86,7 @@ class Execution {
         proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
         return result;
     }
-    bool may_be_cut(const Collision& collision);
+    bool could_truncate(const Collision& collision);
     std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
                                      const Collision& collision);
     void bounce(const Contact& contact, double e);
@@ -95,11 +95,11 @@ class Execution {
     void complete(const Collision& collision, Certificate certificate);
     void capture(const Collision& collision);
     double contact_until() const;
-    bool stay(double until);
-    bool stay_step(double until);
+    bool advance_constrained(double until);
+    bool constrained_step(double until);
     Descent force_descent();
     bool doubt_force(double theta);
-    bool take_in_contact();
+    bool accept_constrained_step();
     bool locate_release(double theta);
     void release();
 
@@ -112,10 +112,10 @@ class Execution {
     void settle();
     bool is_cancelled();
     bool advance(double until);
-    void take(const Contact& contact);
-    void pass(double duration, double t);
-    void leave(Obstacle obstacle);
-    void leave_contact(double t, const State& state);
+    void accept_step(const Contact& contact);
+    void advance_clock(double duration, double t);
+    void stop_at(StepFailure failure);
+    void fail_projection(double t, const State& state);
     void stop(Outcome::Kind kind, std::string message);
 
     std::shared_ptr<const Model> model_;
@@ -128,7 +128,7 @@ class Execution {
     std::optional<Event> completion_;  // the Zeno event that the run is on its way to
     std::unique_ptr<Flow> exact_;      // made where a stretch is first in doubt
     std::unique_ptr<TruncationConditions> conditions_;
-    Surface surface_;
+    ContactKinematics kinematics_;
     double restitution_;
     double t_ = 0.0;
     double last_step_ = 0.0;      // s
@@ -136,10 +136,10 @@ class Execution {
     double proving_ = 0.0;        // s, the clock's
     double cut_error_ = 0.0;      // of the state, by the cuts so far: what is certified at their Zeno times
     long other_evaluations_ = 0;  // than those of the flow since it was made
-    Takeoff takeoff_;
+    FlightStart flight_start_;
     std::optional<Outcome> outcome_;
     std::optional<std::string> doubt_;  // what cannot be told in the stretch that is made
-    Hold hold_;
+    ConstrainedStart constrained_start_;
     int stalled_ = 0;         // steps in a row that were as short as the resolution of t
     bool exactly_ = false;    // the stretch is made for the second time
     bool asks_again_ = true;  // whether it may be

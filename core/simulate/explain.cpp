@@ -14,7 +14,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     const Run& run = trajectory.run;
     auto energy = model.evaluator(model.energy(), run.parameters);
     const auto energy_at = [&](const Vector& v) {
-        put(energy, State{impact.q, v});
+        set_state(energy, State{impact.q, v});
         energy.run();
         return energy.output(0);
     };
@@ -24,14 +24,14 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     reason.energy_before = energy_at(impact.v_before);
     reason.energy_after = energy_at(impact.v_after);
 
-    Surface surface(model, run);
+    ContactKinematics surface(model, run);
     const State before{impact.q, impact.v_before};
     const Contact contact = surface.at(before);
     const Collision collision{impact.t, before, std::abs(contact.hdot),
                               reinitialize(contact, before.v, Reinitialization::kinetic),
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
     reason.normal_acceleration = surface.normal_acceleration({impact.q, collision.restart});
-    if (reason.normal_acceleration < 0.0) reason.attempt = truncation_conditions(model, run)->widest(collision);
+    if (reason.normal_acceleration < 0.0) reason.attempt = truncation_conditions(model, run)->prove_any(collision);
     return reason;
 }
 
@@ -39,7 +39,7 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const Event& release = trajectory.events[event];
     const Model& model = *trajectory.model;
     const State state{release.q, release.v_after};
-    Surface surface(model, trajectory.run);
+    ContactKinematics surface(model, trajectory.run);
     const double W = surface.at(state).W;
     ReleaseReason reason;
     reason.lambda = -surface.normal_acceleration(state) / W;
@@ -55,7 +55,7 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     Sampler sampler(trajectory);
     for (int i = 0; i < instants; ++i) {  // the release itself belongs to the flight
         const double t = start + (release.t - start) * i / instants;
-        put(force, sampler.at(t).state);
+        set_state(force, sampler.at(t).state);
         force.run();
         reason.force.emplace_back(t, force.output(0));
     }

@@ -12,7 +12,7 @@ void Execution::fly_to_impact() {
     if (!at_impact_) {
         const Beginning start = beginning();
         do {
-            flow().fly(t_, state_, takeoff_.gap, first_step_);
+            flow().fly(t_, state_, flight_start_.gap, first_step_);
             record_.stretch(state_);
             while (!outcome_ && !find_impact()) {
             }
@@ -27,14 +27,15 @@ void Execution::fly_to_impact() {
 // leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
 // better (the difference is above its rounding), the polynomial is made to end there.
 Polynomial Execution::gap_along() {
-    Polynomial h = flow().watched();
-    for (int j = 0; j < takeoff_.multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
+    Polynomial h = flow().event_function();
+    for (int j = 0; j < flight_start_.multiplicity; ++j)
+        h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
     if (flow().is_expansion()) return h;
-    const Contact contact = surface_.at(flow().end());
+    const Contact contact = kinematics_.at(flow().end());
     const double value = contact.h - h(1.0), slope = contact.hdot * flow().duration() - h.slope(1.0);
-    if (!surface_.within_gap_error(value, 4.0, contact, flow().end())) {
+    if (!kinematics_.within_gap_error(value, 4.0, contact, flow().end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
-        const int m = std::max(2, takeoff_.multiplicity);
+        const int m = std::max(2, flight_start_.multiplicity);
         const double b = slope - m * value;
         h.c[static_cast<std::size_t>(m)] += value - b;
         h.c[static_cast<std::size_t>(m + 1)] += b;
@@ -46,10 +47,10 @@ Polynomial Execution::gap_along() {
 bool Execution::find_impact() {
     if (!advance(run_.options.end_time)) return true;
     Polynomial h = gap_along();
-    Descent descent = first_descent(h, takeoff_.multiplicity, flow().remainder(h));
+    Descent descent = first_descent(h, flight_start_.multiplicity, flow().remainder(h));
     if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) {  // a short step knows its start better
         h = gap_along();
-        descent = first_descent(h, takeoff_.multiplicity, flow().remainder(h));
+        descent = first_descent(h, flight_start_.multiplicity, flow().remainder(h));
     }
     bool asked_again = false;
     switch (descent.kind) {
@@ -61,11 +62,11 @@ bool Execution::find_impact() {
             h = gap_along();  // no impact after all, or the step became shorter
             break;
         case Descent::Kind::rose:
-            if (!knows_its_start() || takeoff_.asked_again) return doubt_gap(0.0);
+            if (!knows_its_start() || flight_start_.asked_again) return doubt_gap(0.0);
             break;
         case Descent::Kind::open:
             // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
-            asked_again = !takeoff_.asked_again && end_step_at(descent.theta);
+            asked_again = !flight_start_.asked_again && end_step_at(descent.theta);
             if (asked_again) h = gap_along();
             if (!asked_again && !(knows_its_start() && flow().end_time() >= run_.options.end_time && h(1.0) >= 0.0))
                 return doubt_gap(descent.theta);
@@ -73,16 +74,16 @@ bool Execution::find_impact() {
         case Descent::Kind::undecided:
             return doubt_gap(descent.theta);
     }
-    const Contact contact = surface_.at(flow().end());
+    const Contact contact = kinematics_.at(flow().end());
     Gap gap{h(1.0), h.slope(1.0) / flow().duration()};
-    if (!surface_.within_gap_error(contact.h - gap.h, 4.0, contact, flow().end())) {
+    if (!kinematics_.within_gap_error(contact.h - gap.h, 4.0, contact, flow().end())) {
         if (contact.h < 0.0) return land_under();
         gap = {contact.h, contact.hdot};
     }
     flow().add_error(h, gap);
     flow().move_gap(gap);
-    takeoff_ = {gap, 0, asked_again};
-    take(contact);
+    flight_start_ = {gap, 0, asked_again};
+    accept_step(contact);
     return false;
 }
 
@@ -91,12 +92,12 @@ bool Execution::end_step_at(double theta) {
     return theta > 0.0 && theta < 1.0 && end_step_after(theta * flow().duration());
 }
 
-bool Execution::end_step_after(double duration) { return flow().retake(duration) == Obstacle::none; }
+bool Execution::end_step_after(double duration) { return flow().redo_step(duration) == StepFailure::none; }
 
 // Whether the gap closes cannot be told from theta on: the motion goes there, and ends in doubt. Always true.
 bool Execution::doubt_gap(double theta) {
-    const double remainder = flow().remainder(flow().watched());
-    if (end_step_at(theta)) take(surface_.at(flow().end()));
+    const double remainder = flow().remainder(flow().event_function());
+    if (end_step_at(theta)) accept_step(kinematics_.at(flow().end()));
     doubt_ = fmt::format(
         "the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot be told just "
         "after {}",
@@ -106,9 +107,9 @@ bool Execution::doubt_gap(double theta) {
 
 // The gap came down to zero within the remainder of the last step: where that ended. Always true.
 bool Execution::land_here() {
-    const auto landed = surface_.project(state_, true);
+    const auto landed = kinematics_.project(state_, true);
     if (!landed) {
-        leave_contact(t_, state_);
+        fail_projection(t_, state_);
     } else if (!(landed->hdot < 0.0)) {
         return doubt_gap(0.0);
     } else {
@@ -125,7 +126,7 @@ bool Execution::land_under() {
     while (under - above > 0x1p-50) {
         const double middle = 0.5 * (above + under);
         if (!end_step_after(middle * duration)) break;
-        (surface_.at(flow().end()).h > 0.0 ? above : under) = middle;
+        (kinematics_.at(flow().end()).h > 0.0 ? above : under) = middle;
     }
     if (!end_step_after(under * duration)) return doubt_gap(0.0);
     return end_flight();
@@ -136,8 +137,8 @@ bool Execution::land_under() {
 bool Execution::locate_impact(double theta) {
     double duration = theta * flow().duration();
     for (int round = 0; round < 8; ++round) {
-        if (const auto obstacle = flow().retake(duration); obstacle != Obstacle::none) {
-            leave(obstacle);
+        if (const auto failure = flow().redo_step(duration); failure != StepFailure::none) {
+            stop_at(failure);
             return true;
         }
         if (flow().is_expansion()) break;
@@ -157,9 +158,9 @@ bool Execution::locate_impact(double theta) {
 
 // The last step ends on the surface. Always true.
 bool Execution::end_flight() {
-    const auto landed = surface_.project(flow().moved_end(), true);
-    take(landed ? *landed : surface_.at(flow().end()));
-    if (!landed) leave_contact(t_, state_);
+    const auto landed = kinematics_.project(flow().edit_end(), true);
+    accept_step(landed ? *landed : kinematics_.at(flow().end()));
+    if (!landed) fail_projection(t_, state_);
     return true;
 }
 

@@ -33,38 +33,38 @@ void Flow::start(Motion motion, double t, const State& state, const Gap& gap, do
 // Shorter than half the resolution of time is no step.
 double Flow::least() const { return 1e-16 * std::max(1e-3, std::abs(t_)); }
 
-Obstacle Flow::step(double until) {
+StepFailure Flow::step(double until) {
     t_ = end_;
     span_ = 0.0;
     const double longest = until - t_;
     const State& start = end();
     if (moved_) stepper_->initialize(motion_, start, gap_);
     moved_ = false;
-    Obstacle obstacle = stepper_->do_step(longest, first_, least());
+    StepFailure failure = stepper_->do_step(longest, first_, least());
     first_ = 0.0;
-    if (edges_ && obstacle == Obstacle::none) {
+    if (edges_ && failure == StepFailure::none) {
         const double theta = edges_->safe_part(*stepper_);
-        if (theta < 1.0) obstacle = stepper_->redo_step(theta * stepper_->current_time(), least());
+        if (theta < 1.0) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
     }
-    if (obstacle != Obstacle::none) return obstacle;
+    if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
     // Neither short of it nor past it by a rounding: time never runs back.
     end_ = span_ == longest ? until : std::min(t_ + span_, until);
     fetched_ = false;
-    return obstacle;
+    return failure;
 }
 
-Obstacle Flow::retake(double duration) {
+StepFailure Flow::redo_step(double duration) {
     moved_ = false;
-    const Obstacle obstacle = stepper_->redo_step(duration, least());
-    if (obstacle != Obstacle::none) return obstacle;
+    const StepFailure failure = stepper_->redo_step(duration, least());
+    if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
     end_ = t_ + span_;
     fetched_ = false;
-    return obstacle;
+    return failure;
 }
 
-State& Flow::moved_end() {
+State& Flow::edit_end() {
     end();
     moved_ = true;
     return to_;
@@ -78,8 +78,8 @@ void Flow::move_gap(const Gap& gap) {
 void Flow::shift_end(double dt) {
     const bool flying = motion_ == Motion::flight;
     auto& program =
-        model_->made(acceleration_[flying ? 0 : 1], flying ? model_->flight() : model_->contact(), parameters_);
-    put(program, end());
+        model_->lazily(acceleration_[flying ? 0 : 1], flying ? model_->flight() : model_->contact(), parameters_);
+    set_state(program, end());
     program.run();
     for (Eigen::Index i = 0; i < to_.q.size(); ++i) {
         const double a = program.output(static_cast<std::size_t>(i));

@@ -22,13 +22,13 @@ class Flow {
     void fly(double t, const State& state, const Gap& gap, double first_step);
     void stay(double t, const State& state, double state_error);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
-    // domain inside a step the step is shortened, until it is too short to be a step: that is the obstacle. So it is
+    // domain inside a step the step is shortened, until it is too short to be a step: that is the failure. So it is
     // where one comes to an edge inside (model/edges.hpp).
-    Obstacle step(double until);
+    StepFailure step(double until);
     // Makes the last step again with this shorter duration, so that its end is as good as that of a step.
-    Obstacle retake(double duration);
+    StepFailure redo_step(double duration);
     // The end of the last step, to be moved (onto the surface, say); the next step starts from there.
-    State& moved_end();
+    State& edit_end();
     // In flight: the gap at the end of the last step, where the next one starts.
     void move_gap(const Gap& gap);
     // Moves the end of the last step along the motion by a time so short that a second-order Taylor step is exact.
@@ -44,11 +44,11 @@ class Flow {
         return to_;
     }
     // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
-    Polynomial watched() const { return stepper_->watched(); }
+    Polynomial event_function() const { return stepper_->event_function(); }
     bool stays_negative() const { return stepper_->stays_negative(); }
     bool is_expansion() const { return stepper_->is_expansion(); }
-    double remainder(const Polynomial& watched) const { return stepper_->remainder(watched); }
-    void add_error(const Polynomial& watched, Gap& end) const { stepper_->add_error(watched, end); }
+    double remainder(const Polynomial& event_function) const { return stepper_->remainder(event_function); }
+    void add_error(const Polynomial& event_function, Gap& end) const { stepper_->add_error(event_function, end); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.
     Piece piece(std::vector<double>& coefficients) const;
 

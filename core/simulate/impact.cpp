@@ -28,7 +28,7 @@ Interval rounded(double x, double relative) { return {x - relative * std::abs(x)
 
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
     Vector v = v_before;
-    move_along(v, (1.0 + e) * contact.hdot, contact.n);
+    move_along(v, (1.0 + e) * contact.hdot, contact.impulse_direction);
     return v;
 }
 
@@ -37,49 +37,49 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
 }
 
-Surface::Surface(const Model& model, const Run& run)
+ContactKinematics::ContactKinematics(const Model& model, const Run& run)
     : model_(&model),
       parameters_(run.parameters),
-      n_(static_cast<std::size_t>(model.n())),
+      dof_(static_cast<std::size_t>(model.dof())),
       surface_(model.evaluator(model.surface(), run.parameters)),
       gap_(model.evaluator<Interval>(model.gap(), run.parameters)) {}
 
-Contact Surface::at(const State& state) {
+Contact ContactKinematics::at(const State& state) {
     Contact contact;
     look(state, contact);
     return contact;
 }
 
-void Surface::look(const State& state, Contact& contact) {
-    put(surface_, state);
+void ContactKinematics::look(const State& state, Contact& contact) {
+    set_state(surface_, state);
     surface_.run();
     contact.h = surface_.output(0);
     contact.hdot = surface_.output(1);
-    contact.W = surface_.output(2 + 2 * n_);
-    const auto n = static_cast<Eigen::Index>(n_);
-    contact.n.resize(n);
+    contact.W = surface_.output(2 + 2 * dof_);
+    const auto n = static_cast<Eigen::Index>(dof_);
+    contact.impulse_direction.resize(n);
     contact.g.resize(n);
-    for (std::size_t i = 0; i < n_; ++i) {
-        contact.n.data()[i] = surface_.output(2 + i);
-        contact.g.data()[i] = surface_.output(2 + n_ + i);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        contact.impulse_direction.data()[i] = surface_.output(2 + i);
+        contact.g.data()[i] = surface_.output(2 + dof_ + i);
     }
 }
 
-double Surface::gap_error(const State& state) {
-    for (std::size_t i = 0; i < n_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
+double ContactKinematics::gap_error(const State& state) {
+    for (std::size_t i = 0; i < dof_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
     gap_.run();
     return rad(gap_.output(0));
 }
 
 // What the rounding of q alone does to h is a part of the bound and at hand.
-bool Surface::within_gap_error(double value, double times, const Contact& contact, const State& state) {
+bool ContactKinematics::within_gap_error(double value, double times, const Contact& contact, const State& state) {
     const double part = 0.5 * rounding_of_q(contact, state);  // half, for its own rounding
     return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
 }
 
-double Surface::hdot_error(const State& state) {
-    auto& enclosure = model_->made(surface_enclosure_, model_->surface(), parameters_);
-    put(enclosure, state);
+double ContactKinematics::hdot_error(const State& state) {
+    auto& enclosure = model_->lazily(surface_enclosure_, model_->surface(), parameters_);
+    set_state(enclosure, state);
     enclosure.run();
     return rad(enclosure.output(1));
 }
@@ -87,7 +87,7 @@ double Surface::hdot_error(const State& state) {
 // A gap may be known against zero far better than against the coordinates, as (2 + sin x) y is near y = 0: its rounding
 // is then that of the last correction. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
 // where dh vanishes on the surface it falls by a constant factor instead.
-std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
+std::optional<Contact> ContactKinematics::project(State& state, bool keep_velocity) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
     double before = std::numeric_limits<double>::infinity();
     std::optional<Contact> result(std::in_place);
@@ -102,41 +102,41 @@ std::optional<Contact> Surface::project(State& state, bool keep_velocity) {
         const bool near = round > 0 && (roundings <= 4.0 || std::abs(contact.h) <= 0x1p-40 * before);
         if (near || (!far && within_gap_error(contact.h, round < rounds ? 1.0 : 4.0, contact, state))) {
             if (!keep_velocity) {
-                move_along(state.v, contact.hdot, contact.n);
+                move_along(state.v, contact.hdot, contact.impulse_direction);
                 contact.hdot = 0.0;
             }
             return result;
         }
         if (round == rounds) break;
         before = std::abs(contact.h);
-        move_along(state.q, contact.h, contact.n);
+        move_along(state.q, contact.h, contact.impulse_direction);
     }
     result.reset();
     return result;
 }
 
-Surface::Normal Surface::normal(const State& state) {
+ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
     const Ground ground;
-    auto& enclosure = model_->made(release_enclosure_, model_->release(), parameters_);
-    for (std::size_t i = 0; i < n_; ++i) {
+    auto& enclosure = model_->lazily(release_enclosure_, model_->release(), parameters_);
+    for (std::size_t i = 0; i < dof_; ++i) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
-        enclosure.input(n_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
+        enclosure.input(dof_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
     }
     enclosure.run();
     return {enclosure.output(0), enclosure.output(1)};
 }
 
-double Surface::normal_acceleration(const State& state) {
-    auto& normal = model_->made(normal_, model_->normal(), parameters_);
-    put(normal, state);
+double ContactKinematics::normal_acceleration(const State& state) {
+    auto& normal = model_->lazily(normal_, model_->normal_acceleration(), parameters_);
+    set_state(normal, state);
     normal.run();
     return normal.output(0);
 }
 
-double Surface::jerk(const State& state) {
-    auto& release = model_->made(release_, model_->release(), parameters_);
-    put(release, state);
+double ContactKinematics::jerk(const State& state) {
+    auto& release = model_->lazily(release_, model_->release(), parameters_);
+    set_state(release, state);
     release.run();
     return release.output(1);
 }

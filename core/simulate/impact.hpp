@@ -12,8 +12,8 @@ namespace achilles {
 // The contact quantities at one state (theory.md 1).
 struct Contact {
     double h = 0.0, hdot = 0.0, W = 0.0;
-    Vector n;  // M^-1 g'/W, so that g n = 1: the direction of every impulse
-    Vector g;  // dh, as a column
+    Vector impulse_direction;  // n = M^-1 g'/W, so that g n = 1: the direction of every impulse
+    Vector g;                  // dh, as a column
 };
 
 // Newton's impact law: the normal velocity is reversed and scaled, the rest is kept.
@@ -24,9 +24,9 @@ Vector impact(const Contact& contact, const Vector& v_before, double e);
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);
 
 // Evaluates contact quantities for one run.
-class Surface {
+class ContactKinematics {
  public:
-    Surface(const Model& model, const Run& run);
+    ContactKinematics(const Model& model, const Run& run);
 
     Contact at(const State& state);
     // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
@@ -50,7 +50,7 @@ class Surface {
     void look(const State& state, Contact& contact);
     const Model* model_;
     std::vector<double> parameters_;
-    std::size_t n_;
+    std::size_t dof_;
     Evaluator<double> surface_;
     Evaluator<Interval> gap_;
     std::optional<Evaluator<double>> normal_, release_;

@@ -45,7 +45,7 @@ void Recorder::close(double t) {
 
 void Recorder::stretch(const State& state) {
     if (keep_ == Keep::end) return;
-    put(energy_, state);
+    set_state(energy_, state);
     energy_.run();
     reference_ = energy_.output(0);
     scale_ = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
@@ -63,7 +63,7 @@ void Recorder::step(const Flow& flow, double gap) {
     if (keep_ == Keep::end) return;
     Statistics& statistics = trajectory_.statistics;
     trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
-    put(energy_, flow.end());
+    set_state(energy_, flow.end());
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
     scale_ = std::max(scale_, std::abs(energy_.output(1)) + std::abs(energy_.output(2)));

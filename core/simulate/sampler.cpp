@@ -9,7 +9,7 @@ namespace achilles {
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
 struct Sampler::Projection {
     explicit Projection(const Trajectory& trajectory) : surface(*trajectory.model, trajectory.run) {}
-    Surface surface;
+    ContactKinematics surface;
 };
 
 Sampler::Sampler(const Trajectory& trajectory)

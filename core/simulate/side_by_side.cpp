@@ -90,10 +90,10 @@ void SideBySide::go_on(Member& member) {
         const bool plain = run.record_.steps() < run.run_.options.max_steps && run.stalled_ == 0 &&
                            until - run.t_ > 1e-15 * std::abs(run.t_);
         if (in_contact) {
-            if (plain && !run.hold_.asked_again) return staying_.push_back(&member);
+            if (plain && !run.constrained_start_.asked_again) return staying_.push_back(&member);
             run.completing() ? run.wait_for_zeno_point() : run.stay_until_release();
         } else {
-            const bool known = !run.at_impact_ && run.takeoff_.multiplicity <= 1 && !run.takeoff_.asked_again;
+            const bool known = !run.at_impact_ && run.flight_start_.multiplicity <= 1 && !run.flight_start_.asked_again;
             if (plain && known) return flying_.push_back(&member);
             run.fly_to_impact();
         }
@@ -163,10 +163,10 @@ void SideBySide::gather(bool flying) {
             step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = run.state_.v[i];
         }
         step_.t[lane] = run.t_;
-        step_.state_error[lane] = flying ? run.takeoff_.gap.state_error : run.state_error();
+        step_.state_error[lane] = flying ? run.flight_start_.gap.state_error : run.state_error();
         step_.until[lane] = flying ? run.run_.options.end_time : run.contact_until();
         if (!flying) continue;
-        const auto& [gap, multiplicity, asked_again] = run.takeoff_;
+        const auto& [gap, multiplicity, asked_again] = run.flight_start_;
         step_.h[lane] = gap.h;
         step_.hdot[lane] = gap.hdot;
         step_.error[lane] = gap.error;
@@ -180,11 +180,11 @@ Contact SideBySide::contact_of(std::size_t lane) const {
     contact.h = step_.end_h[lane];
     contact.hdot = step_.end_hdot[lane];
     contact.W = step_.end_W[lane];
-    const auto n = static_cast<Eigen::Index>(step_.n.size());
-    contact.n.resize(n);
+    const auto n = static_cast<Eigen::Index>(step_.impulse_direction.size());
+    contact.impulse_direction.resize(n);
     contact.g.resize(n);
-    for (std::size_t i = 0; i < step_.n.size(); ++i) {
-        contact.n.data()[i] = step_.n[i][lane];
+    for (std::size_t i = 0; i < step_.impulse_direction.size(); ++i) {
+        contact.impulse_direction.data()[i] = step_.impulse_direction[i][lane];
         contact.g.data()[i] = step_.g[i][lane];
     }
     return contact;
@@ -206,7 +206,7 @@ void SideBySide::move(Execution& run, std::size_t lane, long steps, double least
         run.state_.v[i] = step_.q_and_v[static_cast<std::size_t>(n + i)][lane];
     }
     run.record_.steps(steps, least_gap);
-    run.pass(step_.duration[lane], step_.t[lane]);
+    run.advance_clock(step_.duration[lane], step_.t[lane]);
     run.other_evaluations_ += steps;
 }
 
@@ -220,11 +220,11 @@ void SideBySide::after_flight(Execution& run, std::size_t lane) {
         Gap gap{step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
         const double off = step_.end_h[lane] - gap.h;
         if (std::abs(off) > 2.0 * step_.rounding[lane] &&
-            !run.surface_.within_gap_error(off, 4.0, contact_of(lane), run.state_)) {
+            !run.kinematics_.within_gap_error(off, 4.0, contact_of(lane), run.state_)) {
             gap.h = step_.end_h[lane];
             gap.hdot = step_.end_hdot[lane];
         }
-        run.takeoff_ = {gap, 0};
+        run.flight_start_ = {gap, 0};
     } else {
         run.fly_to_impact();
     }
@@ -237,7 +237,7 @@ void SideBySide::after_contact(Execution& run, std::size_t lane) {
     if (plain) return;
     if (run.completing()) return run.wait_for_zeno_point();
     run.flow_.stay(run.t_, run.state_, run.state_error());
-    const bool vanished = run.stay_step(run.run_.options.end_time);
+    const bool vanished = run.constrained_step(run.run_.options.end_time);
     run.settle();
     if (vanished) run.release();
 }

@@ -17,7 +17,7 @@ namespace achilles {
 enum class Motion { flight, contact };
 
 // Why a step could not be made.
-enum class Obstacle { none, left_the_domain, not_a_number, step_too_small };
+enum class StepFailure { none, left_the_domain, not_a_number, step_too_small };
 
 // The gap and its rate.
 struct Gap {
@@ -38,9 +38,9 @@ class Stepper {
     virtual void initialize(Motion motion, const State& state, const Gap& gap) = 0;
     // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
     // to be sensible after an impact. `least` is the shortest that time can resolve.
-    virtual Obstacle do_step(double longest, double first, double least) = 0;
+    virtual StepFailure do_step(double longest, double first, double least) = 0;
     // The last step again, from the same state, with this duration.
-    virtual Obstacle redo_step(double duration, double least) = 0;
+    virtual StepFailure redo_step(double duration, double least) = 0;
 
     // The last step: [0, current_time], and what is reached there.
     virtual double current_time() const = 0;
@@ -48,17 +48,17 @@ class Stepper {
 
     // Along the last step, polynomials in theta = t/current_time: what is watched, and (q, v) as blocks of ascending
     // powers, appended to `coefficients`; their degree is returned.
-    virtual Polynomial watched() const = 0;
+    virtual Polynomial event_function() const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
-    // Whether watched() is known to stay below zero along the last step, by more than its remainder. False says
+    // Whether event_function() is known to stay below zero along the last step, by more than its remainder. False says
     // nothing.
     virtual bool stays_negative() const { return false; }
-    // Bound, as good as the method knows one, on how far watched() is from the motion that starts at the same state.
-    virtual double remainder(const Polynomial& watched) const = 0;
+    // Bound, as good as the method knows one, on how far event_function() is from the motion that starts at the same state.
+    virtual double remainder(const Polynomial& event_function) const = 0;
     // Adds to the gap at the end of the last step what later steps must take it to be wrong by.
-    virtual void add_error(const Polynomial& watched, Gap& end) const = 0;
-    // True if a step is an expansion about its start: any part of it is as good as the whole, watched() is that of the
-    // state's own value, and no first guess is needed. False if it is integrated to its end: watched() then drifts from
+    virtual void add_error(const Polynomial& event_function, Gap& end) const = 0;
+    // True if a step is an expansion about its start: any part of it is as good as the whole, event_function() is that of the
+    // state's own value, and no first guess is needed. False if it is integrated to its end: event_function() then drifts from
     // its value at (q, v) within the tolerance, and between the ends it is interpolated.
     virtual bool is_expansion() const = 0;
 

@@ -55,8 +55,8 @@ Sizes sizes_of(const Polynomial& p) {
 }  // namespace
 
 Taylor::Taylor(const Model& model, const Run& run)
-    : n_(static_cast<std::size_t>(model.n())),
-      width_(2 * n_ + 1),
+    : dof_(static_cast<std::size_t>(model.dof())),
+      width_(2 * dof_ + 1),
       tolerance_(std::max(run.options.tolerance, 0x1p-53)),
       flight_(model.flight_series(), run.parameters),
       contact_(model.contact_series(), run.parameters),
@@ -74,7 +74,7 @@ void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
 
 // Where h_0 + h_1 t + h_2 t^2 comes down to zero, or `longest`: after a release, say, all three are nothing.
 double Taylor::parabola_root(double longest) const {
-    const double h0 = std::max(gap_.h, 0.0), h1 = gap_.hdot, h2 = row(2)[2 * n_];
+    const double h0 = std::max(gap_.h, 0.0), h1 = gap_.hdot, h2 = row(2)[2 * dof_];
     if (!(h2 < 0.0) || (h0 == 0.0 && h1 <= 0.0)) return longest;
     const double root = std::sqrt(h1 * h1 - 4.0 * h0 * h2);
     return std::min(longest, h1 > 0.0 ? (h1 + root) / (-2.0 * h2) : 2.0 * h0 / (root - h1));
@@ -103,45 +103,45 @@ Taylor::Magnitude Taylor::magnitude(const double* c) const {
 }
 
 // Where order_ is not finite: back to the last order before the first that is not.
-Obstacle Taylor::leave_out_infinite() {
+StepFailure Taylor::leave_out_infinite() {
     int finite = 0;
     while (finite + 1 < order_ && magnitude(row(finite + 1)).m < std::numeric_limits<double>::infinity()) ++finite;
     order_ = finite;
     power_ = std::pow(target_, order_);
     reached_ = false;
-    return order_ >= lowest ? Obstacle::none : Obstacle::left_the_domain;
+    return order_ >= lowest ? StepFailure::none : StepFailure::left_the_domain;
 }
 
 // The series at the state where the stepper stands, to the order that is needed.
-Obstacle Taylor::expand(double longest) {
+StepFailure Taylor::expand(double longest) {
     ++evaluations_;
     const bool flying = motion_ == Motion::flight;
     SeriesEvaluator& series = flying ? flight_ : contact_;
-    const std::size_t w = 2 * n_;
+    const std::size_t w = 2 * dof_;
     current_state();
     double* const c = row(0);
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         c[i] = to_.q[static_cast<Eigen::Index>(i)];
-        c[n_ + i] = to_.v[static_cast<Eigen::Index>(i)];
+        c[dof_ + i] = to_.v[static_cast<Eigen::Index>(i)];
     }
     for (std::size_t i = 0; i < w; ++i) {
-        if (!(std::abs(c[i]) < largest_state)) return Obstacle::not_a_number;
+        if (!(std::abs(c[i]) < largest_state)) return StepFailure::not_a_number;
         units_[i] = 1.0 / (tolerance_ * (1.0 + std::abs(c[i])));
     }
     series.begin(c);
-    for (std::size_t i = 0; i < n_; ++i)
-        if (!(series.start(n_ + 1 + i) > 0.0)) return Obstacle::left_the_domain;
-    c[w] = flying ? gap_.h : series.start(n_);
+    for (std::size_t i = 0; i < dof_; ++i)
+        if (!(series.start(dof_ + 1 + i) > 0.0)) return StepFailure::left_the_domain;
+    c[w] = flying ? gap_.h : series.start(dof_);
     units_[w] = 1.0 / (tolerance_ * (1.0 + std::abs(c[w])));
 
     // Order 1: q' = v, v' = f; what is watched in flight moves at the gap's rate.
     double* const first = row(1);
-    for (std::size_t i = 0; i < n_; ++i) {
-        first[i] = c[n_ + i];
-        first[n_ + i] = series.start(i);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        first[i] = c[dof_ + i];
+        first[dof_ + i] = series.start(i);
     }
     series.extend(1, first);
-    first[w] = flying ? gap_.hdot : series.output(n_);
+    first[w] = flying ? gap_.hdot : series.output(dof_);
 
     return extend(series, longest);
 }
@@ -150,18 +150,18 @@ Obstacle Taylor::expand(double longest) {
 // `lowest` is the last, so these are not looked at.
 void Taylor::extend_flight(SeriesMotion& motion, double longest) {
     constexpr double never_small = 1e300;
-    motion.largest = row(1) + n_;
+    motion.largest = row(1) + dof_;
     motion.power = never_small;
     order_ = flight_.extend(motion, 2, lowest - 1);
     target_ = std::min(longest, 1.05 * parabola_root(longest));
     power_ = target_;
     for (int k = 1; k < order_; ++k) power_ *= target_;
     const double height = std::abs(gap_.h) + std::abs(gap_.hdot) * target_;
-    if (height > 0.0 && height < 1.0) units_[2 * n_] = 1.0 / (tolerance_ * height);
+    if (height > 0.0 && height < 1.0) units_[2 * dof_] = 1.0 / (tolerance_ * height);
 }
 
 // Orders from 2 on, until two in a row are small, or as many as pay.
-Obstacle Taylor::extend(SeriesEvaluator& series, double longest) {
+StepFailure Taylor::extend(SeriesEvaluator& series, double longest) {
     const int most = motion_ == Motion::flight ? flight_order_ : contact_order_;
     SeriesMotion motion;
     motion.row = row(1);
@@ -174,7 +174,7 @@ Obstacle Taylor::extend(SeriesEvaluator& series, double longest) {
         const bool now = m * power_ <= 1.0;
         reached_ = small && now;
         if (order_ >= most || (order_ >= lowest && reached_ && (m > 0.0 || three_before_vanish())))
-            return Obstacle::none;
+            return StepFailure::none;
         // One large component is enough to go on, if it is not the end.
         const int before = order_;
         motion.largest = row(order_) + largest;
@@ -225,7 +225,7 @@ void Taylor::evaluate(double duration) {
     using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
     const double square = duration * duration;
     std::array<double, 2 * max_coordinates> reached;
-    for (std::size_t i = 0; i < 2 * n_; i += 2) {
+    for (std::size_t i = 0; i < 2 * dof_; i += 2) {
         const auto of_order = [&](int k) {
             Pair pair;
             std::memcpy(&pair, row(k) + i, sizeof pair);
@@ -241,18 +241,18 @@ void Taylor::evaluate(double duration) {
         const Pair both = even + duration * odd;
         std::memcpy(reached.data() + i, &both, sizeof both);
     }
-    std::copy_n(reached.data(), n_, to_.q.data());
-    std::copy_n(reached.data() + n_, n_, to_.v.data());
+    std::copy_n(reached.data(), dof_, to_.q.data());
+    std::copy_n(reached.data() + dof_, dof_, to_.v.data());
 }
 
-Obstacle Taylor::do_step(double longest, double, double least) {
-    if (const Obstacle obstacle = expand(longest); obstacle != Obstacle::none) return obstacle;
+StepFailure Taylor::do_step(double longest, double, double least) {
+    if (const StepFailure failure = expand(longest); failure != StepFailure::none) return failure;
     const double step = std::min(longest, natural_step());
-    if (!(step > least)) return Obstacle::step_too_small;
+    if (!(step > least)) return StepFailure::step_too_small;
     span_ = step > longest_near ? within_numbers(step) : step;
-    if (span_ == 0.0) return Obstacle::not_a_number;
+    if (span_ == 0.0) return StepFailure::not_a_number;
     evaluated_ = false;
-    return Obstacle::none;
+    return StepFailure::none;
 }
 
 // An end that nobody asks for, since the step is made again, is not evaluated.
@@ -273,9 +273,9 @@ void Taylor::evaluate_far(double duration) {
         for (int k = order_; k >= 0; --k) value += far_term(k, component, duration);
         return value;
     };
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         to_.q.data()[i] = sum(i);
-        to_.v.data()[i] = sum(n_ + i);
+        to_.v.data()[i] = sum(dof_ + i);
     }
 }
 
@@ -294,16 +294,16 @@ double Taylor::within_numbers(double step) {
     return step;
 }
 
-Obstacle Taylor::redo_step(double duration, double least) {
-    if (!(duration > least)) return Obstacle::step_too_small;
+StepFailure Taylor::redo_step(double duration, double least) {
+    if (!(duration > least)) return StepFailure::step_too_small;
     evaluate(duration);
-    return Obstacle::none;
+    return StepFailure::none;
 }
 
-Polynomial Taylor::watched() const {
+Polynomial Taylor::event_function() const {
     Polynomial p;
     p.degree = order_;
-    const std::size_t w = 2 * n_;
+    const std::size_t w = 2 * dof_;
     if (span_ > longest_near) {
         for (int k = 0; k <= order_; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, w, span_);
         return p;
@@ -318,7 +318,7 @@ Polynomial Taylor::watched() const {
 }
 
 std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
-    const std::size_t block = 2 * n_;
+    const std::size_t block = 2 * dof_;
     int degree = order_;
     while (degree > 1 && std::all_of(row(degree), row(degree) + block, [](double x) { return x == 0.0; })) --degree;
     const std::size_t first = coefficients.size();
@@ -335,12 +335,12 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
 // than the last two together, with the rounding of all, and about the tolerance, which is in units of the flight's
 // height. A dip within that, and within what the steps before have made, can be neither claimed nor denied.
 double Taylor::own_remainder(double size, double last_terms) const {
-    return std::max(last_terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * n_]);
+    return std::max(last_terms + 4.0 * 0x1p-53 * size, 2.0 / units_[2 * dof_]);
 }
 
 // How fast the error of the state moves what is watched: the gap's rate, or hddot itself.
 double Taylor::drifting() const {
-    const std::size_t w = 2 * n_;
+    const std::size_t w = 2 * dof_;
     const double size = motion_ == Motion::flight ? 2.0 * std::abs(row(2)[w]) + 6.0 * std::abs(row(3)[w])
                                                   : std::abs(row(0)[w]) + std::abs(row(1)[w]);
     return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
@@ -371,7 +371,7 @@ void Taylor::add_error(const Polynomial& p, Gap& end) const {
 
 // By Abel's sums, as first_descent() would find, without the polynomial.
 bool Taylor::stays_negative() const {
-    const double* c = row(0) + 2 * n_;
+    const double* c = row(0) + 2 * dof_;
     double term = *c, before = 0.0, sum = term, highest_sum = term, size = std::abs(term), power = 1.0;
     for (int k = 1; k <= order_; ++k) {
         c += width_;

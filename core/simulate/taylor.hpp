@@ -18,11 +18,11 @@ class Taylor : public Stepper {
     Taylor(const Model& model, const Run& run);
 
     void initialize(Motion motion, const State& state, const Gap& gap) override;
-    Obstacle do_step(double longest, double first, double least) override;
-    Obstacle redo_step(double duration, double least) override;
+    StepFailure do_step(double longest, double first, double least) override;
+    StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override;
-    Polynomial watched() const override;
+    Polynomial event_function() const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     bool stays_negative() const override;
     double remainder(const Polynomial& p) const override;
@@ -33,9 +33,9 @@ class Taylor : public Stepper {
  private:
     double* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width_; }
     const double* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width_; }
-    Obstacle expand(double longest);
+    StepFailure expand(double longest);
     void extend_flight(SeriesMotion& motion, double longest);
-    Obstacle extend(SeriesEvaluator& series, double longest);
+    StepFailure extend(SeriesEvaluator& series, double longest);
     bool three_before_vanish() const;
     double parabola_root(double longest) const;
     struct Magnitude {
@@ -44,7 +44,7 @@ class Taylor : public Stepper {
     };
     double size(const double* c) const;
     Magnitude magnitude(const double* c) const;
-    Obstacle leave_out_infinite();
+    StepFailure leave_out_infinite();
     double natural_step();
     double far_term(int k, std::size_t component, double t) const;
     void evaluate_far(double duration);
@@ -54,7 +54,7 @@ class Taylor : public Stepper {
     double earlier_error() const;
     double own_remainder(double size, double last_terms) const;
 
-    std::size_t n_, width_;  // width: q, v, what is watched
+    std::size_t dof_, width_;  // width: q, v, what is watched
     double tolerance_;
     SeriesEvaluator flight_, contact_;
     int flight_order_, contact_order_;

@@ -158,21 +158,21 @@ Still Animation::at(double t) {
     const auto width = static_cast<float>(size_.width), height = static_cast<float>(size_.height);
     const auto text = static_cast<float>(std::round(still_title_size * scale));
     still.heading.emplace_back(Fill{{0.0F, 0.0F, width, height}, theme.background});
-    still.heading.emplace_back(Words{text, 0.5F * text, 0.0F, description.title, theme.ink, text});
+    still.heading.emplace_back(TextRun{text, 0.5F * text, 0.0F, description.title, theme.ink, text});
     const std::string clock = fmt::format("{} = {:.{}f}", typeset("t"), t, decimals_);
     still.heading.emplace_back(
-        Words{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
+        TextRun{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
     // Left of the longest clock.
     const float room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
     still.heading.emplace_back(
-        Words{width - text - room, 0.5F * text, 1.0F, legend_text(now.phase), phase_color(theme, now.phase), text});
+        TextRun{width - text - room, 0.5F * text, 1.0F, legend_text(now.phase), phase_color(theme, now.phase), text});
     return still;
 }
 
 std::string to_text(const Still& still) {
     std::string text;
     for (const auto& item : still.heading)
-        if (const auto* words = std::get_if<Words>(&item)) text += words->label + "\n";
+        if (const auto* words = std::get_if<TextRun>(&item)) text += words->label + "\n";
     for (const Shape& shape : still.world.shapes) {
         if (shape.points.empty()) continue;
         const Point& last = shape.points.back();

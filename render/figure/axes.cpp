@@ -106,7 +106,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     for (const Placed& p : ticks_x(panel, plot, m)) {
         bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
         if (p.labelled && panel.x.labelled)
-            sheet.emplace_back(Words{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
+            sheet.emplace_back(TextRun{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
     }
     if (panel.x.label.empty() || !panel.x.labelled) return;
     const float size = fitting(panel.x.label, m, plot.width + room.left + room.right);
@@ -115,7 +115,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
     const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
     sheet.emplace_back(
-        Words{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, panel.x.label, style.ink, size});
+        TextRun{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, panel.x.label, style.ink, size});
 }
 
 void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
@@ -126,8 +126,8 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
         bar(sheet, left - length, p.at, length, m.line, style.ink);
         // Digits have no descenders: their middle is a little above the middle of the line.
         if (p.labelled && panel.y.labelled)
-            sheet.emplace_back(Words{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F, p.tick->label,
-                                     style.ink, m.text});
+            sheet.emplace_back(TextRun{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F,
+                                       p.tick->label, style.ink, m.text});
     }
     if (panel.y.label.empty() || !panel.y.labelled) return;
     const float size = fitting(panel.y.label, m, plot.height + room.top);
@@ -136,7 +136,7 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     const bool above = panel.x.label.empty() || !panel.x.labelled;
     const float lowest = plot.y + plot.height + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
     const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
-    sheet.emplace_back(Words{plot.x - room.left, at, 0.5F, panel.y.label, style.ink, size, true});
+    sheet.emplace_back(TextRun{plot.x - room.left, at, 0.5F, panel.y.label, style.ink, size, true});
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     if (panel.title.empty()) return;
     const float size = fitting(panel.title, m, plot.width + room.right);
     sheet.emplace_back(
-        Words{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, panel.title, style.ink, size});
+        TextRun{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, panel.title, style.ink, size});
 }
 
 }  // namespace achilles

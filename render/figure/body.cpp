@@ -97,8 +97,8 @@ Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
     if (!sample.contact) return Q;
     auto force = model.evaluator(model.force(), trajectory.run.parameters);
     auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
-    put(force, sample.state);
-    put(surface, sample.state);
+    set_state(force, sample.state);
+    set_state(surface, sample.state);
     force.run();
     surface.run();
     for (Eigen::Index i = 0; i < n; ++i) Q[i] = force.output(0) * surface.output(static_cast<std::size_t>(2 + n + i));

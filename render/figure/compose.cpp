@@ -24,7 +24,7 @@ class Values {
           quantities_(view.quantities()),
           layout_(trajectory.model->layout()) {}
     void set(const Sample& sample) {
-        put(evaluator_, sample.state);
+        set_state(evaluator_, sample.state);
         evaluator_.input(layout_.t()) = sample.t;
         evaluator_.input(layout_.contact()) = sample.contact ? 1.0 : 0.0;
         evaluator_.run();

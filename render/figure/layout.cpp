@@ -133,7 +133,7 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
         const float y = box.y + pad * zoom + (static_cast<float>(i) + 0.5F) * row;
         lay_sign(keys[i], sheet, box.x + pad * zoom, std::round(y), sample, m);
         sheet.emplace_back(
-            Words{box.x + 2.0F * pad * zoom + sample, y - text / 2.0F, 0.0F, keys[i].label, style.ink, text});
+            TextRun{box.x + 2.0F * pad * zoom + sample, y - text / 2.0F, 0.0F, keys[i].label, style.ink, text});
     }
 }
 
@@ -159,8 +159,8 @@ struct KeyLines {
             float at = std::round(x - anchor * line.length);
             for (std::size_t i = 0; i < line.count; ++i, ++next) {
                 lay_sign(keys[next], sheet, at, std::round(y + row(m) / 2.0F), sign(keys[next], m), m);
-                sheet.emplace_back(Words{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F,
-                                         keys[next].label, style.ink, m.text});
+                sheet.emplace_back(TextRun{at + sample(keys[next], m), y + (row(m) - m.text) / 2.0F, 0.0F,
+                                           keys[next].label, style.ink, m.text});
                 at += sample(keys[next], m) + m.width(keys[next].label, m.text) + between(m);
             }
             y += row(m);

@@ -47,9 +47,9 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     Lens lens;
     lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
     auto flight = model.evaluator(model.flight(), trajectory.run.parameters);
-    put(flight, State{zeno.q, zeno.v_after});
+    set_state(flight, State{zeno.q, zeno.v_after});
     flight.run();
-    const double a = -flight.output(static_cast<std::size_t>(model.n()));
+    const double a = -flight.output(static_cast<std::size_t>(model.dof()));
     if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;
     lens.spacing_ = -std::log10(lens.e_);
     lens.height_ = lens.e_ * lens.e_ / (2.0 * a);
@@ -69,7 +69,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
             const double u = share(k), t = impact.t + u * length;
             double h = cubic_gap(u, length, lens.e_ * w, down);
             if (length > 1e-3 && k > 0 && k < points_a_flight) {
-                put(gap, sampler.at(t).state);
+                set_state(gap, sampler.at(t).state);
                 gap.run();
                 h = gap.output(0);
             }

@@ -118,7 +118,7 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
 }
 
 Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, const State& state) const {
-    put(run, state);
+    set_state(run, state);
     run.run();
     const DrawingDescription& d = item.description;
     Placed placed;
@@ -180,7 +180,7 @@ std::vector<Point> Mechanism::zero_line(std::span<const double> parameters, cons
 
 Grip::Hold Grip::at(const State& state) {
     if (!run_) return {{state.q[0], state.q[1]}, 0.0};
-    put(*run_, state);
+    set_state(*run_, state);
     run_->run();
     return {{run_->output(first_), run_->output(first_ + 1)}, disc_ ? run_->output(2) : 0.0};
 }

@@ -36,7 +36,7 @@ struct Mark {
     double size = 6.0, edge_width = 1.0;
 };
 
-struct Words {
+struct TextRun {
     float x = 0, y = 0;  // the top of the line where `anchor` of its length is behind: 0 its start, 0.5 its middle
     float anchor = 0;
     std::string label;
@@ -45,6 +45,6 @@ struct Words {
     bool upwards = false;  // turned by 90 degrees to the left; x is then the top of the letters
 };
 
-using Sheet = std::vector<std::variant<Fill, Path, Mark, Words>>;
+using Sheet = std::vector<std::variant<Fill, Path, Mark, TextRun>>;
 
 }  // namespace achilles

@@ -27,7 +27,7 @@ class Brush {
         list_->PopClipRect();
     }
     void operator()(const Mark& mark) const { paint_marker(list_, mark); }
-    void operator()(const Words& words) const {
+    void operator()(const TextRun& words) const {
         const float before = words.anchor == 0.0F ? 0.0F : words.anchor * label_width(words.label, words.size);
         paint_label(list_, words.x - (words.upwards ? 0.0F : before), words.y + (words.upwards ? before : 0.0F),
                     words.label, words.color, words.size, words.upwards ? 90 : 0);

@@ -87,7 +87,7 @@ class Writer {
         body_ += "Z\"" + look + "/>\n";
     }
 
-    void operator()(const Words& words) {
+    void operator()(const TextRun& words) {
         const std::vector<Letter> line = letters(words.label);
         if (line.empty()) return;
         const double em = font_.em() * double{words.size}, base = font_.base() * double{words.size};

@@ -13,7 +13,7 @@ inline SystemDescription system(const std::string& name) {
     return read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml");
 }
 
-inline Library library() {
+inline SystemSource library() {
     return {[](const std::string& name) -> std::filesystem::path {
                 if (name.find('/') != std::string::npos) return name;
                 return ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml";

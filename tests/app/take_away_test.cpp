@@ -121,7 +121,7 @@ TEST(CopyCommand, quotes_for_a_shell_and_names_files_anywhere) {
     const test::Folder folder;
     folder.put("it's mine.toml", test::content(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_floor.toml"));
     const std::string path = (folder.path() / "it's mine.toml").string();
-    Library library = test::library();
+    SystemSource library = test::library();
     library.find = [](const std::string& name) { return name; };
     Session session(path, read_system(path), library);
     session.apply(command::Copy{"run"});

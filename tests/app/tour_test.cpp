@@ -108,7 +108,7 @@ TEST(Tour, a_journal_in_a_journal_comes_first) {
 
 // Offscreen a session replays by itself, what the journals replay too, and one that names itself comes to an end.
 TEST(Tour, sessions_replay_journals) {
-    Library library = test::library();
+    SystemSource library = test::library();
     library.journal = [](const std::string& name) -> std::string {
         if (name == "inner") return "set e 0.25\n";
         if (name == "outer") return "replay inner\nseek 2\n";

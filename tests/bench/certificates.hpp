@@ -29,7 +29,7 @@ inline std::vector<Collision> collisions(const Trajectory& trajectory) {
 // Asks as a run does.
 inline void ask(TruncationConditions& conditions, const std::vector<Collision>& collisions) {
     for (const Collision& collision : collisions)
-        if (!conditions.hopeless(collision)) conditions.hold(collision);
+        if (!conditions.fails_at_point(collision)) conditions.certify(collision);
 }
 
 // Asks as the run did, with conditions built anew. Nothing else is in it, and what it reads is in the cache, so it is

@@ -44,7 +44,7 @@ void read_events(const Trajectory& trajectory, Course& course) {
 }
 
 bool ends_on_the_surface(const Trajectory& trajectory) {
-    const Contact contact = Surface(*trajectory.model, trajectory.run).at(trajectory.end);
+    const Contact contact = ContactKinematics(*trajectory.model, trajectory.run).at(trajectory.end);
     return std::abs(contact.h) < 1e-12 && std::abs(contact.hdot) < 1e-12;
 }
 

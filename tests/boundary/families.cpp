@@ -150,7 +150,7 @@ Question Boundaries::question(const Chart& chart) const {
     State state{result.run.q, result.run.v};
     state.q << chart[0], 0.0;
     state.v << chart[2], 0.0;
-    const Contact contact = Surface(*model_, result.run).at(state);
+    const Contact contact = ContactKinematics(*model_, result.run).at(state);
     result.run.q << chart[0], chart[1] - contact.h;
     result.run.v << chart[2], in_contact_ ? -contact.hdot : chart[3];
     return result;

@@ -53,7 +53,7 @@ Real distance(const Reals& a, const Reals& b) {
 }
 
 TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step)
-    : n_(static_cast<std::size_t>(model.n())),
+    : dof_(static_cast<std::size_t>(model.dof())),
       longest_step_(longest_step),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)),
       flight_(model.flight(), model.layout(), run.parameters),
@@ -64,28 +64,28 @@ TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step)
       acceleration_(model.evaluator<Real>(model.contact(), run.parameters)) {}
 
 TrueMotion::Contact TrueMotion::contact(const Point& point) {
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         surface_.input(i) = point.q[i];
-        surface_.input(n_ + i) = point.v[i];
+        surface_.input(dof_ + i) = point.v[i];
     }
     surface_.run();
     Contact result{surface_.output(0), surface_.output(1), {}, {}};
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         result.n.push_back(surface_.output(2 + i));
-        result.g.push_back(surface_.output(2 + n_ + i));
+        result.g.push_back(surface_.output(2 + dof_ + i));
     }
     return result;
 }
 
 Point TrueMotion::collision(const State& before) {
     Point point;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         point.q.emplace_back(before.q[static_cast<Eigen::Index>(i)]);
         point.v.emplace_back(before.v[static_cast<Eigen::Index>(i)]);
     }
     for (int round = 0; round < 4; ++round) {  // Newton from 1e-16: two rounds would do
         const Contact c = contact(point);
-        for (std::size_t i = 0; i < n_; ++i) point.q[i] -= c.h * c.n[i];
+        for (std::size_t i = 0; i < dof_; ++i) point.q[i] -= c.h * c.n[i];
     }
     return point;
 }
@@ -95,7 +95,7 @@ Point TrueMotion::restart(const Point& collision, Reinitialization kind) {
     Real g2 = 0;
     for (const Real& entry : c.g) g2 += entry * entry;
     Point result = collision;
-    for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t i = 0; i < dof_; ++i)
         result.v[i] -= c.hdot * (kind == Reinitialization::kinetic ? c.n[i] : Real(c.g[i] / g2));
     return result;
 }
@@ -107,13 +107,13 @@ TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Poi
     int negligible = 0;
     double power = 1.0;
     for (std::size_t k = 0; k < max_order && negligible < 2; ++k) {
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             motion.set(i, k, path[k].q[i]);
-            motion.set(n_ + i, k, path[k].v[i]);
+            motion.set(dof_ + i, k, path[k].v[i]);
         }
         motion.run(k);
         Point next;
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             next.q.push_back(path[k].v[i] / (k + 1));
             next.v.push_back(motion.output(i, k) / (k + 1));
         }
@@ -132,9 +132,9 @@ Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, st
     int negligible = 0;
     double power = 1.0;
     for (std::size_t k = 0; k <= max_order && (negligible < 2 || k < path.size()); ++k) {
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             program.set(i, k, k < path.size() ? path[k].q[i] : Real(0));
-            program.set(n_ + i, k, k < path.size() ? path[k].v[i] : Real(0));
+            program.set(dof_ + i, k, k < path.size() ? path[k].v[i] : Real(0));
         }
         program.run(k);
         result.push_back(program.output(output, k));
@@ -191,23 +191,23 @@ bool TrueMotion::stay_to_dip(Flight& contact, const Real& longest, double tolera
 }
 
 Real TrueMotion::normal_acceleration(const Point& point) {
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         acceleration_.input(i) = point.q[i];
-        acceleration_.input(n_ + i) = point.v[i];
+        acceleration_.input(dof_ + i) = point.v[i];
     }
     acceleration_.run();
-    return acceleration_.output(n_);
+    return acceleration_.output(dof_);
 }
 
 Real TrueMotion::jerk(const Point& point) {
     normal_acceleration(point);
-    return acceleration_.output(2 * n_ + 1);
+    return acceleration_.output(2 * dof_ + 1);
 }
 
 Point TrueMotion::drift(const Point& slid, const Real& time) {
     normal_acceleration(slid);
     Point result = slid;
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         result.q[i] += slid.v[i] * time;
         result.v[i] += acceleration_.output(i) * time;
     }
@@ -229,7 +229,7 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
             result.time += rest;
             return result;
         }
-        for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * c.n[i];
+        for (std::size_t i = 0; i < dof_; ++i) point.v[i] += (1 + e_) * w * c.n[i];
         const double expected = 2.2 * static_cast<double>(e_ * w / a), speed = static_cast<double>(w);
         result.velocities.push_back(point.v);
         Flight flight{point, result.time, 1};

@@ -95,7 +95,7 @@ class TrueMotion {
     bool move(Flight& flight, Until until, const Real& longest, double expected, double tolerance);
     std::vector<Point> follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance);
 
-    std::size_t n_;
+    std::size_t dof_;
     double longest_step_;
     Real e_;
     Evaluator<Series> flight_, contact_motion_, gap_, release_;

@@ -22,47 +22,47 @@ double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n
 }  // namespace
 
 Definition7::Definition7(const Model& model, const Run& run)
-    : n_(static_cast<std::size_t>(model.n())),
+    : dof_(static_cast<std::size_t>(model.dof())),
       kinetic_(run.options.truncation.reinitialization == Reinitialization::kinetic),
       e_(model.evaluator(model.restitution(), run.parameters).output(0)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
-      box_(model.evaluator<Interval>(model.bounds(), run.parameters)),
-      point_(model.evaluator(model.bounds(), run.parameters)),
+      box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
+      point_(model.evaluator(model.definition7_terms(), run.parameters)),
       surface_(model.evaluator(model.surface(), run.parameters)) {}
 
 Definition7::Factors Definition7::factors(const Collision& collision, const Maxima& m) {
-    put(surface_, collision.before);
+    set_state(surface_, collision.before);
     surface_.run();
     const double e1 = e_ * m.a_max / m.a_min, e2 = e_ * std::sqrt(m.a_max / m.a_min);
     const double time = 2 * e_ / (m.a_min * (1 - e1));
     const double velocity = kinetic_ ? (e_ + e2) * m.eta / (1 - e2) + m.zeta * time
-                                     : (1 + e_) * m.eta / (1 - e2) + m.zeta * time + 1 / norm(surface_, 2 + n_, n_);
+                                     : (1 + e_) * m.eta / (1 - e2) + m.zeta * time + 1 / norm(surface_, 2 + dof_, dof_);
     return {time, m.beta * time, velocity};
 }
 
 std::optional<Definition7::Factors> Definition7::over(const Collision& collision, double eps_q, double eps_v) {
     std::vector<Interval> box;
     for (const double q : collision.before.q) box.emplace_back(q - eps_q, q + eps_q);
-    for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t i = 0; i < dof_; ++i) {
         const double v = collision.restart[static_cast<Eigen::Index>(i)];
         const double before = collision.before.v[static_cast<Eigen::Index>(i)];
         box.emplace_back(std::min(v - eps_v, before), std::max(v + eps_v, before));
     }
-    for (std::size_t i = 0; i < 2 * n_; ++i) box_.input(i) = box[i];
+    for (std::size_t i = 0; i < 2 * dof_; ++i) box_.input(i) = box[i];
     box_.run();
     box.emplace_back(0.0);
     const Interval a = -hddot_.over(box);
     if (!a.is_defined() || !(a.lo() > 0.0) || !(e_ * a.hi() / a.lo() < 1.0)) return std::nullopt;
     return factors(collision,
-                   {a.lo(), a.hi(), collision.restart.norm() + eps_v, norm(box_, 1, n_), norm(box_, 1 + n_, n_)});
+                   {a.lo(), a.hi(), collision.restart.norm() + eps_v, norm(box_, 1, dof_), norm(box_, 1 + dof_, dof_)});
 }
 
 Definition7::Factors Definition7::at(const Collision& collision) {
-    put(point_, State{collision.before.q, collision.restart});
+    set_state(point_, State{collision.before.q, collision.restart});
     point_.run();
     const double a = -point_.output(0);
-    return factors(collision, {a, a, collision.restart.norm(), norm(point_, 1, n_), norm(point_, 1 + n_, n_)});
+    return factors(collision, {a, a, collision.restart.norm(), norm(point_, 1, dof_), norm(point_, 1 + dof_, dof_)});
 }
 
 }  // namespace achilles::test

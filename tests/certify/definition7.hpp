@@ -27,7 +27,7 @@ class Definition7 {
     };
     Factors factors(const Collision& collision, const Maxima& maxima);
 
-    std::size_t n_;
+    std::size_t dof_;
     bool kinetic_;
     double e_;
     Range hddot_;

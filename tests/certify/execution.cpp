@@ -16,7 +16,7 @@ Point point_of(const State& state) {
 }
 
 TrueRuns::TrueRuns(const Model& model, const Run& run, std::size_t most_events, double longest_step)
-    : n_(static_cast<std::size_t>(model.n())),
+    : dof_(static_cast<std::size_t>(model.dof())),
       most_events_(most_events),
       motion_(model, run, longest_step),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
@@ -33,7 +33,7 @@ TrueExecution TrueRuns::run_from_contact(const Point& start, double end_time, do
     Point point = start;
     for (int round = 0; round < 4; ++round) {
         const auto contact = motion_.contact(point);
-        for (std::size_t i = 0; i < n_; ++i) point.q[i] -= contact.h * contact.n[i];
+        for (std::size_t i = 0; i < dof_; ++i) point.q[i] -= contact.h * contact.n[i];
     }
     point = motion_.restart(point, Reinitialization::kinetic);
     const Real hddot = motion_.normal_acceleration(point);
@@ -88,7 +88,7 @@ void TrueRuns::fly() {
         return;
     }
     result_.events.push_back({Event::Kind::impact, flight_.time, w, point});
-    for (std::size_t i = 0; i < n_; ++i) point.v[i] += (1 + e_) * w * contact.n[i];
+    for (std::size_t i = 0; i < dof_; ++i) point.v[i] += (1 + e_) * w * contact.n[i];
     flight_.known = e_ > 0 ? 1 : 2;
     const double left = static_cast<double>(end_time_ - flight_.time);
     expected_ = a > 0 && e_ > 0 ? std::min(left, 2.2 * static_cast<double>(e_ * w / a)) : left;

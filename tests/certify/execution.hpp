@@ -51,7 +51,7 @@ class TrueRuns {
     void fly();
     void stay();
 
-    std::size_t n_, most_events_;
+    std::size_t dof_, most_events_;
     TrueMotion motion_;
     Real e_, end_time_;
     Real cut_;

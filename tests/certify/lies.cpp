@@ -18,7 +18,7 @@ double eta_with_M(const Model& model, const Run& run, const State& state) {
     const Equations& equations = model.equations();
     Graph graph(equations.W.graph());  // a copy: the model stays as it is
     const Layout& layout = model.layout();
-    const auto n = static_cast<std::size_t>(model.n());
+    const auto n = static_cast<std::size_t>(model.dof());
     std::vector<Expression> outputs;
     for (std::size_t i = 0; i < n; ++i) {
         Expression sum = graph.number(0);
@@ -26,9 +26,9 @@ double eta_with_M(const Model& model, const Run& run, const State& state) {
             sum = sum + graph.adopt(equations.M[i * n + j]) * graph.adopt(equations.g[j]);
         outputs.push_back(sum / graph.adopt(equations.W));
     }
-    const Program program(outputs, Slots{layout.count(), 2 * layout.n, 2 * layout.n + layout.p});
+    const Program program(outputs, Slots{layout.count(), 2 * layout.dof, 2 * layout.dof + layout.p});
     auto evaluator = model.evaluator(program, run.parameters);
-    put(evaluator, state);
+    set_state(evaluator, state);
     evaluator.run();
     return norm(evaluator, 0, n);
 }

@@ -68,7 +68,7 @@ double Trials::uniform(double low, double high) {
 }
 
 std::optional<State> Trials::zeno_equilibrium(const Run& run) {
-    Surface surface(*model_, run);
+    ContactKinematics surface(*model_, run);
     State state{run.q, run.v};
     const auto& coordinates = model_->description().coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -81,7 +81,7 @@ std::optional<State> Trials::zeno_equilibrium(const Run& run) {
 }
 
 void Trials::certify(Trial& trial, const State& before) {
-    const Contact contact = Surface(*model_, trial.run).at(before);
+    const Contact contact = ContactKinematics(*model_, trial.run).at(before);
     const auto collision = [&](Reinitialization kind) {
         return Collision{0.0, before, std::abs(contact.hdot),
                          reinitialize(contact, before.v, Reinitialization::kinetic),
@@ -96,9 +96,9 @@ void Trials::certify(Trial& trial, const State& before) {
             run.options.truncation.reinitialization = kind;
             const auto prover = truncation_conditions(*model_, run);
             const Collision& own = trial.restarted(kind).collision;
-            if (auto c = prover->hold(own))
+            if (auto c = prover->certify(own))
                 trial.certified.push_back({run.options.truncation, true, *c, best_estimate(run, before, *c)});
-            if (auto c = prover->widest(own)) trial.certified.push_back({run.options.truncation, false, *c, {}});
+            if (auto c = prover->prove_any(own)) trial.certified.push_back({run.options.truncation, false, *c, {}});
         }
     }
 }
@@ -127,7 +127,7 @@ Trial Trials::next() {
     const double w = std::pow(10.0, uniform(-5.0, 0.0)), eps = std::pow(10.0, uniform(-6.0, -1.0));
     auto& truncation = trial.run.options.truncation;
     truncation.eps_q = truncation.eps_v = truncation.eps_t = eps;
-    state->v -= w * Surface(*model_, trial.run).at(*state).n;
+    state->v -= w * ContactKinematics(*model_, trial.run).at(*state).impulse_direction;
     certify(trial, *state);
     if (trial.certified.empty()) return trial;
 

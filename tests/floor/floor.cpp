@@ -127,14 +127,14 @@ double Starts::uniform(double low, double high) {
 
 State Starts::next() {
     const auto& coordinates = model_->description().coordinates;
-    State state{Vector(model_->n()), Vector(model_->n())};
+    State state{Vector(model_->dof()), Vector(model_->dof())};
     for (int tries = 0; tries < 100000; ++tries) {
         for (Eigen::Index i = 0; i < state.q.size(); ++i) {
             const auto& coordinate = coordinates[static_cast<std::size_t>(i)];
             state.q[i] = uniform(coordinate.range[0], coordinate.range[1]);
             state.v[i] = uniform(coordinate.rate_range[0], coordinate.rate_range[1]);
         }
-        put(gap_, state);
+        set_state(gap_, state);
         gap_.run();
         if (gap_.output(0) > 1e-6) return state;
     }
@@ -158,7 +158,7 @@ std::string below_the_floor(const Trajectory& trajectory) {
     auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::impact) continue;
-        put(gap, {event.q, event.v_before});
+        set_state(gap, {event.q, event.v_before});
         gap.run();
         const double terms = std::max(1.0, event.q.cwiseAbs().maxCoeff());
         if (!(gap.output(0) >= -1e-12 * terms))
@@ -175,7 +175,7 @@ std::string fault(const Trajectory& trajectory, double between) {
     auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
     const std::string stored = below_the_floor(trajectory);
     if (!stored.empty()) return stored;
-    const auto n = static_cast<std::size_t>(trajectory.model->n());
+    const auto n = static_cast<std::size_t>(trajectory.model->dof());
     for (const Piece& piece : trajectory.pieces) {
         if (piece.contact) continue;  // a sample is projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
@@ -244,7 +244,7 @@ std::optional<Grazing> GrazingStarts::next(double least_gap) {
 // Most starts do not, which 34 digits need not find out: Heun's method will do.
 bool GrazingStarts::dips_near_the_floor(const State& start) {
     const auto rate = [&](const State& state) {
-        put(flight_, state);
+        set_state(flight_, state);
         flight_.run();
         Vector a(state.q.size());
         for (Eigen::Index i = 0; i < a.size(); ++i) a[i] = flight_.output(static_cast<std::size_t>(i));
@@ -255,7 +255,7 @@ bool GrazingStarts::dips_near_the_floor(const State& start) {
     double before = std::numeric_limits<double>::infinity();
     bool falling = false;
     for (double t = 0.0; t < soon_; t += dt) {
-        put(gap_, state);
+        set_state(gap_, state);
         gap_.run();
         const double h = gap_.output(0);
         if (falling && h > before) return std::abs(h) < near;
@@ -272,7 +272,7 @@ bool GrazingStarts::dips_near_the_floor(const State& start) {
 // Moves the start along the normal until the dip is as deep as wanted: the secant method, whose last digits are those
 // of q.
 std::optional<Grazing> GrazingStarts::tune(State start, double least_gap) {
-    Surface surface(*model_, run_);
+    ContactKinematics surface(*model_, run_);
     double slope = 1.0, before = 0.0, step = 0.0;
     for (int round = 0; round < 20; ++round) {
         const auto dip = truth_.first_dip(point_of(start), soon_);
@@ -287,7 +287,7 @@ std::optional<Grazing> GrazingStarts::tune(State start, double least_gap) {
         before = miss;
         const Contact contact = surface.at(start);
         step = -miss / slope;
-        start.q += step * contact.n;
+        start.q += step * contact.impulse_direction;
     }
     return std::nullopt;
 }

@@ -93,8 +93,8 @@ std::string to_text(const Lie& lie, const Sheet& truth) {
         case Lie::Kind::other_digit:
             break;
     }
-    return fmt::format("\"{}\" for \"{}\"", std::get<Words>(told(lie, truth)[lie.item]).label,
-                       std::get<Words>(truth[lie.item]).label);
+    return fmt::format("\"{}\" for \"{}\"", std::get<TextRun>(told(lie, truth)[lie.item]).label,
+                       std::get<TextRun>(truth[lie.item]).label);
 }
 
 std::vector<Lie> lies_about(const Sheet& truth) {
@@ -111,7 +111,7 @@ std::vector<Lie> lies_about(const Sheet& truth) {
         }
         if (std::holds_alternative<Mark>(truth[i]) && stands_alone(truth, i))
             lies.push_back({Lie::Kind::no_marker, i, 0});
-        if (const auto* words = std::get_if<Words>(&truth[i]))
+        if (const auto* words = std::get_if<TextRun>(&truth[i]))
             for (std::size_t k = 0; k < words->label.size(); ++k)
                 if (is_digit(words->label[k])) lies.push_back({Lie::Kind::other_digit, i, k});
     }
@@ -137,7 +137,7 @@ Sheet told(const Lie& lie, Sheet sheet) {
             sheet.erase(sheet.begin() + static_cast<std::ptrdiff_t>(lie.item));
             break;
         case Lie::Kind::other_digit: {
-            char& letter = std::get<Words>(item).label[lie.letter];
+            char& letter = std::get<TextRun>(item).label[lie.letter];
             letter = lookalike(letter);
             break;
         }

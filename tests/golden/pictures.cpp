@@ -86,7 +86,7 @@ std::string anywhere(std::string text) {
 }
 
 std::vector<Layer> explorer_layers(const fs::path& journal) {
-    Library library;
+    SystemSource library;
     library.find = find_system;
     library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
     library.exports = false;

@@ -41,13 +41,13 @@ class Derivatives : public Law {
  protected:
     void SetUp() override {
         model_ = model_of(GetParam().system);
-        n_ = static_cast<std::size_t>(model_->n());
+        dof_ = static_cast<std::size_t>(model_->dof());
     }
 
     // Outputs [first, first + count) of a program at (q, v); sigma where the program has it.
     Reals evaluate(const Program& program, const Reals& x, std::size_t first, std::size_t count, Real sigma = 0) const {
         auto evaluator = model_->evaluator<Real>(program, model_->default_run().parameters);
-        for (std::size_t i = 0; i < 2 * n_; ++i) evaluator.input(i) = x[i];
+        for (std::size_t i = 0; i < 2 * dof_; ++i) evaluator.input(i) = x[i];
         evaluator.input(model_->layout().sigma()) = sigma;
         evaluator.run();
         Reals result;
@@ -58,14 +58,14 @@ class Derivatives : public Law {
         return [this, &program, index, sigma](const Reals& x) { return evaluate(program, x, index, 1, sigma)[0]; };
     }
     Reals unit(std::size_t i) const {
-        Reals e(2 * n_, 0);
+        Reals e(2 * dof_, 0);
         e[i] = 1;
         return e;
     }
-    Reals q(const Reals& x) const { return {x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n_)}; }
-    Reals v(const Reals& x) const { return {x.begin() + static_cast<std::ptrdiff_t>(n_), x.end()}; }
+    Reals q(const Reals& x) const { return {x.begin(), x.begin() + static_cast<std::ptrdiff_t>(dof_)}; }
+    Reals v(const Reals& x) const { return {x.begin() + static_cast<std::ptrdiff_t>(dof_), x.end()}; }
     // dT/dv_i, and M times a vector: what dT/dv would be at this velocity.
-    Real momentum(const Reals& x, std::size_t i) const { return along(output(model_->energy(), 1), x, unit(n_ + i)); }
+    Real momentum(const Reals& x, std::size_t i) const { return along(output(model_->energy(), 1), x, unit(dof_ + i)); }
     Real mass_times(const Reals& x, const Reals& vector, std::size_t i) const {
         return momentum(joined(q(x), vector), i);
     }
@@ -81,28 +81,28 @@ class Derivatives : public Law {
                 x.push_back(std::uniform_real_distribution(c.range[0], c.range[1])(random));
             for (const auto& c : coordinates)
                 x.push_back(std::uniform_real_distribution(c.rate_range[0], c.rate_range[1])(random));
-            const Reals flight = evaluate(model_->flight(), x, 0, 2 * n_ + 1);
+            const Reals flight = evaluate(model_->flight(), x, 0, 2 * dof_ + 1);
             bool regular = true;
             for (std::size_t i = 0; i < flight.size(); ++i)
-                regular = regular && isfinite(flight[i]) && (i <= n_ || flight[i] > 0);
+                regular = regular && isfinite(flight[i]) && (i <= dof_ || flight[i] > 0);
             if (regular) result.push_back(x);
         }
         return result;
     }
 
     std::shared_ptr<const Model> model_;
-    std::size_t n_ = 0;
+    std::size_t dof_ = 0;
 };
 
 // d/dt dL/dv = dL/dq along f, which keeps the energy.
 TEST_P(Derivatives, FreeMotionIsLagranges) {
     for (const Reals& x : states()) {
-        const Reals motion = joined(v(x), evaluate(model_->flight(), x, 0, n_));
+        const Reals motion = joined(v(x), evaluate(model_->flight(), x, 0, dof_));
         const Function energy = output(model_->energy(), 0), T = output(model_->energy(), 1),
                        V = output(model_->energy(), 2);
         expect_same(along(energy, x, motion), 0, "the rate of the energy");
         expect_same(energy(x), T(x) + V(x), "the energy");
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             const Real rate = along([&](const Reals& at) { return momentum(at, i); }, x, motion);
             expect_same(rate, along(T, x, unit(i)) - along(V, x, unit(i)), "the momentum's rate");
         }
@@ -112,11 +112,11 @@ TEST_P(Derivatives, FreeMotionIsLagranges) {
 // hdot, hddot along f; W and n by M; f_c keeps hdot, its force is g' lambda; h''' along f_c.
 TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
     const Program& surface = model_->surface();
-    const Function gap = output(model_->gap(), 0), hdot = output(surface, 1), hddot = output(model_->flight(), n_);
+    const Function gap = output(model_->gap(), 0), hdot = output(surface, 1), hddot = output(model_->flight(), dof_);
     for (const Reals& x : states()) {
-        const Reals f = evaluate(model_->flight(), x, 0, n_), f_c = evaluate(model_->contact(), x, 0, n_);
-        const Reals n = evaluate(surface, x, 2, n_), g = evaluate(surface, x, 2 + n_, n_);
-        const Real W = evaluate(surface, x, 2 + 2 * n_, 1)[0], lambda = evaluate(model_->force(), x, 0, 1)[0];
+        const Reals f = evaluate(model_->flight(), x, 0, dof_), f_c = evaluate(model_->contact(), x, 0, dof_);
+        const Reals n = evaluate(surface, x, 2, dof_), g = evaluate(surface, x, 2 + dof_, dof_);
+        const Real W = evaluate(surface, x, 2 + 2 * dof_, 1)[0], lambda = evaluate(model_->force(), x, 0, 1)[0];
         const Reals free = joined(v(x), f), held = joined(v(x), f_c);
         expect_same(output(surface, 0)(x), gap(x), "h");
         expect_same(hdot(x), along(gap, x, free), "hdot");
@@ -125,25 +125,25 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
         expect_same(lambda, -hddot(x) / W, "lambda");
         Reals push = f_c;
         Real gn = 0;
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             push[i] -= f[i];
             gn += g[i] * n[i];
         }
         expect_same(gn, 1, "g n");
-        for (std::size_t i = 0; i < n_; ++i) {
+        for (std::size_t i = 0; i < dof_; ++i) {
             expect_same(g[i], along(gap, x, unit(i)), "g");
             expect_same(W * mass_times(x, n, i), g[i], "W M n");
             expect_same(mass_times(x, push, i), lambda * g[i], "the contact force");
         }
         const Real jerk = along(hddot, x, held);
-        expect_same(output(model_->contact(), n_)(x), hddot(x), "hddot of the contact program");
-        expect_same(output(model_->contact(), 2 * n_ + 1)(x), jerk, "h''' of the contact program");
+        expect_same(output(model_->contact(), dof_)(x), hddot(x), "hddot of the contact program");
+        expect_same(output(model_->contact(), 2 * dof_ + 1)(x), jerk, "h''' of the contact program");
         expect_same(output(model_->release(), 0)(x), hddot(x), "hddot of the release program");
         expect_same(output(model_->release(), 1)(x), jerk, "h''' of the release program");
-        expect_same(output(model_->bounds(), 0)(x), hddot(x), "hddot of the bounds");
-        for (std::size_t i = 0; i < n_; ++i) {
-            expect_same(output(model_->bounds(), 1 + i)(x), n[i], "n of the bounds");
-            expect_same(output(model_->bounds(), 1 + n_ + i)(x), f[i], "f of the bounds");
+        expect_same(output(model_->definition7_terms(), 0)(x), hddot(x), "hddot of the bounds");
+        for (std::size_t i = 0; i < dof_; ++i) {
+            expect_same(output(model_->definition7_terms(), 1 + i)(x), n[i], "n of the bounds");
+            expect_same(output(model_->definition7_terms(), 1 + dof_ + i)(x), f[i], "f of the bounds");
         }
     }
 }
@@ -154,48 +154,48 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
     const Bouncing& bouncing = model_->bouncing();
     for (const Reals& x : states()) {
         const auto tangential = [&](const Reals& at, std::size_t i) {
-            return at[n_ + i] - evaluate(model_->surface(), at, 2 + i, 1)[0] * output(model_->surface(), 1)(at);
+            return at[dof_ + i] - evaluate(model_->surface(), at, 2 + i, 1)[0] * output(model_->surface(), 1)(at);
         };
         Reals s;
-        for (std::size_t i = 0; i < n_; ++i) s.push_back(tangential(x, i));
+        for (std::size_t i = 0; i < dof_; ++i) s.push_back(tangential(x, i));
         const Real sigma = output(model_->surface(), 1)(x);
-        const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->flight(), x, 0, n_));
+        const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->flight(), x, 0, dof_));
         const Program &hddot = bouncing.hddot, &shadow = bouncing.shadow;
-        const std::size_t first = 2 * n_ + 1;  // the gradient of hddot stands before
-        expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->flight(), n_)(x), "hddot");
+        const std::size_t first = 2 * dof_ + 1;  // the gradient of hddot stands before
+        expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->flight(), dof_)(x), "hddot");
         const Real h = 1e-16;
         const Real by_sigma =
             (evaluate(hddot, y, 0, 1, sigma + h)[0] - evaluate(hddot, y, 0, 1, sigma - h)[0]) / (2 * h);
-        expect_same(evaluate(bouncing.gradient, y, 2 * n_, 1, sigma)[0], by_sigma, "d hddot/d sigma");
-        const Reals A = evaluate(shadow, y, first, n_, sigma), B = evaluate(shadow, y, first + 2 * n_, n_, sigma);
-        const Reals D = evaluate(shadow, y, first + 3 * n_, n_, sigma),
-                    rate = evaluate(bouncing.motion, y, n_, n_, sigma);
+        expect_same(evaluate(bouncing.gradient, y, 2 * dof_, 1, sigma)[0], by_sigma, "d hddot/d sigma");
+        const Reals A = evaluate(shadow, y, first, dof_, sigma), B = evaluate(shadow, y, first + 2 * dof_, dof_, sigma);
+        const Reals D = evaluate(shadow, y, first + 3 * dof_, dof_, sigma),
+                    rate = evaluate(bouncing.motion, y, dof_, dof_, sigma);
         const Reals motion = joined(v(x), rate);
-        for (std::size_t i = 0; i < n_; ++i) {
-            expect_same(evaluate(bouncing.motion, y, i, 1, sigma)[0], x[n_ + i], "v");
+        for (std::size_t i = 0; i < dof_; ++i) {
+            expect_same(evaluate(bouncing.motion, y, i, 1, sigma)[0], x[dof_ + i], "v");
             expect_same(rate[i], along([&](const Reals& at) { return tangential(at, i); }, x, free), "s'");
             expect_same(A[i] + B[i] * sigma + D[i] * sigma * sigma, rate[i], "A + B sigma + D sigma^2");
             expect_same(A[i], output(model_->contact(), i)(y), "A");
-            expect_same(evaluate(shadow, y, first + n_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
-            expect_same(evaluate(shadow, y, first + 4 * n_ + i, 1, sigma)[0],
-                        along(output(shadow, first + n_ + i, sigma), y, motion), "ndot");
-            expect_same(evaluate(shadow, y, first + 5 * n_ + i, 1, sigma)[0],
-                        along(output(shadow, first + 2 * n_ + i, sigma), y, motion), "Bdot");
-            for (std::size_t k = 0; k < 2 * n_; ++k) {  // dA/dq, then dA/ds, row by row
-                const std::size_t block = k < n_ ? first + 6 * n_ : first + 6 * n_ + n_ * n_;
-                expect_same(evaluate(shadow, y, block + i * n_ + k % n_, 1, sigma)[0],
+            expect_same(evaluate(shadow, y, first + dof_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
+            expect_same(evaluate(shadow, y, first + 4 * dof_ + i, 1, sigma)[0],
+                        along(output(shadow, first + dof_ + i, sigma), y, motion), "ndot");
+            expect_same(evaluate(shadow, y, first + 5 * dof_ + i, 1, sigma)[0],
+                        along(output(shadow, first + 2 * dof_ + i, sigma), y, motion), "Bdot");
+            for (std::size_t k = 0; k < 2 * dof_; ++k) {  // dA/dq, then dA/ds, row by row
+                const std::size_t block = k < dof_ ? first + 6 * dof_ : first + 6 * dof_ + dof_ * dof_;
+                expect_same(evaluate(shadow, y, block + i * dof_ + k % dof_, 1, sigma)[0],
                             along(output(shadow, first + i, sigma), y, unit(k)), "dA");
             }
         }
         // The rate of hddot(q, s, 0) along the bouncing, and what the estimate of the Zeno time needs of it.
-        const Reals drift = evaluate(shadow, y, first + 6 * n_ + 2 * n_ * n_, 3);
+        const Reals drift = evaluate(shadow, y, first + 6 * dof_ + 2 * dof_ * dof_, 3);
         expect_same(drift[0] + drift[1] * sigma + drift[2] * sigma * sigma, along(output(hddot, 0, Real(0)), y, motion),
                     "P + Phi sigma + Xi sigma^2");
         expect_same(evaluate(bouncing.trend, y, 0, 1)[0], evaluate(hddot, y, 0, 1, Real(0))[0], "hddot at sigma = 0");
         expect_same(evaluate(bouncing.trend, y, 1, 1)[0], drift[0], "P");
-        expect_same(evaluate(bouncing.trend, y, 2, 1)[0], evaluate(bouncing.gradient, y, 2 * n_, 1, Real(0))[0],
+        expect_same(evaluate(bouncing.trend, y, 2, 1)[0], evaluate(bouncing.gradient, y, 2 * dof_, 1, Real(0))[0],
                     "d hddot/d sigma at 0");
-        for (std::size_t k = 0; k < 2 * n_; ++k) {
+        for (std::size_t k = 0; k < 2 * dof_; ++k) {
             expect_same(evaluate(shadow, y, k, 1, sigma)[0], evaluate(bouncing.gradient, y, k, 1, sigma)[0], "again");
             expect_same(evaluate(bouncing.gradient, y, k, 1, sigma)[0], along(output(hddot, 0, sigma), y, unit(k)),
                         "d hddot");

@@ -50,7 +50,7 @@ TEST_P(Law, AllHoldFromOtherStarts) {
         auto run = run_of(GetParam());
         for (std::size_t i = 0; i < run.parameters.size(); ++i)
             run.parameters[i] = near(run.parameters[i], description.parameters[i].range, 0.05);
-        for (int i = 0; i < model->n(); ++i) {
+        for (int i = 0; i < model->dof(); ++i) {
             const CoordinateDescription& coordinate = description.coordinates[static_cast<std::size_t>(i)];
             run.q[i] = near(run.q[i], coordinate.range, 0.15);
             run.v[i] = near(run.v[i], coordinate.rate_range, 0.15);

@@ -83,7 +83,7 @@ TEST_P(Invariance, LInOtherUnitsOfEnergy) {
         const Model model(system);
         const auto run = model.default_run();
         auto lambda = model.evaluator(model.force(), run.parameters);
-        put(lambda, State{run.q, run.v});
+        set_state(lambda, State{run.q, run.v});
         lambda.run();
         return lambda.output(0);
     };

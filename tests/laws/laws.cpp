@@ -22,7 +22,7 @@ class Probe {
           energy_(model.evaluator(model.energy(), t.run.parameters)) {}
 
     double energy(const State& state) {
-        put(energy_, state);
+        set_state(energy_, state);
         energy_.run();
         return energy_.output(0);
     }
@@ -35,7 +35,7 @@ class Probe {
     double press(const State& state) { return -surface.normal_acceleration(state); }
 
     const Model& model;
-    Surface surface;
+    ContactKinematics surface;
     double restitution;
 
  private:
@@ -126,7 +126,8 @@ Violations phases(const Trajectory& trajectory) {
             const Contact contact = probe.surface.at({event.q, event.v_before});
             check(std::abs(contact.h) <= 1e-12 * std::max(1.0, event.q.norm()), "an impact is off the surface", t);
             check(contact.hdot < 0.0 && event.impact_speed == -contact.hdot, "an impact does not approach", t);
-            const Vector expected = event.v_before - (1.0 + probe.restitution) * contact.hdot * contact.n;
+            const Vector expected =
+                event.v_before - (1.0 + probe.restitution) * contact.hdot * contact.impulse_direction;
             check(largest(event.v_after - expected) <= 1e-14 * (1.0 + largest(expected)), "an impact is not Newton's",
                   t);
         }

@@ -88,7 +88,7 @@ TEST_F(Publication, no_legend_covers_data) {
     ASSERT_GE(plots.size(), 4u);
     int labels = 0;
     for (const auto& item : sheet) {
-        const auto* words = std::get_if<Words>(&item);
+        const auto* words = std::get_if<TextRun>(&item);
         if (words == nullptr || words->upwards) continue;
         for (const Rectangle& plot : plots)
             EXPECT_FALSE(words->x > plot.x && words->x < plot.x + plot.width && words->y + words->size > plot.y &&
@@ -117,12 +117,12 @@ TEST_F(Publication, titles_and_legends_do_not_overlap) {
             layout(of({view(name, "t", {"x'", "y'"}), view("b", "t", {"y"})}), half, {0, 0, 700, 700}, 1.0);
         const auto find = [&](const std::string& label) {
             for (const auto& item : sheet)
-                if (const auto* words = std::get_if<Words>(&item); words != nullptr && words->label == label)
+                if (const auto* words = std::get_if<TextRun>(&item); words != nullptr && words->label == label)
                     return *words;
             ADD_FAILURE() << label;
-            return Words{};
+            return TextRun{};
         };
-        const Words title = find("(a)\u00A0\u00A0" + std::string(name)), key = find("𝑥\u0307");
+        const TextRun title = find("(a)\u00A0\u00A0" + std::string(name)), key = find("𝑥\u0307");
         const bool apart = title.x + half(title.label, title.size) <= key.x || title.y + title.size <= key.y;
         EXPECT_TRUE(apart) << name;
         EXPECT_GE(title.y, 0.0F);
@@ -152,7 +152,7 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
     const auto holds = [&](float width, float height, const std::string& label) {
         bool found = false;
         for (const auto& item : layout(figure, half, {0, 0, width, height}, 1.0))
-            if (const auto* words = std::get_if<Words>(&item)) found = found || words->label == label;
+            if (const auto* words = std::get_if<TextRun>(&item)) found = found || words->label == label;
         return found;
     };
     EXPECT_TRUE(holds(600, 400, "constrained"));
@@ -167,7 +167,7 @@ TEST(Layout, labels_are_of_sizes_that_have_letters) {
         figure.panels.push_back(samples::corners(""));
         figure.panels[0].x.label = label;
         for (const auto& item : layout(figure, half, {0, 0, 400, 400}, 1.0))
-            if (const auto* words = std::get_if<Words>(&item); words != nullptr && words->label == label)
+            if (const auto* words = std::get_if<TextRun>(&item); words != nullptr && words->label == label)
                 return words->size;
         return 0.0F;
     };

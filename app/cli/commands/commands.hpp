@@ -8,7 +8,7 @@ class App;
 
 namespace achilles {
 
-class Studio;
+class PictureJob;
 
 // Exit statuses. made_differently: `reproduce` could, but the bytes are not the same.
 constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_early = 3;
@@ -16,11 +16,11 @@ constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_earl
 void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
 // Those that make pictures.
-void add_figure(CLI::App& program, int& status, Studio& studio);
-void add_frames(CLI::App& program, int& status, Studio& studio);
-void add_paper(CLI::App& program, int& status, Studio& studio);
-void add_screenshot(CLI::App& program, int& status, Studio& studio);
-void add_pictures(CLI::App& program, int& status, Studio& studio);  // all of them
+void add_figure(CLI::App& program, int& status, PictureJob& job);
+void add_frames(CLI::App& program, int& status, PictureJob& job);
+void add_paper(CLI::App& program, int& status, PictureJob& job);
+void add_screenshot(CLI::App& program, int& status, PictureJob& job);
+void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_check(CLI::App& program, int& status);

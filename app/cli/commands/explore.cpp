@@ -29,12 +29,12 @@ void add_explore(CLI::App& program, int& status) {
     command->callback([options, &status] { status = explore(*options); });
 }
 
-void add_screenshot(CLI::App& program, int& status, Studio& studio) {
+void add_screenshot(CLI::App& program, int& status, PictureJob& job) {
     const auto options = std::make_shared<ScreenshotOptions>();
     CLI::App* command = program.add_subcommand("screenshot", "The whole explorer as a PNG, drawn without a display");
     add_options(*command, *options);
     command->add_option("--out", options->out, "the PNG")->required()->type_name("F.png");
-    command->callback([options, &status, &studio] { status = screenshot(*options, studio); });
+    command->callback([options, &status, &job] { status = screenshot(*options, job); });
 }
 
 }  // namespace achilles

@@ -8,7 +8,7 @@
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
 #include "session/open_session.hpp"
 #include "simulate/simulate.hpp"
@@ -38,30 +38,29 @@ bool wants_svg(const FigureArguments& arguments) {
 
 // Puts a figure of a finished run where it belongs.
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg,
-        Studio& studio) {
+        PictureJob& job) {
     PictureSize size = arguments.size;
     size.scale *= publication_scale;
-    studio.put(arguments.out, "", {{arguments.system, &trajectory}},
-               [&](const Notes& notes) { return as_svg ? svg_of(figure, size, notes) : png_of(figure, size, notes); });
-    studio.commit();
+    job.put(arguments.out, "", {{arguments.system, &trajectory}},
+            [&](const Notes& notes) { return as_svg ? svg_of(figure, size, notes) : png_of(figure, size, notes); });
+    job.commit();
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
 }
 
 // The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
-int draw_session(const FigureArguments& arguments, bool as_svg, Studio& studio) {
+int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
     std::vector<Command> steps;
-    if (!arguments.journal.empty())
-        steps = parse_journal(studio.inputs().journal(arguments.journal), arguments.journal);
+    if (!arguments.journal.empty()) steps = parse_journal(job.inputs().journal(arguments.journal), arguments.journal);
     const std::vector<Command> more = parse_steps(arguments.steps);
     steps.insert(steps.end(), more.begin(), more.end());
-    Session session = open_session(arguments.system, studio.inputs().system(arguments.system), arguments.settings,
-                                   arguments.overrides, library_of(studio), {});
-    studio.add(arguments.out);
+    Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
+                                   arguments.overrides, source_of(job), {});
+    job.add(arguments.out);
     for (const Command& step : steps) {
         session.apply(step);
         if (!session.error().empty()) throw InputError(to_text(step), {}, session.error());
@@ -69,22 +68,22 @@ int draw_session(const FigureArguments& arguments, bool as_svg, Studio& studio) 
     }
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
-    return put(arguments, session.trajectory(), figure_of(session, style), as_svg, studio);
+    return put(arguments, session.trajectory(), figure_of(session, style), as_svg, job);
 }
 
-int draw(const FigureArguments& arguments, Studio& studio) {
+int draw(const FigureArguments& arguments, PictureJob& job) {
     const bool as_svg = wants_svg(arguments);
-    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, studio);
+    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, job);
     const auto model = std::make_shared<const Model>(
-        adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
+        adjusted(job.inputs().system(arguments.system), arguments.settings, arguments.overrides));
     const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
     const Run run = model->default_run();
     model->check(run);
     warn(run.options);
-    studio.add(arguments.out);
+    job.add(arguments.out);
 
     const Trajectory trajectory = simulate(model, run);
-    return put(arguments, trajectory, publication(trajectory, views, arguments.style), as_svg, studio);
+    return put(arguments, trajectory, publication(trajectory, views, arguments.style), as_svg, job);
 }
 
 void take_columns(const std::string& text, int& columns) {
@@ -96,7 +95,7 @@ void take_columns(const std::string& text, int& columns) {
 
 }  // namespace
 
-void add_figure(CLI::App& program, int& status, Studio& studio) {
+void add_figure(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FigureArguments>();
     CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG or SVG");
     add_system_argument(*command, arguments->system);
@@ -118,7 +117,7 @@ void add_figure(CLI::App& program, int& status, Studio& studio) {
     command->add_flag("--transparent", arguments->style.transparent, "no background");
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
-    command->callback([arguments, &status, &studio] { status = draw(*arguments, studio); });
+    command->callback([arguments, &status, &job] { status = draw(*arguments, job); });
 }
 
 }  // namespace achilles

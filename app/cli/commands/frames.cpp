@@ -10,10 +10,10 @@
 #include "figure/animation.hpp"
 #include "model/model.hpp"
 #include "paint/mechanism.hpp"
-#include "pictures/crew.hpp"
 #include "pictures/frame_folder.hpp"
+#include "pictures/picture_job.hpp"
+#include "pictures/process_pool.hpp"
 #include "pictures/progress.hpp"
-#include "pictures/studio.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -112,9 +112,9 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
     return reached_end;
 }
 
-int draw_frames(const FramesArguments& arguments, Studio& studio) {
+int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const auto model = std::make_shared<const Model>(
-        adjusted(studio.inputs().system(arguments.system), arguments.settings, arguments.overrides));
+        adjusted(job.inputs().system(arguments.system), arguments.settings, arguments.overrides));
     const std::vector<ViewDescription> views = views_for(model->description(), arguments.views);
     const Run run = model->default_run();
     model->check(run);
@@ -126,15 +126,15 @@ int draw_frames(const FramesArguments& arguments, Studio& studio) {
     Animation animation(trajectory, views, arguments.size, arguments.speed / arguments.fps);
     const std::vector<Shown> shown{{arguments.system, &trajectory}};
     int status = reached_end;
-    if (studio.reproduces()) {
+    if (job.reproduces()) {
         for (std::size_t i = 0; i < clock.count(); ++i)
-            studio.put("", frame_name(i), shown, [&](const Notes& notes) {
+            job.put("", frame_name(i), shown, [&](const Notes& notes) {
                 return Painter(arguments.size).png(animation.at(clock.time(i)), notes);
             });
     } else {
         const FrameFolder folder(arguments.out);
         status = draw_into(folder, arguments, clock, animation,
-                           [&](const std::string& name) { return studio.notes_of(name, shown); });
+                           [&](const std::string& name) { return job.notes_of(name, shown); });
     }
     if (status != reached_end || trajectory.outcome.kind == Outcome::Kind::end_time) return status;
     fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
@@ -158,7 +158,7 @@ double within(const std::string& option, const std::string& text, double low, do
 
 }  // namespace
 
-void add_frames(CLI::App& program, int& status, Studio& studio) {
+void add_frames(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FramesArguments>();
     arguments->jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
     CLI::App* command = program.add_subcommand("frames", "Numbered PNGs of the mechanism in motion beside its plots");
@@ -185,7 +185,7 @@ void add_frames(CLI::App& program, int& status, Studio& studio) {
     command->add_flag("--overwrite", arguments->overwrite, "replace frames of other commands");
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
-    command->callback([arguments, &status, &studio] { status = draw_frames(*arguments, studio); });
+    command->callback([arguments, &status, &job] { status = draw_frames(*arguments, job); });
 }
 
 }  // namespace achilles

@@ -11,7 +11,7 @@
 #include "figure/publication.hpp"
 #include "model/model.hpp"
 #include "pictures/output_folder.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -27,26 +27,26 @@ Trajectory run(Inputs& inputs, const std::string& system) {
     return simulate(model, paper);
 }
 
-int draw_paper(const fs::path& folder, const std::string& format, double scale, Studio& studio) {
+int draw_paper(const fs::path& folder, const std::string& format, double scale, PictureJob& job) {
     std::optional<OutputFolder> made;
-    if (!studio.reproduces()) made.emplace(folder);
-    const Trajectory ball = run(studio.inputs(), "ball_on_sine"), pendulum = run(studio.inputs(), "double_pendulum");
+    if (!job.reproduces()) made.emplace(folder);
+    const Trajectory ball = run(job.inputs(), "ball_on_sine"), pendulum = run(job.inputs(), "double_pendulum");
     const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
     const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";
     const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + "." + format)).string(); };
-    for (const NamedFigure& figure : figures) studio.add(file_of(figure));
-    studio.add(table_file);
+    for (const NamedFigure& figure : figures) job.add(file_of(figure));
+    job.add(table_file);
     for (const NamedFigure& figure : figures) {
         const PictureSize size{static_cast<int>(std::lround(figure.width * scale)),
                                static_cast<int>(std::lround(figure.height * scale)), scale * publication_scale};
-        studio.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
-                   [&](const Notes& notes) {
-                       return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
-                   });
+        job.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
+                [&](const Notes& notes) {
+                    return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
+                });
     }
-    studio.put_text(table_file, table);
-    studio.commit();
-    if (studio.reproduces()) return reached_end;
+    job.put_text(table_file, table);
+    job.commit();
+    if (job.reproduces()) return reached_end;
 
     fmt::print("{}\n", table);
     for (const NamedFigure& figure : figures) fmt::print("{}\n", fs::absolute(file_of(figure)).string());
@@ -61,7 +61,7 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
 
 }  // namespace
 
-void add_paper(CLI::App& program, int& status, Studio& studio) {
+void add_paper(CLI::App& program, int& status, PictureJob& job) {
     struct Arguments {
         std::string out = "achilles-paper", format = "png";
         double scale = 1.0;
@@ -73,9 +73,8 @@ void add_paper(CLI::App& program, int& status, Studio& studio) {
         ->type_name("DIR");
     add_format_option(*command, arguments->format, "of the pictures (default png)");
     add_scale_option(*command, arguments->scale);
-    command->callback([arguments, &status, &studio] {
-        status = draw_paper(arguments->out, arguments->format, arguments->scale, studio);
-    });
+    command->callback(
+        [arguments, &status, &job] { status = draw_paper(arguments->out, arguments->format, arguments->scale, job); });
 }
 
 }  // namespace achilles

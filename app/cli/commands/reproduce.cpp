@@ -5,7 +5,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "output/output.hpp"
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -26,12 +26,12 @@ auto with_name(const std::string& picture, const Work& work) {
     }
 }
 
-// Runs the command that an origin tells; leaves what it made in the studio. Only commands that make pictures run here.
-int run_again(const std::string& picture, const Origin& origin, bool png, Studio& studio) {
+// Runs the command that an origin tells; leaves what it made in the job. Only commands that make pictures run here.
+int run_again(const std::string& picture, const Origin& origin, bool png, PictureJob& job) {
     CLI::App program("what makes pictures", "achilles");
     program.require_subcommand(1);
     int status = bad_input;
-    add_pictures(program, status, studio);
+    add_pictures(program, status, job);
     std::vector<std::string> words = words_of(origin.command);
     words.insert(words.end(), {"--out", png ? "picture.png" : "picture.svg"});
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
@@ -40,7 +40,7 @@ int run_again(const std::string& picture, const Origin& origin, bool png, Studio
     } catch (const CLI::ParseError& error) {
         throw InputError(picture, {}, fmt::format("its command cannot be run here: {}", error.what()), origin.command);
     }
-    if (!studio.made())
+    if (!job.made())
         throw InputError(picture, {}, fmt::format("its command makes no picture '{}'", origin.picture), origin.command);
     return status;
 }
@@ -51,9 +51,9 @@ int reproduce(const std::string& picture, const std::string& out) {
     const std::string before = read_text(picture, largest_picture);
     if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
-    Studio studio(origin);
-    const int status = with_name(picture, [&] { return run_again(picture, origin, is_png(before), studio); });
-    const std::string& after = *studio.made();
+    PictureJob job(origin);
+    const int status = with_name(picture, [&] { return run_again(picture, origin, is_png(before), job); });
+    const std::string& after = *job.made();
     if (!out.empty()) files.put(out, after);
     files.commit();
     if (out != "-") fmt::print("{}\n", origin.command);
@@ -66,11 +66,11 @@ int reproduce(const std::string& picture, const std::string& out) {
 
 }  // namespace
 
-void add_pictures(CLI::App& program, int& status, Studio& studio) {
-    add_figure(program, status, studio);
-    add_frames(program, status, studio);
-    add_paper(program, status, studio);
-    add_screenshot(program, status, studio);
+void add_pictures(CLI::App& program, int& status, PictureJob& job) {
+    add_figure(program, status, job);
+    add_frames(program, status, job);
+    add_paper(program, status, job);
+    add_screenshot(program, status, job);
 }
 
 void add_reproduce(CLI::App& program, int& status) {

@@ -20,7 +20,7 @@ double excess(const std::string& system, double radius) {
     const auto run = model->default_run();
     const Trajectory trajectory = simulate(model, run);
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
-    const auto n = static_cast<std::size_t>(model->n());
+    const auto n = static_cast<std::size_t>(model->dof());
     Range range(model->evaluator<Interval>(model->bouncing().hddot, run.parameters),
                 model->evaluator<Interval>(model->bouncing().gradient, run.parameters),
                 bouncing_slots(model->layout()));
@@ -94,7 +94,7 @@ double order(const std::string& system, Reinitialization kind, double later, dou
     run.options.truncation = {1e-11, 1e-11, 1e-11, Conditions::paper, kind};
     if (kind == Reinitialization::euclidean) run.options.truncation.reinitialization = Reinitialization::kinetic;
     const Trajectory truth = simulate(model, run);
-    Surface surface(*model, run);
+    ContactKinematics surface(*model, run);
     double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
     for (const Event& event : test::events_of(truth, Event::Kind::impact)) {
         const State before{event.q, event.v_before};
@@ -126,7 +126,7 @@ TEST(Restarts, KineticIsOfThirdOrderEuclideanOfFirst) {
 struct Cuts {
     int all = 0, late = 0;
     void count(const Trajectory& trajectory) {
-        Surface surface(*trajectory.model, trajectory.run);
+        ContactKinematics surface(*trajectory.model, trajectory.run);
         for (std::size_t i = 2; i < trajectory.events.size(); ++i) {
             const Event& last = trajectory.events[i - 2];
             if (trajectory.events[i].kind != Event::Kind::zeno || last.kind != Event::Kind::impact) continue;
@@ -134,7 +134,7 @@ struct Cuts {
             const Contact contact = surface.at({last.q, last.v_before});
             const Vector s = reinitialize(contact, last.v_before, Reinitialization::kinetic);
             const Collision collision{last.t, {last.q, last.v_before}, -contact.hdot, s, s};
-            if (truncation_conditions(*trajectory.model, trajectory.run)->hold(collision)) ++late;
+            if (truncation_conditions(*trajectory.model, trajectory.run)->certify(collision)) ++late;
         }
     }
 };
@@ -190,7 +190,7 @@ TEST(PaperCertificates, RestOnTheirOwnNumbers) {
                 EXPECT_NEAR(p.c1, c.a_min * (1 - p.e1) / (2 * e) * 1e-3, 1e-9 * p.c1);
                 EXPECT_NEAR(p.c2, c.a_min * (1 - p.e1) / (2 * e * p.beta) * 1e-4, 1e-9 * p.c2);
                 EXPECT_NEAR(p.beta, event.truncation->v.norm(), 1.1e-5);
-                Surface surface(*model, run);
+                ContactKinematics surface(*model, run);
                 const Contact contact = surface.at({event.truncation->q, event.truncation->v_before});
                 const double jumps = kind == Reinitialization::kinetic ? e + p.e2 : 1 + e;
                 const double factor = jumps * p.eta / (1 - p.e2) + 2 * e * p.zeta / (c.a_min * (1 - p.e1)) +
@@ -198,7 +198,7 @@ TEST(PaperCertificates, RestOnTheirOwnNumbers) {
                 EXPECT_NEAR(p.c3, 1e-5 / factor, 1e-9 * p.c3);
                 EXPECT_LT(c.position_bound, 1e-4);
                 EXPECT_LT(c.velocity_bound, 1e-5);
-                EXPECT_GE(p.eta, contact.n.norm());
+                EXPECT_GE(p.eta, contact.impulse_direction.norm());
             }
         }
     }

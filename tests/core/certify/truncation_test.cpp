@@ -77,7 +77,7 @@ TEST(Truncation, TheImpactAtTheCutIsAnImpactLikeAnyOther) {
         long impacts = 0;
         for (const Phase& phase : trajectory.phases) impacts += phase.impacts;
         EXPECT_EQ(impacts, trajectory.statistics.impacts);
-        Surface surface(*model, run);
+        ContactKinematics surface(*model, run);
         int zenos = 0, since = 0;
         for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
             const Event& event = trajectory.events[i];
@@ -112,7 +112,7 @@ std::vector<Cut> cuts_of(const std::string& system) {
     run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-13;
     const Trajectory trajectory = simulate(model, run);
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
-    Surface surface(*model, run);
+    ContactKinematics surface(*model, run);
     const auto conditions = truncation_conditions(*model, run);
     const Interval e(0.5);
     std::vector<Cut> cuts;
@@ -121,7 +121,7 @@ std::vector<Cut> cuts_of(const std::string& system) {
         const State before{event.q, event.v_before};
         const Contact contact = surface.at(before);
         const Vector s = reinitialize(contact, before.v, Reinitialization::kinetic);
-        const auto c = conditions->widest({event.t, before, -contact.hdot, s, s});
+        const auto c = conditions->prove_any({event.t, before, -contact.hdot, s, s});
         if (!c) continue;
         EXPECT_LE(c->zeno_low, zeno.t);
         EXPECT_GE(c->zeno_high, zeno.t);
@@ -163,8 +163,8 @@ TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
     const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
     const Collision collision{0.0, {q, v}, 1e-295, s, s};
     const auto conditions = truncation_conditions(*model, run);
-    EXPECT_FALSE(conditions->hold(collision));
-    const auto widest = conditions->widest(collision);
+    EXPECT_FALSE(conditions->certify(collision));
+    const auto widest = conditions->prove_any(collision);
     ASSERT_TRUE(widest);
     EXPECT_GT(widest->position_bound, 0.0);
     EXPECT_FALSE(widest->shadowing_position || widest->shadowing_velocity || widest->uniform_position);

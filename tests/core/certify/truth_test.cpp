@@ -106,13 +106,13 @@ double order_of(const std::string& system, Reinitialization kind) {
     const auto model = load(system);
     auto run = model->default_run();
     const Event zeno = events_of(simulate(model, run), Event::Kind::zeno).at(0);
-    Surface surface(*model, run);
+    ContactKinematics surface(*model, run);
     const Contact contact = surface.at({zeno.q, zeno.v_after});
     TrueMotion motion(*model, run);
     const Real later = 0.5;
     double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
     for (const double w : {3e-2, 3e-3, 3e-4, 3e-5, 3e-6}) {
-        const Point collision = motion.collision({zeno.q, zeno.v_after - w * contact.n});
+        const Point collision = motion.collision({zeno.q, zeno.v_after - w * contact.impulse_direction});
         const auto truth = motion.zeno(collision);
         if (!truth) return 0.0;
         const Point there = motion.constrained(truth->point, later - truth->time, 1e-28);
@@ -193,7 +193,7 @@ TEST(Truth, NoNeighbourhoodOfAGridDoesBetter) {
                 run.options.truncation.conditions = Conditions::paper;
                 run.options.truncation.reinitialization = kind;
                 const Collision& collision = trial.restarted(kind).collision;
-                const auto certificate = truncation_conditions(trials.model(), run)->hold(collision);
+                const auto certificate = truncation_conditions(trials.model(), run)->certify(collision);
                 Definition7 definition(trials.model(), run);
                 const Truncation& eps = run.options.truncation;
                 const double w = collision.speed;
@@ -292,7 +292,7 @@ struct FloorCollision {
         state.v[1] = -w;
         Vector s = run.v;
         s[1] = 0.0;
-        certificate = truncation_conditions(*model, run)->widest({0.0, state, w, s, s});
+        certificate = truncation_conditions(*model, run)->prove_any({0.0, state, w, s, s});
     }
     std::shared_ptr<const Model> model;
     Run run;

@@ -15,9 +15,9 @@ namespace {
 // Evaluates any expression of a model at a state.
 double value(const Model& model, Expression e, const Run& run, const State& state) {
     const Program program(std::span(&e, 1),
-                          {model.layout().count(), 2 * model.layout().n, 2 * model.layout().n + model.layout().p});
+                          {model.layout().count(), 2 * model.layout().dof, 2 * model.layout().dof + model.layout().p});
     auto evaluator = model.evaluator(program, run.parameters);
-    put(evaluator, state);
+    set_state(evaluator, state);
     evaluator.run();
     return evaluator.output(0);
 }
@@ -43,8 +43,8 @@ TEST(Model, TheBallHasItsClosedForm) {
         EXPECT_NEAR(value(*model, e.gap, run, s), s.q[1] - std::sin(x), 1e-15);
         EXPECT_NEAR(value(*model, e.hddot, run, s), dx * dx * std::sin(x) - g, 1e-14);
         EXPECT_NEAR(value(*model, e.W, run, s), (1 + c * c) / m, 1e-14);
-        EXPECT_NEAR(value(*model, e.n[0], run, s), -c / (1 + c * c), 1e-14);
-        EXPECT_NEAR(value(*model, e.n[1], run, s), 1 / (1 + c * c), 1e-14);
+        EXPECT_NEAR(value(*model, e.impulse_direction[0], run, s), -c / (1 + c * c), 1e-14);
+        EXPECT_NEAR(value(*model, e.impulse_direction[1], run, s), 1 / (1 + c * c), 1e-14);
         EXPECT_NEAR(value(*model, e.lambda, run, s), m * (g - dx * dx * std::sin(x)) / (1 + c * c), 1e-14);
     }
 }
@@ -72,7 +72,7 @@ TEST(Model, ThePendulumLocksWhereSinTheta1IsNegative) {
 void check_lagrange(const Model& model, std::mt19937& random) {
     const auto run = model.default_run();
     const Equations& e = model.equations();
-    const int n = model.n();
+    const int n = model.dof();
     const double d = 1e-4;
     const auto L = [&](const State& s) { return value(model, e.kinetic, run, s) - value(model, e.potential, run, s); };
     for (int trial = 0; trial < 10; ++trial) {
@@ -134,9 +134,9 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
     for (const auto& model : {test::load("ball_on_sine"), test::load("double_pendulum"), test::typed(odd_system)}) {
         const auto run = model->default_run();
         const Equations& e = model->equations();
-        const auto n = static_cast<std::size_t>(model->n());
+        const auto n = static_cast<std::size_t>(model->dof());
         for (int trial = 0; trial < 10; ++trial) {
-            const State s = random_state(model->n(), random);
+            const State s = random_state(model->dof(), random);
             const double d = 1e-4;
             const auto along = [&](const std::vector<Expression>& acceleration, double dt) {
                 State moved = s;
@@ -163,12 +163,12 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
             double gn = 0.0, gs = 0.0;
             for (std::size_t i = 0; i < n; ++i) {
                 const double g = value(*model, e.g[i], run, s);
-                gn += g * value(*model, e.n[i], run, s);
+                gn += g * value(*model, e.impulse_direction[i], run, s);
                 gs += g * value(*model, e.s[i], run, s);
                 // M n = g'/W
                 double Mn = 0.0;
                 for (std::size_t j = 0; j < n; ++j)
-                    Mn += value(*model, e.M[i * n + j], run, s) * value(*model, e.n[j], run, s);
+                    Mn += value(*model, e.M[i * n + j], run, s) * value(*model, e.impulse_direction[j], run, s);
                 EXPECT_NEAR(Mn, g / W, 1e-12);
             }
             EXPECT_NEAR(gn, 1.0, 1e-12);
@@ -182,7 +182,7 @@ TEST(Impacts, NewtonsLawAndBothReinitialisations) {
     std::mt19937 random(5);
     const auto model = test::typed(odd_system);
     const auto run = model->default_run();
-    Surface surface(*model, run);
+    ContactKinematics surface(*model, run);
     for (int trial = 0; trial < 20; ++trial) {
         const State before = random_state(3, random);
         const Contact contact = surface.at(before);
@@ -201,7 +201,7 @@ TEST(Impacts, NewtonsLawAndBothReinitialisations) {
 // For M = m I both are the same projection.
 TEST(Impacts, ReinitialisationsAgreeOnTheBall) {
     const auto model = test::load("ball_on_sine");
-    Surface surface(*model, model->default_run());
+    ContactKinematics surface(*model, model->default_run());
     std::mt19937 random(6);
     const State s = random_state(2, random);
     const Contact contact = surface.at(s);

@@ -185,7 +185,7 @@ TEST_P(Grounds, GiveTheSameCertificate) {
         Collision collision{cut.t, {cut.q, cut.v_before}, cut.impact_speed, cut.v, cut.v};
         const auto asked = [&, &system = *model, &asking = run] {
             const auto conditions = truncation_conditions(system, asking);
-            return std::pair(conditions->hold(collision), conditions->widest(collision));
+            return std::pair(conditions->certify(collision), conditions->prove_any(collision));
         };
         const auto usual = asked();
         const Computing computing(GetParam());
@@ -211,9 +211,9 @@ TEST_P(Grounds, HoldCertificatesOfDenormalSize) {
     run.parameters[0] = 1e-290;
     const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
     const Collision collision{0.0, {q, v}, 1e-295, s, s};
-    const auto usual = truncation_conditions(*model, run)->widest(collision);
+    const auto usual = truncation_conditions(*model, run)->prove_any(collision);
     const Computing computing(GetParam());
-    const auto now = truncation_conditions(*model, run)->widest(collision);
+    const auto now = truncation_conditions(*model, run)->prove_any(collision);
     const Ground ground;
     ASSERT_TRUE(usual && now);
     EXPECT_GT(usual->position_bound, 0.0);

@@ -53,7 +53,7 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
 TEST_P(Floor, IsMetWhenThe34DigitsSay) {
     const auto model = load(GetParam());
     Starts starts(model, 8);
-    for (int i = 0; i < (model->n() > 2 ? 1 : 2); ++i) {  // the truth about three links takes seconds
+    for (int i = 0; i < (model->dof() > 2 ? 1 : 2); ++i) {  // the truth about three links takes seconds
         auto run = started(*model, starts.next());
         run.options.tolerance = 1e-12;
         run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;

@@ -18,7 +18,7 @@ std::shared_ptr<const Model> with(const std::string& asset, std::initializer_lis
 
 double energy_of(const Model& model, const Run& run, const State& state) {
     auto program = model.evaluator(model.energy(), run.parameters);
-    put(program, state);
+    set_state(program, state);
     program.run();
     return program.output(0);
 }
@@ -94,7 +94,7 @@ TEST(LongRuns, AThousandSecondsInContact) {
     auto surface = model->evaluator(model->surface(), run.parameters);
     const double start = energy_of(*model, run, Sampler(trajectory).at(0.0).state);
     for (const Sample& sample : Sampler(trajectory).all(3)) {
-        put(surface, sample.state);
+        set_state(surface, sample.state);
         surface.run();
         ASSERT_LE(std::abs(surface.output(0)), 1e-13) << sample.t;
         ASSERT_LE(std::abs(surface.output(1)), 1e-13) << sample.t;
@@ -192,7 +192,7 @@ TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
         run.parameters[0] = g;
         const auto stepper = make_taylor(*model, run);
         stepper->initialize(Motion::contact, {run.q, run.v}, {});
-        ASSERT_EQ(stepper->do_step(1.0, 0.0, 1e-15), Obstacle::none);
+        ASSERT_EQ(stepper->do_step(1.0, 0.0, 1e-15), StepFailure::none);
         EXPECT_EQ(stepper->stays_negative(), g == 1.0) << g;
     }
 }

@@ -100,7 +100,7 @@ TEST(SineAndCosineOfLanes, KnowWhatIsNoAngleAndDoNotDisturbTheOthers) {
 LaneStep any_step(const Model& model, Uniform& uniform) {
     const Run run = model.default_run();
     LaneStep step(model.lane_programs().coordinates);
-    const std::size_t n = step.n.size();
+    const std::size_t n = step.impulse_direction.size();
     for (std::size_t lane = 0; lane < Eight::count; ++lane) {
         for (std::size_t i = 0; i < n; ++i) {
             step.q_and_v[i][lane] = run.q[static_cast<Eigen::Index>(i)] + uniform(0.3);
@@ -127,7 +127,7 @@ std::vector<Eight> parameters_of(const Model& model) {
 std::string bytes_of(const LaneStep& step) {
     std::string bytes;
     for (const Eight& x : step.q_and_v) append(bytes, x);
-    for (const Eight& x : step.n) append(bytes, x);
+    for (const Eight& x : step.impulse_direction) append(bytes, x);
     for (const Eight& x : step.g) append(bytes, x);
     for (const Eight* x : {&step.t, &step.h, &step.hdot, &step.error, &step.rate_error, &step.duration, &step.end_h,
                            &step.end_hdot, &step.end_W, &step.rounding})

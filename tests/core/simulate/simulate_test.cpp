@@ -181,7 +181,7 @@ TEST(Restitution, FourValuesThatBrokeCarefulCode) {
 
 double energy(const Model& model, const Run& run, const State& state) {
     auto program = model.evaluator(model.energy(), run.parameters);
-    put(program, state);
+    set_state(program, state);
     program.run();
     return program.output(0);
 }
@@ -215,7 +215,7 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
         if (event.kind != Event::Kind::impact) continue;
-        put(normal, State{event.q, event.v_after});
+        set_state(normal, State{event.q, event.v_after});
         normal.run();
         const bool captured = i + 1 < trajectory.events.size() && trajectory.events[i + 1].kind == Event::Kind::zeno;
         EXPECT_EQ(captured, normal.output(0) < 0.0);
@@ -332,7 +332,7 @@ TEST(Samples, TimesRiseAndStatesMeetTheEventsTheyBorder) {
                 EXPECT_GE(samples[i].t, samples[i - 1].t);
                 EXPECT_GE(samples[i].j, samples[i - 1].j);
             }
-            put(surface, samples[i].state);
+            set_state(surface, samples[i].state);
             surface.run();
             EXPECT_GE(surface.output(0), -1e-12) << "t = " << samples[i].t;
             if (samples[i].contact) {

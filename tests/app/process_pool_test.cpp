@@ -1,5 +1,5 @@
 // Work shared by processes, and how it is told.
-#include "pictures/crew.hpp"
+#include "pictures/process_pool.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ TEST(Progress, TellsHowMuchHowFastAndHowLong) {
 }
 
 // A task writes a file, which every process can see.
-TEST(Crew, DoesEveryTaskOnce) {
+TEST(ProcessPool, DoesEveryTaskOnce) {
     for (const int jobs : {1, 2, 7}) {
         const Folder folder;
         std::size_t last = 0;
@@ -50,7 +50,7 @@ TEST(Crew, DoesEveryTaskOnce) {
               0u);
 }
 
-TEST(Crew, WhereOneIsKilledTheOthersGoOn) {
+TEST(ProcessPool, WhereOneIsKilledTheOthersGoOn) {
     const Folder folder;
     const auto begin = [&]() -> std::function<void(std::size_t)> {
         return [&](std::size_t task) {
@@ -65,7 +65,7 @@ TEST(Crew, WhereOneIsKilledTheOthersGoOn) {
     EXPECT_FALSE(fs::exists(folder.path() / "3"));
 }
 
-TEST(Crew, TheFirstProblemEndsTheWork) {
+TEST(ProcessPool, TheFirstProblemEndsTheWork) {
     const Folder folder;
     const auto begin = [&]() -> std::function<void(std::size_t)> {
         return [&](std::size_t task) {

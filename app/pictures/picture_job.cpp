@@ -1,4 +1,4 @@
-#include "pictures/studio.hpp"
+#include "pictures/picture_job.hpp"
 
 #include <imgui.h>
 
@@ -10,21 +10,21 @@
 
 namespace achilles {
 
-Studio::Studio(const std::vector<std::string>& words) : command_(command_line(words)) {}
+PictureJob::PictureJob(const std::vector<std::string>& words) : command_(command_line(words)) {}
 
-Studio::Studio(const Origin& origin)
+PictureJob::PictureJob(const Origin& origin)
     : inputs_(origin.sources), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
-void Studio::add(const std::string& path) {
+void PictureJob::add(const std::string& path) {
     if (!reproduces_) files_.add(path);
 }
 
-Notes Studio::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
+Notes PictureJob::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
     return notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs);
 }
 
-void Studio::put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs,
-                 const Make& make) {
+void PictureJob::put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs,
+                     const Make& make) {
     if (reproduces_ && picture != wanted_) return;
     const std::string bytes = make(notes_of(picture, runs));
     if (reproduces_)
@@ -33,11 +33,11 @@ void Studio::put(const std::string& path, const std::string& picture, const std:
         files_.put(path, bytes);
 }
 
-void Studio::put_text(const std::string& path, const std::string& text) {
+void PictureJob::put_text(const std::string& path, const std::string& text) {
     if (!reproduces_) files_.put(path, text);
 }
 
-void Studio::commit() {
+void PictureJob::commit() {
     if (!reproduces_) files_.commit();
 }
 

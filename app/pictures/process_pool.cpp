@@ -1,4 +1,4 @@
-#include "pictures/crew.hpp"
+#include "pictures/process_pool.hpp"
 
 #include <poll.h>
 #include <sys/mman.h>

@@ -1,5 +1,5 @@
 // What the commands that make pictures share: where they read from and where pictures go. `reproduce` runs the same
-// commands in a studio of its own, which reads from a picture and keeps the one that is asked for.
+// commands in a job of its own, which reads from a picture and keeps the one that is asked for.
 #pragma once
 
 #include <functional>
@@ -14,12 +14,12 @@
 
 namespace achilles {
 
-class Studio {
+class PictureJob {
  public:
     // For a command line: from the disk, into files.
-    explicit Studio(const std::vector<std::string>& words);
+    explicit PictureJob(const std::vector<std::string>& words);
     // For a picture made before.
-    explicit Studio(const Origin& origin);
+    explicit PictureJob(const Origin& origin);
 
     Inputs& inputs() { return inputs_; }
     bool reproduces() const { return reproduces_; }
