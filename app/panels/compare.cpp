@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "number/angle.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
@@ -90,7 +91,7 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const double factor = is_angle ? degrees(1.0) : 1.0;
         row(typeset_name(coordinates[i].name) + (is_angle ? " [\u00b0]" : ""), pinned.end.q[at] * factor,
             present.end.q[at] * factor);
         row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""), pinned.end.v[at] * factor,

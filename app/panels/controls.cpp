@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "figure/label.hpp"
+#include "number/angle.hpp"
 #include "panels/print.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
@@ -16,8 +16,6 @@
 namespace achilles {
 
 namespace {
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 // "double pendulum" for the file double_pendulum.toml: short enough for the column, whatever the title.
 std::string short_name(const std::string& system) {
@@ -95,7 +93,7 @@ void parameters(const Session& session, const Run& file, PanelState& state, Comm
                       p.range[0],
                       p.range[1],
                       file.parameters[i],
-                      is_angle ? degrees_per_radian : 1.0};
+                      is_angle ? degrees(1.0) : 1.0};
         if (moved(slider, state)) commands.emplace_back(command::Set{p.name, slider.value});
     }
 }
@@ -118,7 +116,7 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
                   range[0],
                   range[1],
                   is_rate ? file.v[at] : file.q[at],
-                  is_angle ? degrees_per_radian : 1.0};
+                  is_angle ? degrees(1.0) : 1.0};
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
 }
 

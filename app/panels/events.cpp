@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "figure/label.hpp"
+#include "number/angle.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
@@ -134,7 +135,7 @@ std::string state_text(const Session& session, const Event& event, float width) 
     std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto at = static_cast<Eigen::Index>(i);
         positions += fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
                                  number(event.q[at] * factor, "{:.5g}"), is_angle ? "\u00b0" : "");

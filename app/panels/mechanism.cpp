@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "number/angle.hpp"
 #include "paint/label.hpp"
 #include "paint/mechanism.hpp"
 #include "panels/widgets.hpp"
@@ -31,7 +32,7 @@ float show_state(const Session& session, ImVec2 at, float width) {
     const auto columns = static_cast<std::size_t>(std::max(1.0F, (width - units(first)) / units(column)));
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto index = static_cast<Eigen::Index>(i);
         const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
         const std::string rate_unit = unit.empty() ? "" : unit + "/s";

@@ -6,6 +6,7 @@
 
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
+#include "number/angle.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"
@@ -35,7 +36,7 @@ void show_rates(const Session& session, const Event& event) {
     const auto& coordinates = session.description().coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? 57.29577951308232 : 1.0;
+        const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto at = static_cast<Eigen::Index>(i);
         row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
             number(event.v_before[at] * factor), number(event.v_after[at] * factor));

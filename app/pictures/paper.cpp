@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <span>
 
@@ -13,6 +12,7 @@
 #include "figure/label.hpp"
 #include "figure/publication.hpp"
 #include "figure/ticks.hpp"
+#include "number/angle.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
@@ -257,8 +257,8 @@ std::optional<double> time_of(const Event* event) { return event == nullptr ? st
 // The first coordinate at an event, in degrees.
 std::optional<double> degrees_at(const Event* event) {
     if (event == nullptr) return std::nullopt;
-    const double degrees = event->q[0] * 180.0 / std::numbers::pi;
-    return std::abs(degrees) < 1e-9 ? 0.0 : degrees;
+    const double angle = degrees(event->q[0]);
+    return std::abs(angle) < 1e-9 ? 0.0 : angle;
 }
 
 // What is proved with the sharp conditions and the system's own tolerances.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "figure/ticks.hpp"
+#include "session/refusal.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -13,9 +14,6 @@ namespace achilles {
 namespace {
 
 constexpr int most_columns = 4, most_rows = 4;
-
-// The user's hand, not a file, made the mistake.
-InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
 ViewDescription view_of(const std::string& name, const std::string& x, const std::vector<std::string>& y) {
     ViewDescription view{name, {x, {}}, {}};

@@ -7,14 +7,9 @@
 #include <vector>
 
 #include "expression/nearest.hpp"
+#include "session/refusal.hpp"
 
 namespace achilles {
-
-namespace {
-
-InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
-
-}  // namespace
 
 void Scene::perform(const command::Look& command) {
     if (!(command.width > 0.0) || !std::isfinite(command.x) || !std::isfinite(command.y) ||

@@ -10,14 +10,12 @@
 #include "expression/nearest.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "session/refusal.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
 
 namespace {
-
-// A refusal that names no file: the user's hand made the mistake.
-InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
 void expect_positive(double value, const char* what) {
     if (!(std::isfinite(value) && value > 0.0))

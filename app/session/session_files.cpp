@@ -3,13 +3,12 @@
 
 #include "journal/journal.hpp"
 #include "pictures/take_away.hpp"
+#include "session/refusal.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
 
 namespace {
-
-InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
 
 // The text that a command line finds under a system's name; nothing where there is no such file.
 std::optional<std::string> held_by_file(const SystemSource& library, const std::string& system) {

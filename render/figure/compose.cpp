@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
+#include "number/angle.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -75,7 +75,7 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
         const bool is_rate = text == c.name + "'";
         if (text != c.name && !is_rate) continue;
         result.unit = c.unit == "rad" ? "\u00B0" : typeset_unit(c.unit);
-        if (c.unit == "rad") result.factor = 180.0 / std::numbers::pi;
+        if (c.unit == "rad") result.factor = degrees(1.0);
         if (is_rate && !result.unit.empty()) result.unit += "/s";
     }
     if (result.is_time && units) result.unit = "s";
