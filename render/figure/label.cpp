@@ -188,6 +188,10 @@ char32_t next_code_point(std::string_view text, std::size_t& at) {
 
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
+        if (static_cast<unsigned char>(text[i]) < 0x80) {  // most of any text
+            ++i;
+            continue;
+        }
         const std::size_t begin = i;
         const char32_t code = next_code_point(text, i);
         const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;

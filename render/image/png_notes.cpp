@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "figure/label.hpp"
 
@@ -14,6 +16,9 @@ namespace {
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t header_size = 12 + 13;  // of the first chunk, IHDR, with length, name and check sum
 constexpr std::size_t longest_chunk = 0x7FFFFFFF, longest_keyword = 79;
+// A note in memory is larger than an empty one in a file: without a limit a file of a gigabyte would take six.
+constexpr std::size_t most_notes = std::size_t{1} << 16;
+constexpr const char* too_many = "a PNG file holds at most 65536 notes";
 
 // CRC-32 as PNG wants it (ISO 3309): polynomial 0xEDB88320, the lowest bit first.
 std::uint32_t check_sum(std::string_view bytes) {
@@ -46,13 +51,17 @@ bool is_ascii(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-std::string chunk(const Note& note) {
+bool is_keyword(std::string_view word) {
     const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
-    if (note.keyword.empty() || note.keyword.size() > longest_keyword ||
-        !std::all_of(note.keyword.begin(), note.keyword.end(), is_printable))
+    return !word.empty() && word.size() <= longest_keyword && std::all_of(word.begin(), word.end(), is_printable);
+}
+
+bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos && is_utf8(text); }
+
+std::string chunk(const Note& note) {
+    if (!is_keyword(note.keyword))
         throw std::runtime_error("'" + note.keyword + "' is no keyword for a note in a PNG file");
-    if (note.text.find('\0') != std::string::npos || !is_utf8(note.text))
-        throw std::runtime_error("only UTF-8 text without zero bytes can stand in a PNG file");
+    if (!is_text(note.text)) throw std::runtime_error("only UTF-8 text without zero bytes can stand in a PNG file");
     const std::string_view zeros("\0\0\0\0\0", 5);
     // iTXt: keyword, end, not compressed (2 bytes), no language, no translated keyword, text.
     const std::string body = is_ascii(note.text) ? "tEXt" + note.keyword + std::string(zeros.substr(0, 1)) + note.text
@@ -71,24 +80,37 @@ std::string_view take_word(std::string_view& bytes) {
 }
 
 std::string utf8_of_latin1(std::string_view text) {
+    if (is_ascii(text)) return std::string(text);
     std::string result;
     for (const char c : text) result += utf8(static_cast<unsigned char>(c));
     return result;
 }
 
-void read_text(std::string_view data, Notes& notes) {
+Note read_text(std::string_view data) {
     const std::string keyword(take_word(data));
-    notes.push_back({keyword, utf8_of_latin1(data)});
+    return {keyword, utf8_of_latin1(data)};
 }
 
-void read_international_text(std::string_view data, Notes& notes) {
+// Nothing for a compressed one: we write none, and a stranger's may unpack to a thousand times its size.
+std::optional<Note> read_international_text(std::string_view data) {
     const std::string keyword(take_word(data));
     if (data.size() < 2) throw std::runtime_error("the PNG file is damaged: a text chunk is too short");
     const bool compressed = data[0] != 0;
     data.remove_prefix(2);
-    take_word(data);                                                 // the language
-    take_word(data);                                                 // the keyword in it
-    if (!compressed) notes.push_back({keyword, std::string(data)});  // we write no compressed ones
+    take_word(data);  // the language
+    take_word(data);  // the keyword in it
+    if (compressed) return std::nullopt;
+    return Note{keyword, std::string(data)};
+}
+
+// What with_notes could not have written is left out: it is nobody's but the stranger's who wrote it.
+void read_note(std::string_view name, std::string_view data, Notes& notes) {
+    std::optional<Note> note;
+    if (name == "tEXt") note = read_text(data);
+    if (name == "iTXt") note = read_international_text(data);
+    if (!note || !is_keyword(note->keyword) || !is_text(note->text)) return;
+    if (notes.size() == most_notes) throw std::runtime_error(too_many);
+    notes.push_back(*std::move(note));
 }
 
 }  // namespace
@@ -97,11 +119,13 @@ std::string with_notes(std::string_view png, const Notes& notes) {
     const std::size_t begin = signature.size() + header_size;
     if (png.size() < begin || png.substr(0, signature.size()) != signature)
         throw std::runtime_error("notes need a PNG file to stand in");
+    if (notes.size() > most_notes) throw std::runtime_error(too_many);
     std::string result(png.substr(0, begin));
     for (const Note& note : notes) result += chunk(note);
     return result.append(png.substr(begin));
 }
 
+// libpng would be longer: it has to be led past the pixels, which it keeps a copy of, and kept from unpacking.
 Notes png_notes(std::string_view png) {
     if (png.substr(0, signature.size()) != signature) throw std::runtime_error("this is no PNG file");
     png.remove_prefix(signature.size());
@@ -114,8 +138,7 @@ Notes png_notes(std::string_view png) {
         if (check_sum(body) != big_endian(png.substr(8 + length)))
             throw std::runtime_error("the PNG file is damaged: a check sum is wrong");
         if (name == "IEND") return notes;
-        if (name == "tEXt") read_text(body.substr(4), notes);
-        if (name == "iTXt") read_international_text(body.substr(4), notes);
+        read_note(name, body.substr(4), notes);
         png.remove_prefix(12 + length);
     }
 }

@@ -9,11 +9,13 @@
 namespace achilles {
 
 // The PNG with the notes after its header: tEXt where the text is ASCII, else iTXt. Throws std::runtime_error for a
-// keyword that is none, a zero byte or broken UTF-8 in a text, or if `png` is no PNG.
+// keyword that is none, a zero byte or broken UTF-8 in a text, more than 65536 notes, or if `png` is no PNG.
 std::string with_notes(std::string_view png, const Notes& notes);
 
-// The uncompressed notes of a PNG file, in order; the file may come from anywhere. Throws std::runtime_error that says
-// what is wrong with it: no PNG, cut off, damaged (every chunk's check sum is verified).
+// The notes of a PNG file, in order, before the pixels and after them; the file may come from anywhere. Left out is
+// what with_notes could not have written: a compressed text, a keyword that is none, a zero byte or broken UTF-8.
+// Throws std::runtime_error that says what is wrong: no PNG, cut off, damaged (every chunk's check sum is verified),
+// more than 65536 notes. Takes time and memory proportional to the file's size; pixels are not decoded.
 Notes png_notes(std::string_view png);
 
 }  // namespace achilles

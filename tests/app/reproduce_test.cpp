@@ -160,6 +160,9 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     const std::string bare = png.substr(0, 33) + png.substr(png.find("IDAT") - 4);
     std::string flipped = png;
     flipped[200] = static_cast<char>(flipped[200] ^ 1);
+    using std::string_literals::operator""s;
+    std::string empty_notes;
+    for (int i = 0; i <= 65536; ++i) empty_notes += "\x00\x00\x00\x02tEXtk\x00j*l\xE0"s;
     const auto with = [&](const Notes& notes) { return with_notes(bare, notes); };
     const Note command{"Achilles Command", "achilles figure ./drop.toml"};
     const std::pair<std::string, std::string> cases[] = {
@@ -171,6 +174,14 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
         {bare, "x: this picture does not tell where it comes from\n"},
         {"<svg/>", "x: this picture does not tell where it comes from\n"},
         {svg.substr(0, 1200), "x: its notes are cut off\n"},
+        // Its command is broken UTF-8; a length beyond the file; more notes than anybody needs.
+        {bare.substr(0, 33) +
+             "\x00\x00\x00\x1FiTXtAchilles Command\x00\x00\x00\x00\x00"
+             "achilles \xFF\x9CN\xEDj"s +
+             bare.substr(33),
+         "x: this picture does not tell where it comes from\n"},
+        {bare.substr(0, 33) + "\x7F\xFF\xFF\xFFtEXt"s + bare.substr(33), "x: the PNG file is cut off\n"},
+        {bare.substr(0, 33) + empty_notes + bare.substr(33), "x: a PNG file holds at most 65536 notes\n"},
         {with({{"Achilles Command", "rm -rf /"}}), "x: its origin names no command of achilles\n"},
         {with({{"Achilles Command", "achilles list"}}),
          "x: its command cannot be run here: A subcommand is required\nachilles list\n"},
@@ -195,6 +206,26 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     }
     EXPECT_EQ(folder.run("reproduce none.png").err, "none.png: there is no such file\n");
     EXPECT_EQ(folder.run("reproduce a.png --out none/a.png").status, 2);
+}
+
+// Notes that strangers added, one of them in broken UTF-8, one after the pixels: the picture is what it was.
+TEST(Reproduce, StrangersNotesChangeNothing) {
+    using std::string_literals::operator""s;
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
+    const std::string png = content(folder.path() / "a.png");
+    const std::size_t end = png.size() - 12;
+    const std::string broken = "\x00\x00\x00\x0DiTXtComment\x00\x00\x00\x00\x00\xFFvo\x85R"s,
+                      plain = "\x00\x00\x00\x0CtEXtComment\x00mine\xE6\xB6\x86v"s;
+    const std::string added = png.substr(0, 33) + broken + png.substr(33, end - 33) + plain + png.substr(end);
+    EXPECT_EQ(png_notes(added).size(), png_notes(png).size() + 1);
+    EXPECT_EQ(png_notes(added).back(), (Note{"Comment", "mine"}));
+    folder.put("x", added);
+    const Answer answer = folder.run("reproduce x --out again.png");
+    EXPECT_EQ(answer.status, 1);
+    EXPECT_EQ(answer.err.substr(0, 42), "achilles: x: made again it has other bytes");
+    EXPECT_EQ(content(folder.path() / "again.png"), png);
 }
 
 TEST(Figure, RefusalsAreOneMessageAndLeaveNothing) {
