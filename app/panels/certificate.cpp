@@ -134,7 +134,7 @@ void show_certificate(const Event& event) {
     const float below = ImGui::GetCursorPosY();
     ImGui::SetCursorPos({left + half, top});
     ImGui::BeginGroup();
-    for (const Inequality& inequality : event.certificate->inequalities)
+    for (const Inequality& inequality : event.certificate->inequalities())
         show_inequality(inequality, inequality.name == event.certificate->decisive);
     ImGui::EndGroup();
     ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));

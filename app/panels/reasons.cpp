@@ -45,7 +45,7 @@ void show_rates(const Session& session, const Event& event) {
 
 // The first inequality that does not hold, if any.
 const Inequality* failed(const Certificate& certificate) {
-    for (const Inequality& inequality : certificate.inequalities)
+    for (const Inequality& inequality : certificate.inequalities())
         if (!(inequality.left < inequality.right)) return &inequality;
     return nullptr;
 }

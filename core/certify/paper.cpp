@@ -1,7 +1,6 @@
 #include "certify/paper.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,9 +8,11 @@ namespace achilles {
 
 namespace {
 
-double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {
+// Of a vector with n entries.
+template <class Entry>
+double norm(std::size_t n, const Entry& entry) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < n; ++i) sum += evaluator.output(first + i) * evaluator.output(first + i);
+    for (std::size_t i = 0; i < n; ++i) sum += entry(i) * entry(i);
     return std::sqrt(sum);
 }
 
@@ -37,18 +38,19 @@ PaperConditions::PaperConditions(const Model& model, const Run& run, const Groun
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
-      surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
-      motion_(model.evaluator<Interval>(model.bouncing().motion, run.parameters)) {}
+      contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
+      rates_(model.evaluator<Interval>(model.bouncing().rates, run.parameters)) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
 bool PaperConditions::fails_at_point(const Collision& collision) {
     set_state(point_, State{collision.before.q, collision.restart});
     point_.run();
-    const double e = mid(e_), w = collision.speed, a = -point_.output(0);
+    const double e = mid(e_), w = collision.speed, a = -point_.hddot();
     if (!(a > 0.0) || !(e < 1.0)) return true;
     const double time = 2.0 * e * w / (a * (1.0 - e));
-    const double eta = norm(point_, 1, dof_), zeta = norm(point_, 1 + dof_, dof_);
+    const double eta = norm(dof_, [&](std::size_t i) { return point_.impulse_direction(i); });
+    const double zeta = norm(dof_, [&](std::size_t i) { return point_.acceleration(i); });
     const double velocity = 2.0 * e * eta / (1.0 - e) * w + zeta * time;
     constexpr double margin = 1.0 - 1e-9;
     return margin * time > truncation_.eps_t || margin * time * collision.restart.norm() > truncation_.eps_q ||
@@ -67,12 +69,12 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
     }
     for (std::size_t i = 0; i < 2 * dof_; ++i) box_.input(i) = box[i];
     box_.run();
-    set_state(surface_, collision.before);
-    surface_.run();
+    set_state(contact_, collision.before);
+    contact_.run();
     for (std::size_t i = 0; i < dof_; ++i) {
-        n.push_back(box_.output(1 + i));
-        f.push_back(box_.output(1 + dof_ + i));
-        g.push_back(surface_.output(2 + dof_ + i));
+        n.push_back(box_.impulse_direction(i));
+        f.push_back(box_.acceleration(i));
+        g.push_back(contact_.gradient(i));
     }
     box.emplace_back(0.0);  // sigma: the box holds velocities themselves
     const Interval a = -hddot_.over(box), eta = norm(n), zeta = norm(f), one(1.0), two(2.0);
@@ -82,7 +84,7 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
              Interval(eta.hi()),
              Interval(zeta.hi()),
              norm(v) + Interval(eps_v),
-             abs(surface_.output(1)),
+             abs(contact_.hdot()),
              {},
              {},
              {},
@@ -123,21 +125,21 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
     return std::nullopt;
 }
 
-// |s_k - v*| + T max |s'| over V; see the header. Relies on surface_ being at this collision.
+// |s_k - v*| + T max |s'| over V; see the header. Relies on contact_ being at this collision.
 Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b, const Interval& wait) {
     const Interval speeds(-b.w.hi(), b.w.hi());
     for (std::size_t i = 0; i < dof_; ++i) {
-        motion_.input(i) = b.box[i];
-        motion_.input(dof_ + i) = b.box[dof_ + i] - b.n[i] * speeds;
+        rates_.input(i) = b.box[i];
+        rates_.input(dof_ + i) = b.box[dof_ + i] - b.n[i] * speeds;
     }
-    motion_.input(sigma_) = speeds;
-    motion_.run();
+    rates_.input(sigma_) = speeds;
+    rates_.run();
     std::vector<Interval> distance;
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        const Interval s = Interval(collision.before.v[k]) - surface_.output(2 + i) * surface_.output(1);
+        const Interval s = Interval(collision.before.v[k]) - contact_.impulse_direction(i) * contact_.hdot();
         distance.push_back(abs(s - Interval(collision.restart[k])) +
-                           Interval(mag(motion_.output(dof_ + i))) * Interval(wait.hi()));
+                           Interval(mag(rates_.s_rate(i))) * Interval(wait.hi()));
     }
     return norm(distance);
 }
@@ -147,20 +149,19 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.certified = true;
     certificate.conditions = Conditions::paper;
     certificate.reinitialization = truncation_.reinitialization;
-    const std::array<const char*, 3> names{"c1: time", "c2: position", "c3: velocity"};
-    const std::array<Interval, 3> factors{b.time, b.position, b.velocity};
     // The c_i are those of the run's tolerances: the bounds over V are below V's own radii, and those below the
     // tolerances.
-    const std::array<double, 3> eps{truncation_.eps_t, truncation_.eps_q, truncation_.eps_v};
-    std::array<double, 3> c{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        c[i] = factors[i].hi() > 0.0 ? (Interval(eps[i]) / Interval(factors[i].hi())).lo()
-                                     : std::numeric_limits<double>::infinity();
-        certificate.inequalities.push_back({names[i], b.w.hi(), c[i]});
-    }
-    name_decisive(certificate);
-    certificate.inequalities.push_back({"e a_max/a_min", b.e1.hi(), 1.0});
-    certificate.inequalities.push_back({"normal acceleration", -b.a_min.lo(), 0.0});
+    const auto condition = [&](const char* name, const Interval& factor, double eps) -> Inequality {
+        const bool none = !(factor.hi() > 0.0);
+        return {name, b.w.hi(),
+                none ? std::numeric_limits<double>::infinity() : (Interval(eps) / Interval(factor.hi())).lo()};
+    };
+    const Certificate::Decision decision{condition("c1: time", b.time, truncation_.eps_t),
+                                         condition("c2: position", b.position, truncation_.eps_q),
+                                         condition("c3: velocity", b.velocity, truncation_.eps_v)};
+    certificate.decision = decision;
+    certificate.decisive = decision.closest().name;
+    certificate.assumptions = {{"e a_max/a_min", b.e1.hi(), 1.0}, {"normal acceleration", -b.a_min.lo(), 0.0}};
     certificate.position_bound = (b.position * b.w).hi();
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
@@ -170,8 +171,14 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
                   estimated_wait(trend_at(trend_, collision), mid(e_), collision.speed));
     const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
     certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();
-    certificate.paper =
-        Certificate::Paper{b.e1.hi(), b.e2.hi(), b.beta.hi(), b.eta.hi(), b.zeta.hi(), c[0], c[1], c[2]};
+    certificate.paper = Certificate::Paper{b.e1.hi(),
+                                           b.e2.hi(),
+                                           b.beta.hi(),
+                                           b.eta.hi(),
+                                           b.zeta.hi(),
+                                           decision.time.right,
+                                           decision.position.right,
+                                           decision.velocity.right};
     return certificate;
 }
 

@@ -50,9 +50,12 @@ class PaperConditions : public TruncationConditions {
     std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;
-    Evaluator<double> point_, trend_;
+    Definition7Terms<Evaluator<double>> point_;
+    TrendTerms<Evaluator<double>> trend_;
     Range hddot_;
-    Evaluator<Interval> box_, surface_, motion_;
+    Definition7Terms<Evaluator<Interval>> box_;
+    ContactTerms<Evaluator<Interval>> contact_;
+    BouncingRates<Evaluator<Interval>> rates_;
 };
 
 }  // namespace achilles

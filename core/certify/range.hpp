@@ -13,7 +13,7 @@ class Range {
  public:
     Range() = default;
     // `value` and `gradient` are prepared with the parameters; gradient output i is the derivative by input slots[i].
-    // More outputs may follow, to be read by further().
+    // More outputs may follow, to be read by output().
     Range(Evaluator<Interval> value, Evaluator<Interval> gradient, std::vector<std::uint32_t> slots);
 
     // Contains the value at every point of the box (one interval for each of the slots). Over a box on which the value
@@ -25,7 +25,7 @@ class Range {
     // near the middle.
     Interval over_part(const std::vector<Interval>& part) const;
     // Output i of the gradient's program after the derivatives, over that box.
-    const Interval& further(std::size_t i) const { return gradient_.output(slots_.size() + i); }
+    const Interval& output(std::size_t i) const { return gradient_.output(slots_.size() + i); }
     // The derivative by variable i over the box that was looked at last; undefined where it is not defined all over it.
     const Interval& slope(std::size_t i) const { return slopes_[i]; }
 

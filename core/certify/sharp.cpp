@@ -47,11 +47,12 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Groun
       sigma_(model.layout().sigma()),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
-      hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().shadow, run.parameters), bouncing_slots(model.layout())),
-      surface_(model.evaluator<Interval>(model.surface(), run.parameters)),
+      hddot_(Range(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
+                   model.evaluator<Interval>(model.bouncing().shadow, run.parameters), bouncing_slots(model.layout())),
+             dof_),
+      contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
       trend_(model.evaluator(model.bouncing().trend, run.parameters)),
-      guess_(model.evaluator(model.bouncing().motion, run.parameters)),
+      guess_(model.evaluator(model.bouncing().rates, run.parameters)),
       box_{std::vector<Interval>(dof_),
            std::vector<Interval>(dof_),
            std::vector<double>(dof_),
@@ -117,8 +118,7 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
         variables_[dof_ + i] = box_.s0[i];
     }
     variables_[2 * dof_] = Interval(0.0);
-    const auto rate = [&](std::size_t i) { return -hddot_.further(6 * dof_ + 2 * dof_ * dof_ + i); };
-    const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), rate(0), rate(1), rate(2)};
+    const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
     if (third.lo() > time.wait.earliest.lo()) time.wait.earliest = third;
@@ -131,8 +131,7 @@ bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
     bool inside = true;
     for (std::size_t i = 0; i < dof_; ++i) {
-        const Interval &A = hddot_.further(i), &n = hddot_.further(dof_ + i), &B = hddot_.further(2 * dof_ + i),
-                       &D = hddot_.further(3 * dof_ + i);
+        const Interval &A = hddot_.A(i), &n = hddot_.n(i), &B = hddot_.B(i), &D = hddot_.D(i);
         need_q_[i] = times(variables_[dof_ + i] + n * box_.sigma, T);
         need_s_[i] = times(A + B * box_.sigma + D * square(box_.sigma), T);
         const double q = need_q_[i] + times(n, h);
@@ -150,26 +149,17 @@ void SharpConditions::find_shadow(const Time& time) {
     const Interval e3 = e_ * square(e_), e2 = e_ * sqrt(time.r), one(1.0);
     const Interval gap_integral =
         Interval(2.0) * e3 * box_.w * square(box_.w) / (Interval(3.0) * square(time.a_min) * (one - e2 * square(e2)));
-    const auto n = [&](std::size_t i) { return hddot_.further(dof_ + i); };
-    const auto B = [&](std::size_t i) { return hddot_.further(2 * dof_ + i); };
-    const auto D = [&](std::size_t i) { return hddot_.further(3 * dof_ + i); };
-    const auto ndot = [&](std::size_t i) { return hddot_.further(4 * dof_ + i); };
-    const auto Bdot = [&](std::size_t i) { return hddot_.further(5 * dof_ + i); };
-    const auto dA_dq = [&](std::size_t i, std::size_t j) { return hddot_.further(6 * dof_ + i * dof_ + j); };
-    const auto dA_ds = [&](std::size_t i, std::size_t j) {
-        return hddot_.further(6 * dof_ + dof_ * dof_ + i * dof_ + j);
-    };
-
+    const ShadowTerms<Range>& x = hddot_;
     double lipschitz = 1.0, largest_c = 0.0, largest_d = 0.0;
     for (std::size_t i = 0; i < dof_; ++i) {
-        Interval drift = -Bdot(i), row(0.0);
+        Interval drift = -x.Bdot(i), row(0.0);
         for (std::size_t j = 0; j < dof_; ++j) {
-            drift = drift + dA_dq(i, j) * n(j) + dA_ds(i, j) * B(j);
-            row = row + abs(dA_dq(i, j)) + abs(dA_ds(i, j));
+            drift = drift + x.dA_dq(i, j) * x.n(j) + x.dA_ds(i, j) * x.B(j);
+            row = row + abs(x.dA_dq(i, j)) + abs(x.dA_ds(i, j));
         }
         lipschitz = std::max(lipschitz, row.hi());
-        const Interval c_q = abs(B(i) - ndot(i)) * gap_integral;
-        const Interval c_s = (abs(drift) + time.a_max * abs(D(i))) * gap_integral;
+        const Interval c_q = abs(x.B(i) - x.ndot(i)) * gap_integral;
+        const Interval c_s = (abs(drift) + time.a_max * abs(x.D(i))) * gap_integral;
         shadow_.E_q[i] = Interval(c_q.hi());
         shadow_.E_s[i] = Interval(c_s.hi());
         largest_c = std::max({largest_c, c_q.hi(), c_s.hi()});
@@ -180,23 +170,23 @@ void SharpConditions::find_shadow(const Time& time) {
     for (std::size_t i = 0; i < dof_; ++i) {
         shadow_.E_q[i] = shadow_.E_q[i] + grown;
         shadow_.E_s[i] = shadow_.E_s[i] + grown + Interval(mag(box_.d[i]));
-        shadow_.uniform[i] = shadow_.E_q[i] + abs(n(i)) * time.height;
+        shadow_.uniform[i] = shadow_.E_q[i] + abs(x.n(i)) * time.height;
     }
 }
 
 // The box that the collision stands for.
 void SharpConditions::begin_box(const Collision& collision) {
-    set_state(surface_, collision.before);
-    surface_.run();
-    box_.w = abs(surface_.output(1));
+    set_state(contact_, collision.before);
+    contact_.run();
+    box_.w = abs(contact_.hdot());
     box_.sigma = Interval(-box_.w.hi(), box_.w.hi());
     const bool euclidean = truncation_.reinitialization == Reinitialization::euclidean;
     Interval g2(0.0);
-    for (std::size_t i = 0; i < dof_; ++i) g2 = g2 + square(surface_.output(2 + dof_ + i));
+    for (std::size_t i = 0; i < dof_; ++i) g2 = g2 + square(contact_.gradient(i));
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         const double v = std::abs(collision.before.v[k]);
-        const Interval &n = surface_.output(2 + i), &g = surface_.output(2 + dof_ + i);
+        const Interval &n = contact_.impulse_direction(i), &g = contact_.gradient(i);
         box_.q0[i] = rounded(collision.before.q[k], std::abs(collision.before.q[k]));
         box_.s0[i] = rounded(collision.tangential[k], v + (abs(n) * box_.w).hi());
         box_.d[i] = euclidean ? box_.w * abs(n - g / g2) : Interval(0.0);
@@ -211,10 +201,10 @@ void SharpConditions::predict_radii(const Collision& collision, const Trend& tre
     for (const double sigma : {w, -w}) {
         guess_.input(sigma_) = sigma;
         guess_.run();
-        for (std::size_t i = 0; sigma > 0.0 && i < 2 * dof_; ++i) rising_[i] = guess_.output(i);
+        for (std::size_t i = 0; sigma > 0.0 && i < 2 * dof_; ++i) rising_[i] = guess_.rate(i);
     }
     const auto need = [&](std::size_t i) {  // max |rate| T, and by how much h shifts it
-        const double falling = guess_.output(i);
+        const double falling = guess_.rate(i);
         return std::max(std::abs(rising_[i]), std::abs(falling)) * T + std::abs(rising_[i] - falling) / (2.0 * w) * h;
     };
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -265,22 +255,20 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     constexpr double none = std::numeric_limits<double>::infinity();
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
-    c.inequalities = {{"time bound", time.half_width(), truncation_.eps_t},
-                      {"position bound", c.uniform_position.value_or(none), truncation_.eps_q},
-                      {"velocity bound", c.shadowing_velocity.value_or(none), truncation_.eps_v},
-                      {"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0},
-                      {"normal acceleration", -c.a_min, 0.0}};
-    name_decisive(c);
+    c.decision = {{"time bound", time.half_width(), truncation_.eps_t},
+                  {"position bound", c.uniform_position.value_or(none), truncation_.eps_q},
+                  {"velocity bound", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
+    c.assumptions = {{"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
+    c.decisive = c.decision->closest().name;
     return c;
 }
 
 std::optional<Certificate> SharpConditions::do_certify(const Collision& collision) {
     auto certificate = prove(collision);
     if (!certificate || !certificate->uniform_position) return std::nullopt;
-    const double time = certificate->inequalities[0].left / truncation_.eps_t;
-    const double position = *certificate->uniform_position / truncation_.eps_q;
-    const double velocity = *certificate->shadowing_velocity / truncation_.eps_v;
-    const double cubic = std::max(time, velocity);
+    const Certificate::Decision& decision = *certificate->decision;
+    const double position = decision.position.share();
+    const double cubic = std::max(decision.time.share(), decision.velocity.share());
     if (position <= 1.0 && cubic <= 1.0) return certificate;
     if (position > cubic) {
         remember(collision.speed, position, 2);

@@ -76,9 +76,10 @@ class SharpConditions : public TruncationConditions {
     std::uint32_t sigma_;
     Truncation truncation_;
     Interval e_;
-    Range hddot_;  // its further outputs: the shadow
-    Evaluator<Interval> surface_;
-    Evaluator<double> trend_, guess_;  // guess_: the motion
+    ShadowTerms<Range> hddot_;
+    ContactTerms<Evaluator<Interval>> contact_;
+    TrendTerms<Evaluator<double>> trend_;
+    BouncingRates<Evaluator<double>> guess_;
     // The last proof or guess that was too wide: at this impact speed, by this factor, which falls with this power of
     // it.
     double wide_speed_ = 0.0, too_wide_ = 0.0;

@@ -21,10 +21,10 @@ Interval norm(const std::vector<Interval>& x) {
     return sqrt(sum);
 }
 
-Trend trend_at(Evaluator<double>& program, const Collision& collision) {
-    set_state(program, State{collision.before.q, collision.tangential});
-    program.run();
-    return {-program.output(0), -program.output(1), -program.output(2)};
+Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision) {
+    set_state(terms, State{collision.before.q, collision.tangential});
+    terms.run();
+    return {-terms.hddot(), -terms.rate(), -terms.by_sigma()};
 }
 
 void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated) {
@@ -33,15 +33,6 @@ void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, dou
     const double low = std::max(tau_k, certificate.zeno_low), time = tau_k + estimated;
     certificate.zeno_time = std::isfinite(time) ? std::clamp(time, low, std::max(low, certificate.zeno_high))
                                                 : 0.5 * (low + certificate.zeno_high);
-}
-
-void name_decisive(Certificate& certificate) {
-    double closest = -1.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double share = certificate.inequalities[i].left / certificate.inequalities[i].right;
-        if (share > closest) certificate.decisive = certificate.inequalities[i].name;
-        closest = std::max(closest, share);
-    }
 }
 
 }  // namespace achilles

@@ -55,13 +55,11 @@ std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);
 
-// How -hddot changes at a collision, by the program Bouncing::trend.
-Trend trend_at(Evaluator<double>& program, const Collision& collision);
+// How -hddot changes at a collision.
+Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision);
 
 // Writes into the certificate that tau_inf lies between tau_k + earliest and tau_k + latest, and where it is estimated:
 // inside, and not before tau_k.
 void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated);
-// Names the one of the first three inequalities (time, position, velocity) that has least room.
-void name_decisive(Certificate& certificate);
 
 }  // namespace achilles

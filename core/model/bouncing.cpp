@@ -4,7 +4,7 @@ namespace achilles {
 
 namespace {
 
-using Row = std::vector<Expression>;
+using Row = Expressions;
 
 Row adopt(Graph& graph, const Row& row) {
     Row result;
@@ -50,7 +50,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.impulse_direction);
     const Row slope = along(A, v, n);  // df_c/dv n
     const Row bend = along(slope, v, n), turn = along(n, q, s), twist = along(n, q, n);
-    Row velocity, B, D, rate, slopes;
+    Row velocity, B, D, rate;
     for (std::size_t i = 0; i < count; ++i) {
         velocity.push_back(s[i] + n[i] * sigma);
         B.push_back(slope[i] - turn[i]);
@@ -58,8 +58,12 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         rate.push_back(A[i] + B[i] * sigma + D[i] * power(sigma, 2));
     }
     const Row ndot = along(n, q, velocity), Bdot = sum(along(B, q, velocity), along(B, v, rate));
-    for (const auto& slots : {q, v})
-        for (const Row& row : jacobian(A, slots)) slopes.insert(slopes.end(), row.begin(), row.end());
+    const auto row_by_row = [&](const std::vector<std::uint32_t>& variables) {
+        Row slopes;
+        for (const Row& row : jacobian(A, variables)) slopes.insert(slopes.end(), row.begin(), row.end());
+        return slopes;
+    };
+    const Row dA_dq = row_by_row(q), dA_ds = row_by_row(v);
     const Expression hddot_of_v = graph.adopt(equations.hddot), hddot = substitute(hddot_of_v, v, velocity);
     const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
     const Expression by_sigma = product(by_v, n), rate_along = product(by_q, s) + product(by_v, A);
@@ -69,15 +73,12 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     variables.push_back(layout.sigma());
 
     const Slots slots = layout.slots();
-    const auto program = [&](std::initializer_list<Row> parts) {
-        Row outputs;
-        for (const Row& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());
-        return Program(outputs, slots);
-    };
-    const Row slope_of_hddot = gradient(hddot, variables);
-    return {program({{hddot}}), program({slope_of_hddot}), program({velocity, rate}),
-            program({{hddot_of_v, rate_along, by_sigma}}),
-            program({slope_of_hddot, A, n, B, D, ndot, Bdot, slopes, drift})};
+    const Row slope_of_hddot = gradient(hddot, variables),
+              shadow = ShadowTerms<NoOutputs>::list(A, n, B, D, ndot, Bdot, dA_dq, dA_ds, drift);
+    return {Program(Row{hddot}, slots), Program(slope_of_hddot, slots),
+            ProgramOf<BouncingRates>::of(slots, velocity, rate),
+            ProgramOf<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
+            Program(joined({slope_of_hddot, shadow}), slots)};
 }
 
 }  // namespace achilles

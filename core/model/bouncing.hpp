@@ -9,20 +9,64 @@
 
 #include "model/derive.hpp"
 #include "program/program.hpp"
+#include "program/terms.hpp"
 
 namespace achilles {
 
+// At sigma = 0: hddot, its rate along the constrained motion (P below), its derivative with respect to sigma.
+template <class Base>
+class TrendTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression hddot, Expression rate, Expression by_sigma) { return {hddot, rate, by_sigma}; }
+    decltype(auto) hddot() const { return this->output(0); }
+    decltype(auto) rate() const { return this->output(1); }
+    decltype(auto) by_sigma() const { return this->output(2); }
+};
+
+// The rates q' = s + n sigma and s'.
+template <class Base>
+class BouncingRates : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(const Expressions& q_rate, const Expressions& s_rate) { return joined({q_rate, s_rate}); }
+    decltype(auto) rate(std::size_t i) const { return this->output(i); }  // of the variables (q, s)
+    decltype(auto) s_rate(std::size_t i) const { return rate(this->dof_ + i); }
+};
+
+// What bounds the shadow of a bouncing, and how hddot(q, s) moves along it (theory-truncation.md 4):
+//     d/dt = P + Phi sigma + Xi sigma^2,   P = hddot_q s + hddot_s A,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
+template <class Base>
+class ShadowTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(const Expressions& A, const Expressions& n, const Expressions& B, const Expressions& D,
+                            const Expressions& ndot, const Expressions& Bdot, const Expressions& dA_dq,
+                            const Expressions& dA_ds, const Expressions& P_Phi_Xi) {
+        return joined({A, n, B, D, ndot, Bdot, dA_dq, dA_ds, P_Phi_Xi});
+    }
+    decltype(auto) A(std::size_t i) const { return row(0, i); }
+    decltype(auto) n(std::size_t i) const { return row(1, i); }
+    decltype(auto) B(std::size_t i) const { return row(2, i); }
+    decltype(auto) D(std::size_t i) const { return row(3, i); }
+    decltype(auto) ndot(std::size_t i) const { return row(4, i); }
+    decltype(auto) Bdot(std::size_t i) const { return row(5, i); }
+    decltype(auto) dA_dq(std::size_t i, std::size_t j) const { return row(6 + i, j); }
+    decltype(auto) dA_ds(std::size_t i, std::size_t j) const { return row(6 + this->dof_ + i, j); }
+    decltype(auto) P() const { return row(6 + 2 * this->dof_, 0); }
+    decltype(auto) Phi() const { return row(6 + 2 * this->dof_, 1); }
+    decltype(auto) Xi() const { return row(6 + 2 * this->dof_, 2); }
+
+ private:
+    decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(k * this->dof_ + i); }
+};
+
 struct Bouncing {
-    Program hddot;     // hddot(q, s + n sigma)
-    Program gradient;  // its derivatives with respect to q (n), s (n), sigma
-    Program motion;    // v = s + n sigma (n), s' (n)
-    // At sigma = 0: hddot, its rate along the constrained motion (P below), its derivative with respect to sigma.
-    Program trend;
-    // The gradient again (it shares most of its work with what follows); A (n), n (n), B (n), D (n), ndot (n), Bdot
-    // (n), dA/dq (n x n), dA/ds (n x n), row by row; then P, Phi, Xi, by which hddot(q, s) moves along the bouncing,
-    // d/dt = P + Phi sigma + Xi sigma^2 (theory-truncation.md 4):
-    //     P = hddot_q s + hddot_s A,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
-    Program shadow;
+    Program hddot;                   // hddot(q, s + n sigma)
+    Program gradient;                // its derivatives with respect to q (n), s (n), sigma
+    ProgramOf<BouncingRates> rates;  // of q and s
+    ProgramOf<TrendTerms> trend;
+    Program shadow;  // the gradient again (it shares most of its work with what follows), then ShadowTerms
 };
 
 // Derives and compiles the programs, in a copy of the equations' graph.

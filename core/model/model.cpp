@@ -43,31 +43,32 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
 void Model::compile() {
     const Equations& e = equations_;
     const Slots slots = layout_.slots();
-    const auto program = [&](std::initializer_list<std::vector<Expression>> parts) {
-        std::vector<Expression> outputs;
-        for (const auto& part : parts) outputs.insert(outputs.end(), part.begin(), part.end());
-        return Program(outputs, slots);
-    };
-    flight_ = program({e.f, {e.hddot}, e.pivots});
-    contact_ = program({e.f_c, {e.hddot}, e.pivots, {e.jerk}});
-    gap_ = program({{e.gap}});
-    normal_acceleration_ = program({{e.hddot}});
-    release_ = program({{e.hddot, e.jerk}});
-    surface_ = program({{e.gap, e.hdot}, e.impulse_direction, e.g, {e.W}});
-    definition7_terms_ = program({{e.hddot}, e.impulse_direction, e.f});
-    energy_ = program({{e.energy, e.kinetic, e.potential}});
-    force_ = program({{e.lambda}});
-    restitution_ = program({{e.restitution}});
-    start_ = program({e.f, {e.hddot}, e.pivots, {e.kinetic, e.potential}});
-    flight_series_ = SeriesProgram(program({e.f, {e.gap}, e.pivots}), layout_.dof + 1);
-    // Two ways to say the same; one takes fewer products.
-    contact_series_ = SeriesProgram(program({e.f_c, {e.hddot}, e.pivots}), layout_.dof + 1);
-    SeriesProgram by_force(program({e.f_by_force, {e.hddot}, e.pivots}), layout_.dof + 1);
-    if (by_force.inner_sums() < contact_series_.inner_sums()) contact_series_ = std::move(by_force);
+    const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
+    gap_ = program(e.gap);
+    normal_acceleration_ = program(e.hddot);
+    force_ = program(e.lambda);
+    restitution_ = program(e.restitution);
+    contact_terms_ = ProgramOf<ContactTerms>::of(slots, e.gap, e.hdot, e.impulse_direction, e.g, e.W);
+    release_terms_ = ProgramOf<ReleaseTerms>::of(slots, e.hddot, e.jerk);
+    definition7_terms_ = ProgramOf<Definition7Terms>::of(slots, e.hddot, e.impulse_direction, e.f);
+    energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
+    start_ = ProgramOf<StartTerms>::of(slots, e.f, e.pivots, e.hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
     for (const Edge& edge : edges_) distances.push_back(edge.event_function);
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), distances.size());
+}
+
+const Motion& Model::motion(ContactSet held) const {
+    const std::scoped_lock lock(motions_mutex_);
+    const auto known = motions_.find(held);
+    if (known != motions_.end()) return known->second;
+    const Ground ground;
+    return motions_.emplace(held, make_motion(held, equations_, layout_)).first->second;
+}
+
+LanePrograms Model::lane_programs() const {
+    return {layout_.dof, motion({}).series, motion(ContactSet::of(0)).series, contact_terms_};
 }
 
 const Bouncing& Model::bouncing() const {

@@ -8,6 +8,7 @@
 //
 #pragma once
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -19,7 +20,9 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/edges.hpp"
+#include "model/motion.hpp"
 #include "program/program.hpp"
+#include "program/terms.hpp"
 #include "run/trajectory.hpp"
 #include "series/lane_stepper.hpp"
 #include "series/series.hpp"
@@ -38,24 +41,19 @@ class Model {
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
-    // Programs, compiled once; their outputs in order.
-    const Program& flight() const { return flight_; }                            // f (n), hddot, pivots (n)
-    const Program& contact() const { return contact_; }                          // f_c (n), hddot, pivots (n), jerk
+    // The motion that holds these contacts, compiled when it is first asked for. Lives as long as the model.
+    const Motion& motion(ContactSet held) const;
+    LanePrograms lane_programs() const;
+
+    // Programs, compiled once.
     const Program& gap() const { return gap_; }                                  // h
     const Program& normal_acceleration() const { return normal_acceleration_; }  // hddot
-    const Program& release() const { return release_; }                          // hddot, jerk
-    const Program& surface() const { return surface_; }                          // h, hdot, n (n), g (n), W
-    const Program& definition7_terms() const {
-        return definition7_terms_;
-    }                                                  // hddot, n (n), f (n): what Def. 7 needs over a box
-    const Program& energy() const { return energy_; }  // T + V, T, V
-    const Program& force() const { return force_; }    // lambda
-    const Program& restitution() const { return restitution_; }
-
-    // What Taylor series of the motion are made of: flight f (n), h, pivots (n); contact f_c (n), hddot, pivots (n).
-    const SeriesProgram& flight_series() const { return flight_series_; }
-    const SeriesProgram& contact_series() const { return contact_series_; }
-    LanePrograms lane_programs() const { return {layout_.dof, flight_series_, contact_series_, surface_}; }
+    const Program& force() const { return force_; }                              // lambda
+    const Program& restitution() const { return restitution_; }                  // e
+    const ProgramOf<ContactTerms>& contact_terms() const { return contact_terms_; }
+    const ProgramOf<ReleaseTerms>& release_terms() const { return release_terms_; }
+    const ProgramOf<Definition7Terms>& definition7_terms() const { return definition7_terms_; }
+    const ProgramOf<EnergyTerms>& energy() const { return energy_; }
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }
@@ -73,13 +71,24 @@ class Model {
         result.fix();
         return result;
     }
+    template <class Scalar = double, template <class> class TermsOf>
+    TermsOf<Evaluator<Scalar>> evaluator(const ProgramOf<TermsOf>& program, std::span<const double> parameters) const {
+        return {evaluator<Scalar>(static_cast<const Program&>(program), parameters), layout_.dof};
+    }
 
     // The same, made where it is first asked for: a run needs few of those that it may need.
-    template <class Scalar>
-    Evaluator<Scalar>& lazily(std::optional<Evaluator<Scalar>>& evaluator, const Program& program,
-                              std::span<const double> parameters) const {
+    template <class Scalar, template <class> class TermsOf>
+    TermsOf<Evaluator<Scalar>>& lazily(std::optional<TermsOf<Evaluator<Scalar>>>& evaluator,
+                                       const ProgramOf<TermsOf>& program, std::span<const double> parameters) const {
         if (!evaluator) evaluator = this->evaluator<Scalar>(program, parameters);
         return *evaluator;
+    }
+    using MotionEvaluators = std::map<ContactSet, MotionTerms<Evaluator<double>>>;
+    MotionTerms<Evaluator<double>>& lazily(MotionEvaluators& evaluators, ContactSet held,
+                                           std::span<const double> parameters) const {
+        const auto known = evaluators.find(held);
+        if (known != evaluators.end()) return known->second;
+        return evaluators.emplace(held, evaluator(motion(held).program, parameters)).first->second;
     }
 
     // The run that the description asks for.
@@ -99,10 +108,10 @@ class Model {
     void compile();
     // Throw Mistake.
     void check_restitution(const Run& run) const;
-    void check_energies(const Run& run, const Evaluator<double>& start) const;
+    void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
     void check_gap(const Run& run) const;
-    void check_mass(const Evaluator<double>& start) const;
-    void check_acceleration(const Run& run, const Evaluator<double>& start) const;
+    void check_mass(const StartTerms<Evaluator<double>>& start) const;
+    void check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const;
 
     SystemDescription description_;
     Layout layout_;
@@ -111,11 +120,16 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::once_flag bouncing_once_;
     mutable std::unique_ptr<const Bouncing> bouncing_;
-    SeriesProgram flight_series_, contact_series_, edge_series_;
+    mutable std::mutex motions_mutex_;
+    mutable std::map<ContactSet, Motion> motions_;
+    SeriesProgram edge_series_;
     std::vector<Edge> edges_;
-    Program flight_, contact_, gap_, normal_acceleration_, release_, surface_, definition7_terms_, energy_, force_,
-        restitution_;
-    Program start_;  // f (n), hddot, pivots (n), T, V: what must be defined where a run starts
+    Program gap_, normal_acceleration_, force_, restitution_;
+    ProgramOf<ContactTerms> contact_terms_;
+    ProgramOf<ReleaseTerms> release_terms_;
+    ProgramOf<Definition7Terms> definition7_terms_;
+    ProgramOf<EnergyTerms> energy_;
+    ProgramOf<StartTerms> start_;
 };
 
 }  // namespace achilles

@@ -84,11 +84,10 @@ Mistake no_value(const Model& model, const Run& run, Location at, const char* wh
 }  // namespace
 
 // T and V have values.
-void Model::check_energies(const Run& run, const Evaluator<double>& start) const {
-    const std::size_t first = 2 * std::size_t{layout_.dof} + 1;
-    if (!std::isfinite(start.output(first)))
+void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const {
+    if (!std::isfinite(start.kinetic()))
         throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.kinetic, 1});
-    if (!std::isfinite(start.output(first + 1)))
+    if (!std::isfinite(start.potential()))
         throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.potential, 1});
 }
 
@@ -105,19 +104,19 @@ void Model::check_gap(const Run& run) const {
         throw Mistake{description_.gap.at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
                       "choose a start with h(q) >= 0"};
     if (std::abs(mid(h)) > 4.0 * error) return;
-    auto surface = evaluator(surface_, run.parameters);
-    set_state(surface, start);
-    surface.run();
+    auto contact = evaluator(contact_terms_, run.parameters);
+    set_state(contact, start);
+    contact.run();
     bool is_flat = true;
-    for (std::size_t i = 0; i < layout_.dof; ++i) is_flat = is_flat && surface.output(2 + layout_.dof + i) == 0.0;
+    for (std::size_t i = 0; i < layout_.dof; ++i) is_flat = is_flat && contact.gradient(i) == 0.0;
     if (is_flat)
         throw Mistake{description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined", {}};
 }
 
 // M is positive definite.
-void Model::check_mass(const Evaluator<double>& start) const {
+void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
     for (std::size_t i = 0; i < layout_.dof; ++i) {
-        const double pivot = start.output(layout_.dof + 1 + i);
+        const double pivot = start.pivot(i);
         if (pivot > 0.0) continue;
         throw Mistake{description_.kinetic.at,
                       fmt::format("the mass matrix is not positive definite at the start (the pivot of '{}' is {})",
@@ -127,9 +126,9 @@ void Model::check_mass(const Evaluator<double>& start) const {
 }
 
 // The equations of motion have values. Where they have none, a derivative of V, h or T is to blame.
-void Model::check_acceleration(const Run& run, const Evaluator<double>& start) const {
-    bool finite = true;
-    for (std::size_t i = 0; i <= layout_.dof; ++i) finite = finite && std::isfinite(start.output(i));
+void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const {
+    bool finite = std::isfinite(start.hddot());
+    for (std::size_t i = 0; i < layout_.dof; ++i) finite = finite && std::isfinite(start.acceleration(i));
     if (finite) return;
     Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
     std::vector<std::uint32_t> q;

@@ -28,24 +28,24 @@ std::string to_csv(const Trajectory& trajectory) {
     for (std::size_t i = 0; i < 2 * n; ++i) text += "," + model.slot_names()[i];
     text += ",gap,gap rate,lambda,energy,j\n";
 
-    auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
+    auto contact = model.evaluator(model.contact_terms(), trajectory.run.parameters);
     auto force = model.evaluator(model.force(), trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
     // Step ends and events; where steps are long, so many instants between them that a plot of the rows is a curve.
     constexpr std::size_t wanted = 1000;
     const auto between = static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size()));
     for (const Sample& sample : Sampler(trajectory).all(between)) {
-        for (auto* program : {&surface, &force, &energy}) {
+        for (Evaluator<double>* program : std::initializer_list<Evaluator<double>*>{&contact, &force, &energy}) {
             set_state(*program, sample.state);
             program->run();
         }
         text += fmt::format("{},{}", sample.t + 0.0, to_text(sample.phase));
         for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.q[i]);
         for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.v[i]);
-        append(text, surface.output(0));
-        append(text, surface.output(1));
+        append(text, contact.h());
+        append(text, contact.hdot());
         append(text, sample.contact ? force.output(0) : 0.0);
-        append(text, energy.output(0));
+        append(text, energy.total());
         text += fmt::format(",{}\n", sample.j);
     }
     return text;

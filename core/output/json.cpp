@@ -70,7 +70,7 @@ Json certificate_of(const Certificate& c) {
                        {"c3", number(p.c3)}});
     }
     Json inequalities = Json::array();
-    for (const Inequality& inequality : c.inequalities)
+    for (const Inequality& inequality : c.inequalities())
         inequalities.push_back(
             {{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
     result["inequalities"] = inequalities;

@@ -18,6 +18,18 @@ std::string_view to_text(Event::Kind kind) {
     }
 }
 
+const Inequality& Certificate::Decision::closest() const {
+    const Inequality& earlier = position.share() > time.share() ? position : time;
+    return velocity.share() > earlier.share() ? velocity : earlier;
+}
+
+std::vector<Inequality> Certificate::inequalities() const {
+    std::vector<Inequality> all;
+    if (decision) all = {decision->time, decision->position, decision->velocity};
+    all.insert(all.end(), assumptions.begin(), assumptions.end());
+    return all;
+}
+
 std::string_view to_text(Outcome::Kind kind) {
     switch (kind) {
         case Outcome::Kind::end_time:

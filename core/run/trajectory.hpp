@@ -39,6 +39,7 @@ struct Phase {
 struct Inequality {
     std::string_view name;  // "c1: time", ...: a literal
     double left = 0.0, right = 0.0;
+    double share() const { return left / right; }  // of what is allowed, where both are positive
 };
 
 // What is proved about a truncated bouncing. Bounds are proved by interval evaluation, except that errors made before
@@ -55,13 +56,22 @@ struct Certificate {
     std::optional<double> shadowing_position, shadowing_velocity;  // theory.md 5.2, at tau_inf
     std::optional<double> uniform_position;                        // on |q - q~| at all times from tau_k to tau_inf
     double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
-    std::string_view decisive;                                     // the inequality with the least margin, or why
+    std::string_view decisive;  // the decision's inequality that has least room, or why there is no decision
     struct Paper {
         double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
     };
     std::optional<Paper> paper;
-    std::vector<Inequality> inequalities;  // all of them, with both sides
+    // By which it is decided whether the bouncing may be cut. Nothing where that needs no condition.
+    struct Decision {
+        Inequality time, position, velocity;
+        // The one that has least room.
+        const Inequality& closest() const;
+    };
+    std::optional<Decision> decision;
+    std::vector<Inequality> assumptions;  // what the proof stands on
+    // All of them, for a person: the decision's, then the others.
+    std::vector<Inequality> inequalities() const;
 };
 
 struct Event {

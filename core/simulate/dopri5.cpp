@@ -35,10 +35,10 @@ class Dopri5 : public Stepper {
         : dof_(static_cast<std::size_t>(model.dof())),
           tolerance_(run.options.tolerance),
           dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
-          flight_(model.evaluator(model.flight(), run.parameters)),
-          contact_(model.evaluator(model.contact(), run.parameters)) {}
+          model_(&model),
+          parameters_(run.parameters) {}
 
-    void initialize(Motion motion, const State& state, const Gap& gap) override;
+    void initialize(ContactSet held, const State& state, const Gap& gap) override;
     StepFailure do_step(double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
@@ -71,8 +71,11 @@ class Dopri5 : public Stepper {
     std::size_t dof_;
     double tolerance_;
     Dense dense_;
-    Evaluator<double> flight_, contact_;
-    Motion motion_ = Motion::flight;
+    const Model* model_;
+    std::vector<double> parameters_;
+    ContactSet held_;
+    Model::MotionEvaluators motions_;                   // of those met so far
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // of them, that of held_
     double span_ = 0.0;
     double natural_ = 0.0;     // the step the error control would take next; 0: not known
     State from_, to_;          // the last step's ends
@@ -86,17 +89,17 @@ class Dopri5 : public Stepper {
 // the step.
 void Dopri5::derivative(const Values& y, Values& dydt) {
     ++evaluations_;
-    Evaluator<double>& program = motion_ == Motion::flight ? flight_ : contact_;
-    for (std::size_t i = 0; i < 2 * dof_; ++i) program.input(i) = y[i];
-    program.run();
+    MotionTerms<Evaluator<double>>& motion = *motion_;
+    for (std::size_t i = 0; i < 2 * dof_; ++i) motion.input(i) = y[i];
+    motion.run();
     bool regular = true;
-    for (std::size_t i = 0; i < dof_; ++i) regular = regular && program.output(dof_ + 1 + i) > 0.0;
+    for (std::size_t i = 0; i < dof_; ++i) regular = regular && motion.pivot(i) > 0.0;
     for (std::size_t i = 0; i < dof_; ++i) {
         dydt[i] = y[dof_ + i];
-        dydt[dof_ + i] = regular ? program.output(i) : std::numeric_limits<double>::quiet_NaN();
+        dydt[dof_ + i] = regular ? motion.acceleration(i) : std::numeric_limits<double>::quiet_NaN();
     }
-    dydt[2 * dof_] = motion_ == Motion::flight ? y[2 * dof_ + 1] : program.output(2 * dof_ + 1);
-    dydt[2 * dof_ + 1] = motion_ == Motion::flight ? program.output(dof_) : 0.0;
+    dydt[2 * dof_] = held_.empty() ? y[2 * dof_ + 1] : motion.jerk();
+    dydt[2 * dof_ + 1] = held_.empty() ? motion.hddot() : 0.0;
 }
 
 Values Dopri5::values_of(const State& state) const {
@@ -108,8 +111,9 @@ Values Dopri5::values_of(const State& state) const {
     return y;
 }
 
-void Dopri5::initialize(Motion motion, const State& state, const Gap& gap) {
-    motion_ = motion;
+void Dopri5::initialize(ContactSet held, const State& state, const Gap& gap) {
+    if (motion_ == nullptr || held != held_) motion_ = &model_->lazily(motions_, held, parameters_);
+    held_ = held;
     to_ = state;
     gap_ = gap;
     continuing_ = false;
@@ -131,13 +135,13 @@ void Dopri5::guess_first_step() {
 
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
-    if (motion_ == Motion::flight) {
+    if (held_.empty()) {
         y[2 * dof_] = gap_.h;
         y[2 * dof_ + 1] = gap_.hdot;
     } else {  // hddot of the state itself
-        for (std::size_t i = 0; i < 2 * dof_; ++i) contact_.input(i) = y[i];
-        contact_.run();
-        y[2 * dof_] = contact_.output(dof_);
+        for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
+        motion_->run();
+        y[2 * dof_] = motion_->hddot();
     }
     dense_.initialize(y, 0.0, dt);
 }
@@ -230,19 +234,18 @@ double Dopri5::own_remainder(const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
     const double allowed = 4.0 * tolerance_ * (1.0 + size);
-    return (motion_ == Motion::flight ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
+    return (held_.empty() ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
 // As Taylor's.
 double Dopri5::drifting(const Polynomial& p) const {
-    const double size = motion_ == Motion::flight
-                            ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
-                            : std::abs(p.c[0]) + std::abs(p.c[1]) / span_;
+    const double size = held_.empty() ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
+                                      : std::abs(p.c[0]) + std::abs(p.c[1]) / span_;
     return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
 }
 
 double Dopri5::earlier_error(const Polynomial& p) const {
-    if (motion_ == Motion::contact) return drifting(p);
+    if (!held_.empty()) return drifting(p);
     return gap_.error + (gap_.rate_error + 0.5 * drifting(p) * span_) * span_;
 }
 

@@ -185,7 +185,7 @@ void Execution::capture(const Collision& before) {
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
         certificate.decisive = "exact: restitution 0";
-        certificate.inequalities = {{"normal acceleration", hddot.hi(), 0.0}};
+        certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
         bounce(contact_, 0.0);

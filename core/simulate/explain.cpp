@@ -16,7 +16,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     const auto energy_at = [&](const Vector& v) {
         set_state(energy, State{impact.q, v});
         energy.run();
-        return energy.output(0);
+        return energy.total();
     };
     ImpactReason reason;
     const Event* next = event + 1 < trajectory.events.size() ? &trajectory.events[event + 1] : nullptr;

@@ -12,15 +12,15 @@ Flow::Flow(const Model& model, const Run& run)
       parameters_(run.parameters) {}
 
 void Flow::fly(double t, const State& state, const Gap& gap, double first_step) {
-    start(Motion::flight, t, state, gap, first_step);
+    start({}, t, state, gap, first_step);
 }
 
 void Flow::stay(double t, const State& state, double state_error) {
-    start(Motion::contact, t, state, {0.0, 0.0, 0.0, 0.0, state_error}, 0.0);
+    start(ContactSet::of(0), t, state, {0.0, 0.0, 0.0, 0.0, state_error}, 0.0);
 }
 
-void Flow::start(Motion motion, double t, const State& state, const Gap& gap, double first_step) {
-    motion_ = motion;
+void Flow::start(ContactSet held, double t, const State& state, const Gap& gap, double first_step) {
+    held_ = held;
     t_ = end_ = t;
     span_ = 0.0;
     first_ = first_step;
@@ -38,7 +38,7 @@ StepFailure Flow::step(double until) {
     span_ = 0.0;
     const double longest = until - t_;
     const State& start = end();
-    if (moved_) stepper_->initialize(motion_, start, gap_);
+    if (moved_) stepper_->initialize(held_, start, gap_);
     moved_ = false;
     StepFailure failure = stepper_->do_step(longest, first_, least());
     first_ = 0.0;
@@ -76,13 +76,11 @@ void Flow::move_gap(const Gap& gap) {
 }
 
 void Flow::shift_end(double dt) {
-    const bool flying = motion_ == Motion::flight;
-    auto& program =
-        model_->lazily(acceleration_[flying ? 0 : 1], flying ? model_->flight() : model_->contact(), parameters_);
-    set_state(program, end());
-    program.run();
+    auto& motion = model_->lazily(motions_, held_, parameters_);
+    set_state(motion, end());
+    motion.run();
     for (Eigen::Index i = 0; i < to_.q.size(); ++i) {
-        const double a = program.output(static_cast<std::size_t>(i));
+        const double a = motion.acceleration(static_cast<std::size_t>(i));
         to_.q[i] += dt * (to_.v[i] + 0.5 * dt * a);
         to_.v[i] += dt * a;
     }
@@ -95,7 +93,7 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     Piece piece;
     piece.start = t_;
     piece.end = end_;
-    piece.contact = motion_ == Motion::contact;
+    piece.contact = !held_.empty();
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;

@@ -1,9 +1,7 @@
 // One smooth stretch of motion, free or in contact, advanced by an adaptive stepper with dense output, whichever it is.
 #pragma once
 
-#include <array>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "model/model.hpp"
@@ -55,19 +53,19 @@ class Flow {
     long evaluations() const { return stepper_->evaluations(); }
 
  private:
-    void start(Motion motion, double t, const State& state, const Gap& gap, double first_step);
+    void start(ContactSet held, double t, const State& state, const Gap& gap, double first_step);
     double least() const;
 
     std::unique_ptr<Stepper> stepper_;
     std::unique_ptr<EdgeWatch> edges_;  // null where the system has none
     const Model* model_;
     std::vector<double> parameters_;
-    std::array<std::optional<Evaluator<double>>, 2> acceleration_;  // of a Motion, at the end of a step
-    double t_ = 0.0, span_ = 0.0, end_ = 0.0;                       // end: t + span, as it is rounded
-    double first_ = 0.0;                                            // bound on the next step; 0: none
-    mutable State to_;                                              // the end of the last step,
-    Gap gap_;                                                       // in flight, at `to`
-    Motion motion_ = Motion::flight;
+    Model::MotionEvaluators motions_;          // of those met so far
+    double t_ = 0.0, span_ = 0.0, end_ = 0.0;  // end: t + span, as it is rounded
+    double first_ = 0.0;                       // bound on the next step; 0: none
+    mutable State to_;                         // the end of the last step,
+    Gap gap_;                                  // in flight, at `to`
+    ContactSet held_;
     mutable bool fetched_ = true;  // the end has been asked for
     bool moved_ = false;           // it is not where the stepper left it
 };

@@ -41,7 +41,7 @@ ContactKinematics::ContactKinematics(const Model& model, const Run& run)
     : model_(&model),
       parameters_(run.parameters),
       dof_(static_cast<std::size_t>(model.dof())),
-      surface_(model.evaluator(model.surface(), run.parameters)),
+      terms_(model.evaluator(model.contact_terms(), run.parameters)),
       gap_(model.evaluator<Interval>(model.gap(), run.parameters)) {}
 
 Contact ContactKinematics::at(const State& state) {
@@ -51,17 +51,17 @@ Contact ContactKinematics::at(const State& state) {
 }
 
 void ContactKinematics::look(const State& state, Contact& contact) {
-    set_state(surface_, state);
-    surface_.run();
-    contact.h = surface_.output(0);
-    contact.hdot = surface_.output(1);
-    contact.W = surface_.output(2 + 2 * dof_);
+    set_state(terms_, state);
+    terms_.run();
+    contact.h = terms_.h();
+    contact.hdot = terms_.hdot();
+    contact.W = terms_.W();
     const auto n = static_cast<Eigen::Index>(dof_);
     contact.impulse_direction.resize(n);
     contact.g.resize(n);
     for (std::size_t i = 0; i < dof_; ++i) {
-        contact.impulse_direction.data()[i] = surface_.output(2 + i);
-        contact.g.data()[i] = surface_.output(2 + dof_ + i);
+        contact.impulse_direction.data()[i] = terms_.impulse_direction(i);
+        contact.g.data()[i] = terms_.gradient(i);
     }
 }
 
@@ -78,10 +78,10 @@ bool ContactKinematics::within_gap_error(double value, double times, const Conta
 }
 
 double ContactKinematics::hdot_error(const State& state) {
-    auto& enclosure = model_->lazily(surface_enclosure_, model_->surface(), parameters_);
+    auto& enclosure = model_->lazily(enclosure_, model_->contact_terms(), parameters_);
     set_state(enclosure, state);
     enclosure.run();
-    return rad(enclosure.output(1));
+    return rad(enclosure.hdot());
 }
 
 // A gap may be known against zero far better than against the coordinates, as (2 + sin x) y is near y = 0: its rounding
@@ -118,27 +118,27 @@ std::optional<Contact> ContactKinematics::project(State& state, bool keep_veloci
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
     const Ground ground;
-    auto& enclosure = model_->lazily(release_enclosure_, model_->release(), parameters_);
+    auto& enclosure = model_->lazily(release_enclosure_, model_->release_terms(), parameters_);
     for (std::size_t i = 0; i < dof_; ++i) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
         enclosure.input(dof_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
     }
     enclosure.run();
-    return {enclosure.output(0), enclosure.output(1)};
+    return {enclosure.hddot(), enclosure.jerk()};
 }
 
 double ContactKinematics::normal_acceleration(const State& state) {
-    auto& normal = model_->lazily(normal_, model_->normal_acceleration(), parameters_);
-    set_state(normal, state);
-    normal.run();
-    return normal.output(0);
+    if (!normal_) normal_ = model_->evaluator(model_->normal_acceleration(), parameters_);
+    set_state(*normal_, state);
+    normal_->run();
+    return normal_->output(0);
 }
 
 double ContactKinematics::jerk(const State& state) {
-    auto& release = model_->lazily(release_, model_->release(), parameters_);
+    auto& release = model_->lazily(release_, model_->release_terms(), parameters_);
     set_state(release, state);
     release.run();
-    return release.output(1);
+    return release.jerk();
 }
 
 }  // namespace achilles

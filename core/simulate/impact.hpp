@@ -51,10 +51,12 @@ class ContactKinematics {
     const Model* model_;
     std::vector<double> parameters_;
     std::size_t dof_;
-    Evaluator<double> surface_;
+    ContactTerms<Evaluator<double>> terms_;
     Evaluator<Interval> gap_;
-    std::optional<Evaluator<double>> normal_, release_;
-    std::optional<Evaluator<Interval>> surface_enclosure_, release_enclosure_;
+    std::optional<Evaluator<double>> normal_;
+    std::optional<ReleaseTerms<Evaluator<double>>> release_;
+    std::optional<ContactTerms<Evaluator<Interval>>> enclosure_;
+    std::optional<ReleaseTerms<Evaluator<Interval>>> release_enclosure_;
 };
 
 }  // namespace achilles

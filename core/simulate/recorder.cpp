@@ -47,8 +47,8 @@ void Recorder::stretch(const State& state) {
     if (keep_ == Keep::end) return;
     set_state(energy_, state);
     energy_.run();
-    reference_ = energy_.output(0);
-    scale_ = std::abs(energy_.output(1)) + std::abs(energy_.output(2));
+    reference_ = energy_.total();
+    scale_ = std::abs(energy_.kinetic()) + std::abs(energy_.potential());
 }
 
 void Recorder::steps(long count, double least_gap) {
@@ -66,9 +66,9 @@ void Recorder::step(const Flow& flow, double gap) {
     set_state(energy_, flow.end());
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
-    scale_ = std::max(scale_, std::abs(energy_.output(1)) + std::abs(energy_.output(2)));
+    scale_ = std::max(scale_, std::abs(energy_.kinetic()) + std::abs(energy_.potential()));
     if (scale_ > 0.0)
-        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.output(0) - reference_) / scale_);
+        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.total() - reference_) / scale_);
 }
 
 void Recorder::impact(double t, const State& before, const Vector& v_after, double speed) {

@@ -50,7 +50,7 @@ class Recorder {
  private:
     Keep keep_;
     Trajectory trajectory_;
-    Evaluator<double> energy_;
+    EnergyTerms<Evaluator<double>> energy_;
     double reference_ = 0.0;  // the energy at the start of the stretch
     double scale_ = 0.0;      // the largest |T| + |V| of the stretch so far
     bool any_gap_ = false;

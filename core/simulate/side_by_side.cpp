@@ -49,7 +49,8 @@ void SideBySide::begin(std::size_t index) {
     if (refusal) return take_(index, std::move(*refusal));
     raise_to_least(run.options);
     const bool in_lanes = run.options.method == Method::taylor && model_->edges().empty() &&
-                          !model_->flight_series().is_partial() && !model_->contact_series().is_partial();
+                          !model_->motion({}).series.is_partial() &&
+                          !model_->motion(ContactSet::of(0)).series.is_partial();
     if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));
     Member& member = member_for(index, run);
     member.execution.asks_again_ = false;  // an undecided run is made again as a whole

@@ -10,11 +10,10 @@
 
 #include "model/model.hpp"
 #include "number/polynomial.hpp"
+#include "run/contact_set.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles {
-
-enum class Motion { flight, contact };
 
 // Why a step could not be made.
 enum class StepFailure { none, left_the_domain, not_a_number, step_too_small };
@@ -34,8 +33,9 @@ class Stepper {
  public:
     virtual ~Stepper() = default;
 
-    // Stands at a state, ready to step on from there. Of `gap` only its state_error counts in contact.
-    virtual void initialize(Motion motion, const State& state, const Gap& gap) = 0;
+    // Stands at a state, ready to step on from there while these contacts are held. Of `gap` only its state_error
+    // counts in contact.
+    virtual void initialize(ContactSet held, const State& state, const Gap& gap) = 0;
     // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
     // to be sensible after an impact. `least` is the shortest that time can resolve.
     virtual StepFailure do_step(double longest, double first, double least) = 0;

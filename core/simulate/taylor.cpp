@@ -58,15 +58,15 @@ Taylor::Taylor(const Model& model, const Run& run)
     : dof_(static_cast<std::size_t>(model.dof())),
       width_(2 * dof_ + 1),
       tolerance_(std::max(run.options.tolerance, 0x1p-53)),
-      flight_(model.flight_series(), run.parameters),
-      contact_(model.contact_series(), run.parameters),
-      flight_order_(best_order(model.flight_series(), tolerance_)),
-      contact_order_(best_order(model.contact_series(), tolerance_)),
+      flight_(model.motion({}).series, run.parameters),
+      contact_(model.motion(ContactSet::of(0)).series, run.parameters),
+      flight_order_(best_order(model.motion({}).series, tolerance_)),
+      contact_order_(best_order(model.motion(ContactSet::of(0)).series, tolerance_)),
       rows_((highest + 1) * width_, 0.0),
       units_(width_, 0.0) {}
 
-void Taylor::initialize(Motion motion, const State& state, const Gap& gap) {
-    motion_ = motion;
+void Taylor::initialize(ContactSet held, const State& state, const Gap& gap) {
+    held_ = held;
     gap_ = gap;
     to_ = state;
     evaluated_ = true;
@@ -115,7 +115,7 @@ StepFailure Taylor::leave_out_infinite() {
 // The series at the state where the stepper stands, to the order that is needed.
 StepFailure Taylor::expand(double longest) {
     ++evaluations_;
-    const bool flying = motion_ == Motion::flight;
+    const bool flying = held_.empty();
     SeriesEvaluator& series = flying ? flight_ : contact_;
     const std::size_t w = 2 * dof_;
     current_state();
@@ -162,12 +162,12 @@ void Taylor::extend_flight(SeriesMotion& motion, double longest) {
 
 // Orders from 2 on, until two in a row are small, or as many as pay.
 StepFailure Taylor::extend(SeriesEvaluator& series, double longest) {
-    const int most = motion_ == Motion::flight ? flight_order_ : contact_order_;
+    const int most = held_.empty() ? flight_order_ : contact_order_;
     SeriesMotion motion;
     motion.row = row(1);
     order_ = 1;
     power_ = target_ = longest;
-    if (motion_ == Motion::flight) extend_flight(motion, longest);
+    if (held_.empty()) extend_flight(motion, longest);
     for (bool small = false;;) {  // the last term was
         const auto [m, largest] = magnitude(row(order_));
         if (!(m < std::numeric_limits<double>::infinity())) return leave_out_infinite();
@@ -341,14 +341,14 @@ double Taylor::own_remainder(double size, double last_terms) const {
 // How fast the error of the state moves what is watched: the gap's rate, or hddot itself.
 double Taylor::drifting() const {
     const std::size_t w = 2 * dof_;
-    const double size = motion_ == Motion::flight ? 2.0 * std::abs(row(2)[w]) + 6.0 * std::abs(row(3)[w])
-                                                  : std::abs(row(0)[w]) + std::abs(row(1)[w]);
+    const double size = held_.empty() ? 2.0 * std::abs(row(2)[w]) + 6.0 * std::abs(row(3)[w])
+                                      : std::abs(row(0)[w]) + std::abs(row(1)[w]);
     return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
 }
 
 // Of what is watched, at the end of the step.
 double Taylor::earlier_error() const {
-    if (motion_ == Motion::contact) return drifting();
+    if (!held_.empty()) return drifting();
     return gap_.error + (gap_.rate_error + 0.5 * drifting() * span_) * span_;
 }
 

@@ -17,7 +17,7 @@ class Taylor : public Stepper {
  public:
     Taylor(const Model& model, const Run& run);
 
-    void initialize(Motion motion, const State& state, const Gap& gap) override;
+    void initialize(ContactSet held, const State& state, const Gap& gap) override;
     StepFailure do_step(double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
@@ -58,7 +58,7 @@ class Taylor : public Stepper {
     double tolerance_;
     SeriesEvaluator flight_, contact_;
     int flight_order_, contact_order_;
-    Motion motion_ = Motion::flight;
+    ContactSet held_;
     Gap gap_;
     State to_;
     bool evaluated_ = true;      // to_ is the step's end, not its start

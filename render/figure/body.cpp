@@ -96,12 +96,12 @@ Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
     Vector Q = Vector::Zero(n);
     if (!sample.contact) return Q;
     auto force = model.evaluator(model.force(), trajectory.run.parameters);
-    auto surface = model.evaluator(model.surface(), trajectory.run.parameters);
+    auto contact = model.evaluator(model.contact_terms(), trajectory.run.parameters);
     set_state(force, sample.state);
-    set_state(surface, sample.state);
+    set_state(contact, sample.state);
     force.run();
-    surface.run();
-    for (Eigen::Index i = 0; i < n; ++i) Q[i] = force.output(0) * surface.output(static_cast<std::size_t>(2 + n + i));
+    contact.run();
+    for (Eigen::Index i = 0; i < n; ++i) Q[i] = force.output(0) * contact.gradient(static_cast<std::size_t>(i));
     return Q;
 }
 

@@ -46,10 +46,10 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     const Model& model = *trajectory.model;
     Lens lens;
     lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
-    auto flight = model.evaluator(model.flight(), trajectory.run.parameters);
+    auto flight = model.evaluator(model.motion({}).program, trajectory.run.parameters);
     set_state(flight, State{zeno.q, zeno.v_after});
     flight.run();
-    const double a = -flight.output(static_cast<std::size_t>(model.dof()));
+    const double a = -flight.hddot();
     if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;
     lens.spacing_ = -std::log10(lens.e_);
     lens.height_ = lens.e_ * lens.e_ / (2.0 * a);

@@ -26,7 +26,7 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     session.apply(command::UseConditions{Conditions::paper});
     EXPECT_EQ(certificate_lines(first_zeno(session.trajectory())).size(), 3u);  // no statement about the restart
     int decisive = 0;
-    for (const Inequality& inequality : sharp.certificate->inequalities) {
+    for (const Inequality& inequality : sharp.certificate->inequalities()) {
         EXPECT_LT(inequality.left, inequality.right);
         decisive += inequality.name == sharp.certificate->decisive ? 1 : 0;
     }

@@ -56,12 +56,12 @@ TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step)
     : dof_(static_cast<std::size_t>(model.dof())),
       longest_step_(longest_step),
       e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)),
-      flight_(model.flight(), model.layout(), run.parameters),
-      contact_motion_(model.contact(), model.layout(), run.parameters),
+      flight_(model.motion({}).program, model.layout(), run.parameters),
+      contact_motion_(model.motion(ContactSet::of(0)).program, model.layout(), run.parameters),
       gap_(model.gap(), model.layout(), run.parameters),
-      release_(model.release(), model.layout(), run.parameters),
-      surface_(model.evaluator<Real>(model.surface(), run.parameters)),
-      acceleration_(model.evaluator<Real>(model.contact(), run.parameters)) {}
+      release_(model.release_terms(), model.layout(), run.parameters),
+      surface_(model.evaluator<Real>(model.contact_terms(), run.parameters)),
+      acceleration_(model.evaluator<Real>(model.motion(ContactSet::of(0)).program, run.parameters)) {}
 
 TrueMotion::Contact TrueMotion::contact(const Point& point) {
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -69,10 +69,10 @@ TrueMotion::Contact TrueMotion::contact(const Point& point) {
         surface_.input(dof_ + i) = point.v[i];
     }
     surface_.run();
-    Contact result{surface_.output(0), surface_.output(1), {}, {}};
+    Contact result{surface_.h(), surface_.hdot(), {}, {}};
     for (std::size_t i = 0; i < dof_; ++i) {
-        result.n.push_back(surface_.output(2 + i));
-        result.g.push_back(surface_.output(2 + dof_ + i));
+        result.n.push_back(surface_.impulse_direction(i));
+        result.g.push_back(surface_.gradient(i));
     }
     return result;
 }
@@ -196,12 +196,12 @@ Real TrueMotion::normal_acceleration(const Point& point) {
         acceleration_.input(dof_ + i) = point.v[i];
     }
     acceleration_.run();
-    return acceleration_.output(dof_);
+    return acceleration_.hddot();
 }
 
 Real TrueMotion::jerk(const Point& point) {
     normal_acceleration(point);
-    return acceleration_.output(2 * dof_ + 1);
+    return acceleration_.jerk();
 }
 
 Point TrueMotion::drift(const Point& slid, const Real& time) {
@@ -209,7 +209,7 @@ Point TrueMotion::drift(const Point& slid, const Real& time) {
     Point result = slid;
     for (std::size_t i = 0; i < dof_; ++i) {
         result.q[i] += slid.v[i] * time;
-        result.v[i] += acceleration_.output(i) * time;
+        result.v[i] += acceleration_.acceleration(i) * time;
     }
     return result;
 }

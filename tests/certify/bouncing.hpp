@@ -99,7 +99,8 @@ class TrueMotion {
     double longest_step_;
     Real e_;
     Evaluator<Series> flight_, contact_motion_, gap_, release_;
-    Evaluator<Real> surface_, acceleration_;
+    ContactTerms<Evaluator<Real>> surface_;
+    MotionTerms<Evaluator<Real>> acceleration_;
 };
 
 Real distance(const Reals& a, const Reals& b);

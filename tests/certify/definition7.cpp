@@ -6,17 +6,21 @@ namespace achilles::test {
 
 namespace {
 
-// Upper end of the norm of n outputs from `first` on.
-double norm(const Evaluator<Interval>& evaluator, std::size_t first, std::size_t n) {
+double mag(double x) { return std::abs(x); }
+
+// Of a vector with n entries; of intervals the upper end.
+template <class Entry>
+double norm(std::size_t n, const Entry& entry) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < n; ++i) sum += std::pow(mag(evaluator.output(first + i)), 2);
+    for (std::size_t i = 0; i < n; ++i) sum += std::pow(mag(entry(i)), 2);
     return std::sqrt(sum);
 }
 
-double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < n; ++i) sum += std::pow(evaluator.output(first + i), 2);
-    return std::sqrt(sum);
+// eta and zeta where these stand.
+template <class Terms>
+std::pair<double, double> eta_and_zeta(const Terms& terms, std::size_t n) {
+    return {norm(n, [&](std::size_t i) { return terms.impulse_direction(i); }),
+            norm(n, [&](std::size_t i) { return terms.acceleration(i); })};
 }
 
 }  // namespace
@@ -29,7 +33,7 @@ Definition7::Definition7(const Model& model, const Run& run)
              model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
       box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
       point_(model.evaluator(model.definition7_terms(), run.parameters)),
-      surface_(model.evaluator(model.surface(), run.parameters)) {}
+      surface_(model.evaluator(model.contact_terms(), run.parameters)) {}
 
 Definition7::Factors Definition7::factors(const Collision& collision, const Maxima& m) {
     set_state(surface_, collision.before);
@@ -37,7 +41,8 @@ Definition7::Factors Definition7::factors(const Collision& collision, const Maxi
     const double e1 = e_ * m.a_max / m.a_min, e2 = e_ * std::sqrt(m.a_max / m.a_min);
     const double time = 2 * e_ / (m.a_min * (1 - e1));
     const double velocity = kinetic_ ? (e_ + e2) * m.eta / (1 - e2) + m.zeta * time
-                                     : (1 + e_) * m.eta / (1 - e2) + m.zeta * time + 1 / norm(surface_, 2 + dof_, dof_);
+                                     : (1 + e_) * m.eta / (1 - e2) + m.zeta * time +
+                                           1 / norm(dof_, [&](std::size_t i) { return surface_.gradient(i); });
     return {time, m.beta * time, velocity};
 }
 
@@ -54,15 +59,16 @@ std::optional<Definition7::Factors> Definition7::over(const Collision& collision
     box.emplace_back(0.0);
     const Interval a = -hddot_.over(box);
     if (!a.is_defined() || !(a.lo() > 0.0) || !(e_ * a.hi() / a.lo() < 1.0)) return std::nullopt;
-    return factors(collision,
-                   {a.lo(), a.hi(), collision.restart.norm() + eps_v, norm(box_, 1, dof_), norm(box_, 1 + dof_, dof_)});
+    const auto [eta, zeta] = eta_and_zeta(box_, dof_);
+    return factors(collision, {a.lo(), a.hi(), collision.restart.norm() + eps_v, eta, zeta});
 }
 
 Definition7::Factors Definition7::at(const Collision& collision) {
     set_state(point_, State{collision.before.q, collision.restart});
     point_.run();
-    const double a = -point_.output(0);
-    return factors(collision, {a, a, collision.restart.norm(), norm(point_, 1, dof_), norm(point_, 1 + dof_, dof_)});
+    const double a = -point_.hddot();
+    const auto [eta, zeta] = eta_and_zeta(point_, dof_);
+    return factors(collision, {a, a, collision.restart.norm(), eta, zeta});
 }
 
 }  // namespace achilles::test

@@ -31,8 +31,9 @@ class Definition7 {
     bool kinetic_;
     double e_;
     Range hddot_;
-    Evaluator<Interval> box_;
-    Evaluator<double> point_, surface_;
+    Definition7Terms<Evaluator<Interval>> box_;
+    Definition7Terms<Evaluator<double>> point_;
+    ContactTerms<Evaluator<double>> surface_;
 };
 
 }  // namespace achilles::test

@@ -228,7 +228,7 @@ GrazingStarts::GrazingStarts(std::shared_ptr<const Model> model, unsigned seed)
       run_(model_->default_run()),
       soon_(std::min(3.0, run_.options.end_time)),
       starts_(model_, seed),
-      flight_(model_->evaluator(model_->flight(), run_.parameters)),
+      flight_(model_->evaluator(model_->motion({}).program, run_.parameters)),
       gap_(model_->evaluator(model_->gap(), run_.parameters)),
       truth_(*model_, run_) {}
 

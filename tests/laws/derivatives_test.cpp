@@ -81,10 +81,10 @@ class Derivatives : public Law {
                 x.push_back(std::uniform_real_distribution(c.range[0], c.range[1])(random));
             for (const auto& c : coordinates)
                 x.push_back(std::uniform_real_distribution(c.rate_range[0], c.rate_range[1])(random));
-            const Reals flight = evaluate(model_->flight(), x, 0, 2 * dof_ + 1);
+            const Reals flight = evaluate(model_->motion({}).program, x, 0, 2 * dof_ + 1);
             bool regular = true;
             for (std::size_t i = 0; i < flight.size(); ++i)
-                regular = regular && isfinite(flight[i]) && (i <= dof_ || flight[i] > 0);
+                regular = regular && isfinite(flight[i]) && (i < dof_ || i == 2 * dof_ || flight[i] > 0);
             if (regular) result.push_back(x);
         }
         return result;
@@ -97,7 +97,7 @@ class Derivatives : public Law {
 // d/dt dL/dv = dL/dq along f, which keeps the energy.
 TEST_P(Derivatives, FreeMotionIsLagranges) {
     for (const Reals& x : states()) {
-        const Reals motion = joined(v(x), evaluate(model_->flight(), x, 0, dof_));
+        const Reals motion = joined(v(x), evaluate(model_->motion({}).program, x, 0, dof_));
         const Function energy = output(model_->energy(), 0), T = output(model_->energy(), 1),
                        V = output(model_->energy(), 2);
         expect_same(along(energy, x, motion), 0, "the rate of the energy");
@@ -111,10 +111,12 @@ TEST_P(Derivatives, FreeMotionIsLagranges) {
 
 // hdot, hddot along f; W and n by M; f_c keeps hdot, its force is g' lambda; h''' along f_c.
 TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
-    const Program& surface = model_->surface();
-    const Function gap = output(model_->gap(), 0), hdot = output(surface, 1), hddot = output(model_->flight(), dof_);
+    const Program& surface = model_->contact_terms();
+    const Function gap = output(model_->gap(), 0), hdot = output(surface, 1),
+                   hddot = output(model_->motion({}).program, 2 * dof_);
     for (const Reals& x : states()) {
-        const Reals f = evaluate(model_->flight(), x, 0, dof_), f_c = evaluate(model_->contact(), x, 0, dof_);
+        const Reals f = evaluate(model_->motion({}).program, x, 0, dof_),
+                    f_c = evaluate(model_->motion(ContactSet::of(0)).program, x, 0, dof_);
         const Reals n = evaluate(surface, x, 2, dof_), g = evaluate(surface, x, 2 + dof_, dof_);
         const Real W = evaluate(surface, x, 2 + 2 * dof_, 1)[0], lambda = evaluate(model_->force(), x, 0, 1)[0];
         const Reals free = joined(v(x), f), held = joined(v(x), f_c);
@@ -136,10 +138,12 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
             expect_same(mass_times(x, push, i), lambda * g[i], "the contact force");
         }
         const Real jerk = along(hddot, x, held);
-        expect_same(output(model_->contact(), dof_)(x), hddot(x), "hddot of the contact program");
-        expect_same(output(model_->contact(), 2 * dof_ + 1)(x), jerk, "h''' of the contact program");
-        expect_same(output(model_->release(), 0)(x), hddot(x), "hddot of the release program");
-        expect_same(output(model_->release(), 1)(x), jerk, "h''' of the release program");
+        expect_same(output(model_->motion(ContactSet::of(0)).program, 2 * dof_)(x), hddot(x),
+                    "hddot of the contact program");
+        expect_same(output(model_->motion(ContactSet::of(0)).program, 2 * dof_ + 1)(x), jerk,
+                    "h''' of the contact program");
+        expect_same(output(model_->release_terms(), 0)(x), hddot(x), "hddot of the release program");
+        expect_same(output(model_->release_terms(), 1)(x), jerk, "h''' of the release program");
         expect_same(output(model_->definition7_terms(), 0)(x), hddot(x), "hddot of the bounds");
         for (std::size_t i = 0; i < dof_; ++i) {
             expect_same(output(model_->definition7_terms(), 1 + i)(x), n[i], "n of the bounds");
@@ -154,29 +158,31 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
     const Bouncing& bouncing = model_->bouncing();
     for (const Reals& x : states()) {
         const auto tangential = [&](const Reals& at, std::size_t i) {
-            return at[dof_ + i] - evaluate(model_->surface(), at, 2 + i, 1)[0] * output(model_->surface(), 1)(at);
+            return at[dof_ + i] -
+                   evaluate(model_->contact_terms(), at, 2 + i, 1)[0] * output(model_->contact_terms(), 1)(at);
         };
         Reals s;
         for (std::size_t i = 0; i < dof_; ++i) s.push_back(tangential(x, i));
-        const Real sigma = output(model_->surface(), 1)(x);
-        const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->flight(), x, 0, dof_));
+        const Real sigma = output(model_->contact_terms(), 1)(x);
+        const Reals y = joined(q(x), s), free = joined(v(x), evaluate(model_->motion({}).program, x, 0, dof_));
         const Program &hddot = bouncing.hddot, &shadow = bouncing.shadow;
         const std::size_t first = 2 * dof_ + 1;  // the gradient of hddot stands before
-        expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->flight(), dof_)(x), "hddot");
+        expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->motion({}).program, 2 * dof_)(x), "hddot");
         const Real h = 1e-16;
         const Real by_sigma =
             (evaluate(hddot, y, 0, 1, sigma + h)[0] - evaluate(hddot, y, 0, 1, sigma - h)[0]) / (2 * h);
         expect_same(evaluate(bouncing.gradient, y, 2 * dof_, 1, sigma)[0], by_sigma, "d hddot/d sigma");
         const Reals A = evaluate(shadow, y, first, dof_, sigma), B = evaluate(shadow, y, first + 2 * dof_, dof_, sigma);
         const Reals D = evaluate(shadow, y, first + 3 * dof_, dof_, sigma),
-                    rate = evaluate(bouncing.motion, y, dof_, dof_, sigma);
+                    rate = evaluate(bouncing.rates, y, dof_, dof_, sigma);
         const Reals motion = joined(v(x), rate);
         for (std::size_t i = 0; i < dof_; ++i) {
-            expect_same(evaluate(bouncing.motion, y, i, 1, sigma)[0], x[dof_ + i], "v");
+            expect_same(evaluate(bouncing.rates, y, i, 1, sigma)[0], x[dof_ + i], "v");
             expect_same(rate[i], along([&](const Reals& at) { return tangential(at, i); }, x, free), "s'");
             expect_same(A[i] + B[i] * sigma + D[i] * sigma * sigma, rate[i], "A + B sigma + D sigma^2");
-            expect_same(A[i], output(model_->contact(), i)(y), "A");
-            expect_same(evaluate(shadow, y, first + dof_ + i, 1)[0], evaluate(model_->surface(), x, 2 + i, 1)[0], "n");
+            expect_same(A[i], output(model_->motion(ContactSet::of(0)).program, i)(y), "A");
+            expect_same(evaluate(shadow, y, first + dof_ + i, 1)[0], evaluate(model_->contact_terms(), x, 2 + i, 1)[0],
+                        "n");
             expect_same(evaluate(shadow, y, first + 4 * dof_ + i, 1, sigma)[0],
                         along(output(shadow, first + dof_ + i, sigma), y, motion), "ndot");
             expect_same(evaluate(shadow, y, first + 5 * dof_ + i, 1, sigma)[0],

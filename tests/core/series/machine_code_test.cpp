@@ -50,7 +50,7 @@ TEST_F(MachineCodes, AreMadeOfExpressions) {
 TEST_F(MachineCodes, AreMadeOfTheOrdersOfSeries) {
     for (const auto& [system, key] : test::problems) {
         const auto model = test::load(system);
-        for (const SeriesProgram* series : {&model->flight_series(), &model->contact_series()}) {
+        for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
             EXPECT_TRUE(OrderCode::of(LaneAccess::plan_of(*series), *widest_of_processor())) << system;
         }
     }
@@ -62,8 +62,8 @@ TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
     EXPECT_EQ(possible_vectors().front(), Vectors::avx512_with_machine_code);
     for (const auto& [system, key] : test::problems) {
         const auto model = test::load(system);
-        EXPECT_TRUE(LaneAccess::machine_code_of(model->surface())) << system;
-        for (const SeriesProgram* series : {&model->flight_series(), &model->contact_series()}) {
+        EXPECT_TRUE(LaneAccess::machine_code_of(model->contact_terms())) << system;
+        for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
             const SeriesPlan& plan = LaneAccess::plan_of(*series);
             EXPECT_TRUE(LaneOrderCode::of(plan, LanePlan(plan, series->inner_sums()))) << system;
         }

@@ -40,7 +40,7 @@ TEST(Reasons, AnImpactThatIsNotCutFailsSomething) {
                       i + 1 < trajectory.events.size() && trajectory.events[i + 1].kind == Event::Kind::zeno);
             if (!reason.attempt || reason.cut) continue;
             bool failed = false;
-            for (const Inequality& inequality : reason.attempt->inequalities)
+            for (const Inequality& inequality : reason.attempt->inequalities())
                 failed = failed || !(inequality.left < inequality.right);
             EXPECT_TRUE(failed) << "event " << i;
             ++failing;

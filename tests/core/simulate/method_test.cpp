@@ -91,13 +91,13 @@ TEST(LongRuns, AThousandSecondsInContact) {
     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     ASSERT_EQ(trajectory.phases.size(), 1u);
     ASSERT_EQ(trajectory.end_phase, Phase::Kind::constrained);
-    auto surface = model->evaluator(model->surface(), run.parameters);
+    auto surface = model->evaluator(model->contact_terms(), run.parameters);
     const double start = energy_of(*model, run, Sampler(trajectory).at(0.0).state);
     for (const Sample& sample : Sampler(trajectory).all(3)) {
         set_state(surface, sample.state);
         surface.run();
-        ASSERT_LE(std::abs(surface.output(0)), 1e-13) << sample.t;
-        ASSERT_LE(std::abs(surface.output(1)), 1e-13) << sample.t;
+        ASSERT_LE(std::abs(surface.h()), 1e-13) << sample.t;
+        ASSERT_LE(std::abs(surface.hdot()), 1e-13) << sample.t;
         ASSERT_LE(std::abs(energy_of(*model, run, sample.state) - start), 1e-11 * std::abs(start)) << sample.t;
     }
 }
@@ -191,7 +191,7 @@ TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
     for (const double g : {1.0, 1e-11, -1.0}) {
         run.parameters[0] = g;
         const auto stepper = make_taylor(*model, run);
-        stepper->initialize(Motion::contact, {run.q, run.v}, {});
+        stepper->initialize(ContactSet::of(0), {run.q, run.v}, {});
         ASSERT_EQ(stepper->do_step(1.0, 0.0, 1e-15), StepFailure::none);
         EXPECT_EQ(stepper->stays_negative(), g == 1.0) << g;
     }

@@ -211,14 +211,14 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
     const auto run = plastic->default_run();
     const Trajectory trajectory = simulate(plastic, run);
     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    auto normal = plastic->evaluator(plastic->release(), run.parameters);
+    auto normal = plastic->evaluator(plastic->release_terms(), run.parameters);
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
         if (event.kind != Event::Kind::impact) continue;
         set_state(normal, State{event.q, event.v_after});
         normal.run();
         const bool captured = i + 1 < trajectory.events.size() && trajectory.events[i + 1].kind == Event::Kind::zeno;
-        EXPECT_EQ(captured, normal.output(0) < 0.0);
+        EXPECT_EQ(captured, normal.hddot() < 0.0);
         if (captured) {
             EXPECT_EQ(event.t, trajectory.events[i + 1].t);
             EXPECT_EQ(event.v_after, trajectory.events[i + 1].truncation->v);
@@ -323,7 +323,7 @@ TEST(Samples, TimesRiseAndStatesMeetTheEventsTheyBorder) {
         const auto run = model->default_run();
         const Trajectory trajectory = simulate(model, run);
         Sampler sampler(trajectory);
-        auto surface = model->evaluator(model->surface(), run.parameters);
+        auto surface = model->evaluator(model->contact_terms(), run.parameters);
         const std::vector<Sample> samples = sampler.all(5);
         EXPECT_EQ(samples.front().t, 0.0);
         EXPECT_NEAR(samples.back().t, 20.0, 1e-12);
@@ -334,9 +334,9 @@ TEST(Samples, TimesRiseAndStatesMeetTheEventsTheyBorder) {
             }
             set_state(surface, samples[i].state);
             surface.run();
-            EXPECT_GE(surface.output(0), -1e-12) << "t = " << samples[i].t;
+            EXPECT_GE(surface.h(), -1e-12) << "t = " << samples[i].t;
             if (samples[i].contact) {
-                EXPECT_LE(std::abs(surface.output(1)), 1e-13);
+                EXPECT_LE(std::abs(surface.hdot()), 1e-13);
             }
         }
         for (std::size_t i = 0; i + 1 < trajectory.events.size(); ++i) {

@@ -1,0 +1,132 @@
+// The outputs of programs by name: where each stands is said here alone, for whoever writes a program and whoever reads
+// it, over any scalar.
+//
+// A class of terms extends what has outputs (an Evaluator, say), of a system with `dof` coordinates; list() puts
+// expressions in the order in which the members find them.
+#pragma once
+
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+#include "expression/expression.hpp"
+#include "program/program.hpp"
+
+namespace achilles {
+
+using Expressions = std::vector<Expression>;
+
+// One list after the other.
+inline Expressions joined(std::initializer_list<Expressions> lists) {
+    Expressions all;
+    for (const Expressions& list : lists) all.insert(all.end(), list.begin(), list.end());
+    return all;
+}
+
+template <class Base>
+class Terms : public Base {
+ public:
+    Terms() = default;
+    Terms(Base base, std::size_t dof) : Base(std::move(base)), dof_(dof) {}
+
+ protected:
+    std::size_t dof_ = 0;
+};
+
+// Stands for what has the outputs, where only their order is asked for.
+struct NoOutputs {};
+
+// A program whose outputs are such terms.
+template <template <class> class TermsOf>
+class ProgramOf : public Program {
+ public:
+    ProgramOf() = default;
+    // Compiles expressions, given as list() wants them.
+    template <class... Parts>
+    static ProgramOf of(Slots slots, const Parts&... parts) {
+        return ProgramOf(TermsOf<NoOutputs>::list(parts...), slots);
+    }
+
+ private:
+    ProgramOf(const Expressions& outputs, Slots slots) : Program(outputs, slots) {}
+};
+
+// The gap h at (q, v): its rate, n = M^-1 g'/W, g = dh, and W = g M^-1 g' (theory.md 1).
+template <class Base>
+class ContactTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression h, Expression hdot, const Expressions& impulse_direction,
+                            const Expressions& gradient, Expression W) {
+        return joined({{h, hdot}, impulse_direction, gradient, {W}});
+    }
+    decltype(auto) h() const { return this->output(0); }
+    decltype(auto) hdot() const { return this->output(1); }
+    decltype(auto) impulse_direction(std::size_t i) const { return this->output(2 + i); }
+    decltype(auto) gradient(std::size_t i) const { return this->output(2 + this->dof_ + i); }
+    decltype(auto) W() const { return this->output(2 + 2 * this->dof_); }
+};
+
+// The acceleration of a motion, the pivots of M, hddot of the free motion; in contact the rate of hddot, too.
+template <class Base>
+class MotionTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(const Expressions& acceleration, const Expressions& pivots, const Expressions& further) {
+        return joined({acceleration, pivots, further});
+    }
+    decltype(auto) acceleration(std::size_t i) const { return this->output(i); }
+    decltype(auto) pivot(std::size_t i) const { return this->output(this->dof_ + i); }
+    decltype(auto) hddot() const { return this->output(2 * this->dof_); }
+    decltype(auto) jerk() const { return this->output(2 * this->dof_ + 1); }
+};
+
+// What must be defined where a run starts: the free motion, T and V.
+template <class Base>
+class StartTerms : public MotionTerms<Base> {
+ public:
+    using MotionTerms<Base>::MotionTerms;
+    static Expressions list(const Expressions& f, const Expressions& pivots, Expression hddot, Expression kinetic,
+                            Expression potential) {
+        return MotionTerms<Base>::list(f, pivots, {hddot, kinetic, potential});
+    }
+    decltype(auto) kinetic() const { return this->output(2 * this->dof_ + 1); }
+    decltype(auto) potential() const { return this->output(2 * this->dof_ + 2); }
+};
+
+// How the contact force passes through zero: hddot, and its rate along the constrained motion.
+template <class Base>
+class ReleaseTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression hddot, Expression jerk) { return {hddot, jerk}; }
+    decltype(auto) hddot() const { return this->output(0); }
+    decltype(auto) jerk() const { return this->output(1); }
+};
+
+template <class Base>
+class EnergyTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression total, Expression kinetic, Expression potential) {
+        return {total, kinetic, potential};
+    }
+    decltype(auto) total() const { return this->output(0); }
+    decltype(auto) kinetic() const { return this->output(1); }
+    decltype(auto) potential() const { return this->output(2); }
+};
+
+// What Def. 7 needs over a box: hddot, n and the free acceleration f.
+template <class Base>
+class Definition7Terms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression hddot, const Expressions& impulse_direction, const Expressions& acceleration) {
+        return joined({{hddot}, impulse_direction, acceleration});
+    }
+    decltype(auto) hddot() const { return this->output(0); }
+    decltype(auto) impulse_direction(std::size_t i) const { return this->output(1 + i); }
+    decltype(auto) acceleration(std::size_t i) const { return this->output(1 + this->dof_ + i); }
+};
+
+}  // namespace achilles

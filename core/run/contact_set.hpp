@@ -1,0 +1,26 @@
+// The contacts that a motion holds.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+
+namespace achilles {
+
+// Free flight holds none; the constrained motion of a system with one gap holds contact 0.
+class ContactSet {
+ public:
+    constexpr ContactSet() = default;
+    static constexpr ContactSet of(std::size_t contact) { return ContactSet(1u << contact); }
+
+    constexpr bool empty() const { return bits_ == 0; }
+    constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
+
+    friend constexpr auto operator<=>(const ContactSet&, const ContactSet&) = default;
+
+ private:
+    constexpr explicit ContactSet(std::uint32_t bits) : bits_(bits) {}
+    std::uint32_t bits_ = 0;
+};
+
+}  // namespace achilles
