@@ -6,14 +6,13 @@
 
 #include "number/eight.hpp"
 #include "number/sine.hpp"
+#include "program/assembler.hpp"
 
 namespace achilles {
 
-#if defined(__x86_64__) && defined(__linux__)
-
 namespace {
 
-using Code = Assembler::Code;
+using Xbyak::Xmm;
 using Function = double (*)(double);
 
 constexpr std::size_t most_instructions = 20000;
@@ -110,33 +109,36 @@ OfLanes* function_of_lanes(Operation operation) {
 
 // A function of xmm0 (and what else is in place).
 void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
-    code.get(0, a);
+    code.get(code.xmm0, a);
     code.call(function);
-    code.store(0, result);
+    code.store(code.xmm0, result);
 }
 
-void arithmetic(Assembler& code, Code operation, const Instruction& in, std::uint32_t result) {
-    const unsigned reg = code.result(result);
-    code.combine(operation, reg, in.a, in.b);
+void arithmetic(Assembler& code, Assembler::Arithmetic op, const Instruction& in, std::uint32_t result) {
+    const Xmm reg = code.result(result);
+    code.combine(op, reg, in.a, in.b);
     code.store(reg, result);
 }
 
+// to = the address of a number
+void address(Assembler& code, const Xbyak::Reg64& to, std::uint32_t number) { code.lea(to, code.number(number)); }
+
 // A function of (operand, result) and a third argument.
 void call_on_lanes(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
-    code.address(Assembler::Base::rdi, Assembler::Base::rbx, code.place(a));
-    code.address(Assembler::Base::rsi, Assembler::Base::rbx, code.place(result));
+    address(code, code.rdi, a);
+    address(code, code.rsi, result);
     code.call(function);
 }
 
 // False if there is no code for it.
 bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
-        code.integer_argument(Assembler::Base::rdx, in.exponent);
+        code.mov(code.edx, static_cast<std::uint32_t>(in.exponent));
         call_on_lanes(code, reinterpret_cast<const void*>(&each_whole_power), in.a, result);
         return true;
     }
     if (in.operation == Operation::real_power) {
-        code.address(Assembler::Base::rdx, Assembler::Base::rbx, code.place(in.b));
+        address(code, code.rdx, in.b);
         call_on_lanes(code, reinterpret_cast<const void*>(&each_real_power), in.a, result);
         return true;
     }
@@ -149,12 +151,12 @@ bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t resul
 // False if there is no code for it.
 bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
-        code.integer_argument(Assembler::Base::rdi, in.exponent);
+        code.mov(code.edi, static_cast<std::uint32_t>(in.exponent));
         call(code, reinterpret_cast<const void*>(&whole_power), in.a, result);
         return true;
     }
     if (in.operation == Operation::real_power) {
-        code.get(1, in.b);
+        code.get(code.xmm1, in.b);
         call(code, reinterpret_cast<const void*>(static_cast<double (*)(double, double)>(std::pow)), in.a, result);
         return true;
     }
@@ -166,31 +168,31 @@ bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result)
 
 // False if there is no code for it.
 bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
-    unsigned reg = 0;
     switch (in.operation) {
         case Operation::add:
-            arithmetic(code, Code::add, in, result);
+            arithmetic(code, Assembler::vadd, in, result);
             return true;
         case Operation::subtract:
-            arithmetic(code, Code::subtract, in, result);
+            arithmetic(code, Assembler::vsub, in, result);
             return true;
         case Operation::multiply:
-            arithmetic(code, Code::multiply, in, result);
+            arithmetic(code, Assembler::vmul, in, result);
             return true;
         case Operation::divide:
-            arithmetic(code, Code::divide, in, result);
+            arithmetic(code, Assembler::vdiv, in, result);
             return true;
-        case Operation::negate:
-            reg = code.result(result);
-            code.negative_zero(reg);
-            code.apply(Code::subtract, reg, reg, in.a);
+        case Operation::negate: {
+            const Xmm reg = code.result(result);
+            code.negate(reg, in.a);
             code.store(reg, result);
             return true;
-        case Operation::sqrt:
-            reg = code.result(result);
-            code.apply(Code::sqrt, reg, reg, in.a);
+        }
+        case Operation::sqrt: {
+            const Xmm reg = code.result(result);
+            code.sqrt(reg, in.a);
             code.store(reg, result);
             return true;
+        }
         default:
             return code.width() == Width::one ? write_for_one(code, in, result) : write_for_lanes(code, in, result);
     }
@@ -217,17 +219,14 @@ void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
     if (waves.written) return;
     waves.written = true;
     const bool one = code.width() == Width::one;
-    const auto argument = [&](Assembler::Base base, std::uint32_t number) {
-        code.address(base, Assembler::Base::rbx, code.place(number));
-    };
     if (one) {
-        code.get(0, operand);
-        argument(Assembler::Base::rdi, *waves.sine);
-        argument(Assembler::Base::rsi, *waves.cosine);
+        code.get(code.xmm0, operand);
+        address(code, code.rdi, *waves.sine);
+        address(code, code.rsi, *waves.cosine);
     } else {
-        argument(Assembler::Base::rdi, operand);
-        argument(Assembler::Base::rsi, *waves.sine);
-        argument(Assembler::Base::rdx, *waves.cosine);
+        address(code, code.rdi, operand);
+        address(code, code.rsi, *waves.sine);
+        address(code, code.rdx, *waves.cosine);
     }
     code.call(one ? reinterpret_cast<const void*>(&both) : reinterpret_cast<const void*>(&sine_and_cosine_of_lanes));
 }
@@ -239,8 +238,8 @@ std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> ins
     if (const auto best = best_width();
         !best || width > *best || instructions.empty() || instructions.size() > most_instructions)
         return nullptr;
-    Assembler code(Assembler::Base::rbx, 2, width);
-    code.enter();
+    Assembler code(Xbyak::util::rbx, 2, width);
+    code.prologue();
     std::map<std::uint32_t, Waves> waves = waves_of(instructions, first);
     for (const Instruction& in : instructions) {
         const std::uint32_t result = first++;
@@ -251,14 +250,8 @@ std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> ins
             return nullptr;
         }
     }
-    code.leave();
+    code.epilogue();
     return MachineCode::of(code.bytes());
 }
-
-#else
-
-std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width) { return nullptr; }
-
-#endif
 
 }  // namespace achilles

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <span>
 
-#include "program/machine.hpp"
+#include "program/assembler.hpp"
 #include "series/lane_order.hpp"
 #include "series/rule_code.hpp"
 
@@ -12,19 +12,19 @@ namespace achilles {
 
 namespace {
 
-using Base = Assembler::Base;
-using Code = Assembler::Code;
+using Xbyak::Zmm;
 using Index = std::ptrdiff_t;  // of doubles
 
 // The function's arguments, by the calling convention, and the pointers of the loop over older rows.
-constexpr Base now = Base::rdi, factors = Base::rsi, row = Base::rdx, weights = Base::rcx, last = Base::r8,
-               motion = Base::r9, left_row = Base::rax, right_row = Base::r10, before = Base::r11;
+constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, row = Xbyak::util::rdx,
+                       weights = Xbyak::util::rcx, last = Xbyak::util::r8, motion = Xbyak::util::r9,
+                       left_row = Xbyak::util::rax, right_row = Xbyak::util::r10, before = Xbyak::util::r11;
 constexpr unsigned scratch = 3;     // free vector registers
 constexpr unsigned first_sum = 16;  // and those of inner sums
 constexpr std::size_t most_sums = 16;
-constexpr Width eight = Width::eight;
 constexpr Index by_order = 0, by_inverse_of_next = 1, by_inverse = 2, weights_per_order = 3;
 
+Zmm zmm(std::size_t number) { return Zmm(static_cast<int>(number)); }
 Index lane(std::size_t number) { return static_cast<Index>(number * Eight::count); }
 
 }  // namespace
@@ -34,7 +34,7 @@ class LaneOrderWriter {
     LaneOrderWriter(const SeriesPlan& plan, const LanePlan& lanes)
         : plan_(plan),
           lanes_(lanes),
-          code_(now, scratch, eight),
+          code_(now, scratch, Width::eight),
           by_left_(lanes.sums.size()),
           all_held_(2 * plan.coordinates() + plan.rules.size() <= code_.room()),
           one_group_(lanes.sums.size() <= most_sums) {
@@ -46,12 +46,14 @@ class LaneOrderWriter {
     // Orders 1 to 3, then the others, which are alike.
     void write() {
         for (unsigned k = 1; k <= 3; ++k) order(k);
-        const std::size_t loop = code_.here();
+        const Xbyak::Label loop = code_.L();
         order(4);
-        code_.jump_back_if_not_above(weights, last, loop);  // the weights tell the orders apart
-        code_.leave_at_once();
+        code_.cmp(weights, last);
+        code_.jbe(loop);  // the weights tell the orders apart
+        code_.vzeroupper();
+        code_.ret();
     }
-    const std::vector<std::uint8_t>& bytes() const { return code_.bytes(); }
+    std::span<const std::uint8_t> bytes() { return code_.bytes(); }
 
  private:
     const LanePlan::Sum& sum(std::uint32_t i) const { return lanes_.sums[i]; }
@@ -65,12 +67,12 @@ class LaneOrderWriter {
         inputs(k == 1);
         for (std::size_t i = 0; i < plan_.rules.size(); ++i)
             write_rule(code_, plan_.rules[i], factors, lane(3 * i), !all_held_);
-        code_.memory(Code::store, eight, held(plan_.outputs.back(), 0), motion, lane(plan_.states() - 1));
+        code_.vmovupd(at(motion, lane(plan_.states() - 1)), code_.held_or(zmm(0), plan_.outputs.back()));
         keep();
         add_up(k);
-        code_.address(row, row, stride());
-        code_.address(motion, motion, lane(plan_.states()));
-        code_.address(weights, weights, weights_per_order);
+        code_.lea(row, at(row, stride()));
+        code_.lea(motion, at(motion, lane(plan_.states())));
+        code_.lea(weights, at(weights, weights_per_order));
     }
 
     // What the order before has left in registers: results have the same ones in all orders.
@@ -78,7 +80,7 @@ class LaneOrderWriter {
         std::vector<std::pair<std::uint32_t, unsigned>> left;
         if (any && all_held_)
             for (const std::uint32_t output : plan_.outputs)
-                if (const auto reg = code_.holder(output)) left.emplace_back(output, *reg);
+                if (const auto reg = code_.holder(output)) left.emplace_back(output, reg->getIdx());
         if (any && one_group_)
             for (unsigned i = 0; i < by_left_.size(); ++i) left.emplace_back(plan_.series + by_left_[i], first_sum + i);
         code_.forget_all();
@@ -94,100 +96,97 @@ class LaneOrderWriter {
     }
     void add_up(std::span<const std::uint32_t> sums, unsigned k) {
         const Index first = first_row(), next = stride();
-        code_.zero(0);
-        for (unsigned i = 0; i < sums.size(); ++i) code_.registers(Code::load, eight, first_sum + i, 0, 0);
+        code_.zero(zmm(0));
+        for (unsigned i = 0; i < sums.size(); ++i) code_.vmovapd(zmm(first_sum + i), zmm(0));
         if (k >= 4) {
-            code_.address(left_row, now, first + 2 * next);
-            code_.address(right_row, row, -2 * next);
-            code_.address(before, row, -next);
-            const std::size_t none = code_.jump_if_not_below(left_row, before);
-            const std::size_t loop = code_.here();
+            code_.lea(left_row, at(now, first + 2 * next));
+            code_.lea(right_row, at(row, -2 * next));
+            code_.lea(before, at(row, -next));
+            Xbyak::Label none;
+            code_.cmp(left_row, before);
+            code_.jae(none);
+            const Xbyak::Label loop = code_.L();
             add_products(sums, left_row, 0, right_row, 0);
-            code_.address(left_row, left_row, next);
-            code_.address(right_row, right_row, -next);
-            code_.jump_back_if_below(left_row, before, loop);
-            code_.land(none);
+            code_.lea(left_row, at(left_row, next));
+            code_.lea(right_row, at(right_row, -next));
+            code_.cmp(left_row, before);
+            code_.jb(loop);
+            code_.L(none);
         }
         if (k >= 3) add_products(sums, now, first + next, row, -next);
         if (k >= 4) add_products(sums, row, -next, now, first + next);
         if (k >= 2) add_products(sums, row, 0, now, first);
-        for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], first_sum + i);
+        for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], zmm(first_sum + i));
     }
     // The right factors are fetched once too where there are registers for them.
-    void add_products(std::span<const std::uint32_t> sums, Base left, Index to_left, Base right, Index to_right) {
-        constexpr unsigned x = 0, product = 1, last_register = 31;
+    void add_products(std::span<const std::uint32_t> sums, const Xbyak::Reg64& left, Index to_left,
+                      const Xbyak::Reg64& right, Index to_right) {
+        constexpr Zmm x(0), product(1);
+        constexpr unsigned last_register = 31;
         std::map<std::uint32_t, unsigned> fetched;
         unsigned next = first_sum + static_cast<unsigned>(sums.size());
         for (const std::uint32_t i : sums)
             if (next <= last_register && fetched.emplace(sum(i).right, next).second)
-                code_.memory(Code::load, eight, next++, right, to_right + lane(sum(i).right));
+                code_.vmovupd(zmm(next++), at(right, to_right + lane(sum(i).right)));
         for (unsigned i = 0; i < sums.size(); ++i) {
             const auto [x_place, y_place] = sum(sums[i]);
-            if (i == 0 || sum(sums[i - 1]).left != x_place)
-                code_.memory(Code::load, eight, x, left, to_left + lane(x_place));
+            if (i == 0 || sum(sums[i - 1]).left != x_place) code_.vmovupd(x, at(left, to_left + lane(x_place)));
             if (const auto y = fetched.find(y_place); y != fetched.end()) {
-                code_.registers(Code::multiply, eight, product, x, y->second);
+                code_.vmulpd(product, x, zmm(y->second));
             } else {
-                code_.memory(Code::multiply, eight, product, x, right, to_right + lane(y_place));
+                code_.vmulpd(product, x, at(right, to_right + lane(y_place)));
             }
-            code_.registers(Code::add, eight, first_sum + i, first_sum + i, product);
+            code_.vaddpd(zmm(first_sum + i), zmm(first_sum + i), product);
         }
     }
 
     // The term x_1 y_k, from the register of y_k where it has one.
-    void finish(std::uint32_t i, unsigned total) {
-        constexpr unsigned product = 1, weight = 2;
+    void finish(std::uint32_t i, const Zmm& total) {
+        constexpr Zmm product(1), weight(2);
         const auto [left, right] = sum(i);
         const auto newest = code_.holder(lanes_.kept[right].series);
-        if (!newest) code_.memory(Code::load, eight, product, row, lane(right));
-        code_.memory(Code::multiply, eight, product, newest ? *newest : product, now, first_row() + lane(left));
-        code_.registers(Code::add, eight, total, total, product);
+        if (!newest) code_.vmovupd(product, at(row, lane(right)));
+        code_.vmulpd(product, newest ? *newest : product, at(now, first_row() + lane(left)));
+        code_.vaddpd(total, total, product);
         if (i < plan_.weighted) {
-            code_.broadcast(eight, weight, weights, by_inverse_of_next);
-            code_.registers(Code::multiply, eight, total, total, weight);
+            code_.vbroadcastsd(weight, at(weights, by_inverse_of_next));
+            code_.vmulpd(total, total, weight);
         }
-        if (!one_group_) code_.memory(Code::store, eight, total, now, lane(plan_.series + i));
-    }
-
-    // The register that holds a number, or else this one, with it.
-    unsigned held(std::uint32_t number, unsigned otherwise) {
-        if (const auto reg = code_.holder(number)) return *reg;
-        code_.get(otherwise, number);
-        return otherwise;
+        if (!one_group_) code_.vmovupd(at(now, lane(plan_.series + i)), total);
     }
 
     // q_k = v_{k-1}/k, v_k = v'_{k-1}/k; those of order 1 are given.
     void inputs(bool given) {
-        constexpr unsigned inverse = 0;
+        constexpr Zmm inverse(0);
         const auto n = static_cast<std::uint32_t>(plan_.coordinates());
-        code_.broadcast(eight, inverse, weights, by_inverse);
+        code_.vbroadcastsd(inverse, at(weights, by_inverse));
         for (std::uint32_t i = 0; i < 2 * n; ++i) {
-            const unsigned result = code_.result(1 + i);
+            const Xbyak::Xmm result = code_.result(1 + i);
             if (given) {
-                code_.memory(Code::load, eight, result, now, lane(1 + i));
+                code_.vmovupd(result, at(now, lane(1 + i)));
                 continue;
             }
             if (i < n) {
                 const Index below = lane(n + i) - lane(plan_.states());
-                code_.memory(Code::multiply, eight, result, inverse, motion, below);
+                code_.vmulpd(result, inverse, at(motion, below));
             } else {
-                code_.apply(Code::multiply, result, inverse, plan_.outputs[i - n]);
+                code_.apply(Assembler::vmul, result, inverse, plan_.outputs[i - n]);
             }
             if (!all_held_) code_.store(result, 1 + i);
-            code_.memory(Code::store, eight, result, motion, lane(i));
+            code_.vmovupd(at(motion, lane(i)), result);
         }
     }
 
     void keep() {
+        constexpr Zmm weight(1);
         for (std::size_t i = 0; i < lanes_.kept.size(); ++i) {
             const auto [series, weighted] = lanes_.kept[i];
-            unsigned reg = held(series, 0);
+            const Xbyak::Xmm number = code_.held_or(zmm(0), series);
             if (weighted) {
-                code_.broadcast(eight, 1, weights, by_order);
-                code_.registers(Code::multiply, eight, 1, 1, reg);
-                reg = 1;
+                code_.vbroadcastsd(weight, at(weights, by_order));
+                code_.vmulpd(weight, weight, number);
             }
-            code_.memory(Code::store, eight, reg, row, lane(i));
+            code_.vmovupd(at(row, lane(i)), weighted ? weight : number);
         }
     }
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <span>
 
-#include "program/machine.hpp"
+#include "program/assembler.hpp"
 #include "series/order.hpp"
 #include "series/rule_code.hpp"
 
@@ -10,12 +10,12 @@ namespace achilles {
 
 namespace {
 
-using Base = Assembler::Base;
-using Code = Assembler::Code;
+using Xbyak::Xmm, Xbyak::Ymm, Xbyak::Zmm, Xbyak::Label;
 
 // The function's arguments, by the calling convention, and the pointers of the loop over older rows.
-constexpr Base now = Base::rdi, factors = Base::rsi, first_row = Base::rdx, row = Base::rcx, weights = Base::r8,
-               motion = Base::r9, left_row = Base::rax, right_row = Base::r10, last_pair = Base::r11;
+constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, first_row = Xbyak::util::rdx,
+                       row = Xbyak::util::rcx, weights = Xbyak::util::r8, motion = Xbyak::util::r9,
+                       left_row = Xbyak::util::rax, right_row = Xbyak::util::r10, last_pair = Xbyak::util::r11;
 constexpr unsigned scratch = 4;  // free vector registers
 
 using Index = std::ptrdiff_t;  // of doubles
@@ -25,6 +25,11 @@ struct Part {
     Index begin;
     Width width;
     Index end() const { return begin + static_cast<Index>(width); }
+    // A register as wide as this part.
+    Ymm vector(std::size_t reg) const {
+        const auto number = static_cast<int>(reg);
+        return width == Width::eight ? Zmm(number) : Ymm(number);
+    }
 };
 
 // Where a member of SeriesMotion stands.
@@ -46,29 +51,34 @@ class OrderWriter {
 
     // Write a function; return where it begins.
     std::size_t write_first() {
-        const std::size_t begin = code_.here();
+        const std::size_t begin = code_.getSize();
         code_.forget_all();
         write_order(true);
-        code_.leave_at_once();
+        code_.vzeroupper();
+        code_.ret();
         return begin;
     }
     std::size_t write_later() {
-        const std::size_t begin = code_.here();
+        const std::size_t begin = code_.getSize();
+        Label done;
+        const Label next = code_.L();
         code_.forget_all();
         sum_older();
         inputs();
         write_order(false);
-        const std::size_t small = keep_and_compare();
-        const std::size_t last = code_.jump_if_not_below(row, last_pair);
-        code_.address(row, row, 2 * lanes_);
-        code_.address(weights, weights, OrderCode::weights_per_order);
-        code_.jump_back(begin);
-        code_.land(small);
-        code_.land(last);
-        code_.leave_at_once();
+        keep_and_compare();
+        code_.jbe(done);  // also where they cannot be compared
+        code_.cmp(row, last_pair);
+        code_.jae(done);
+        code_.lea(row, at(row, 2 * lanes_));
+        code_.lea(weights, at(weights, OrderCode::weights_per_order));
+        code_.jmp(next);
+        code_.L(done);
+        code_.vzeroupper();
+        code_.ret();
         return begin;
     }
-    const std::vector<std::uint8_t>& bytes() const { return code_.bytes(); }
+    std::span<const std::uint8_t> bytes() { return code_.bytes(); }
 
  private:
     Index older() const { return sums_ + lanes_; }
@@ -89,134 +99,137 @@ class OrderWriter {
     }
     void sum_older(std::span<const Part> parts) {
         const Index stride = 2 * lanes_;
-        const auto count = static_cast<unsigned>(parts.size());
-        for (unsigned i = 0; i < 2 * count; ++i) code_.zero(2 + i);
-        code_.address(left_row, first_row, stride);
-        code_.address(right_row, row, -stride);
-        code_.address(last_pair, row, -stride);
-        const std::size_t skip = code_.jump_if_not_below(left_row, last_pair);
-        const std::size_t loop = code_.here();
+        const std::size_t count = parts.size();
+        for (std::size_t i = 0; i < 2 * count; ++i) code_.zero(Xmm(static_cast<int>(2 + i)));
+        code_.lea(left_row, at(first_row, stride));
+        code_.lea(right_row, at(row, -stride));
+        code_.lea(last_pair, at(row, -stride));
+        Label no_pair, none;
+        code_.cmp(left_row, last_pair);
+        code_.jae(no_pair);
+        const Label loop = code_.L();
         add_products(parts, 2, 0, 0);
         add_products(parts, 2 + count, stride, -stride);
-        code_.address(left_row, left_row, 2 * stride);
-        code_.address(right_row, right_row, -2 * stride);
-        code_.jump_back_if_below(left_row, last_pair, loop);
-        code_.land(skip);
-        const std::size_t none = code_.jump_if_not_below(left_row, row);
+        code_.lea(left_row, at(left_row, 2 * stride));
+        code_.lea(right_row, at(right_row, -2 * stride));
+        code_.cmp(left_row, last_pair);
+        code_.jb(loop);
+        code_.L(no_pair);
+        code_.cmp(left_row, row);
+        code_.jae(none);
         add_products(parts, 2, 0, 0);
-        code_.land(none);
-        for (unsigned i = 0; i < count; ++i) {
-            code_.registers(Code::add, parts[i].width, 2 + i, 2 + i, 2 + count + i);
-            code_.memory(Code::store, parts[i].width, 2 + i, now, older() + parts[i].begin);
+        code_.L(none);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Ymm even = parts[i].vector(2 + i), odd = parts[i].vector(2 + count + i);
+            code_.vaddpd(even, even, odd);
+            code_.vmovupd(at(now, older() + parts[i].begin), even);
         }
     }
     // sums[i] += left * right
-    void add_products(std::span<const Part> parts, unsigned sums, Index left, Index right) {
+    void add_products(std::span<const Part> parts, std::size_t sums, Index left, Index right) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const Part& part = parts[i];
-            const auto reg = static_cast<unsigned>(i % 2), sum = sums + static_cast<unsigned>(i);
-            code_.memory(Code::load, part.width, reg, 0, left_row, left + part.begin);
-            code_.memory(Code::multiply, part.width, reg, reg, right_row, right + part.begin + lanes_);
-            code_.registers(Code::add, part.width, sum, sum, reg);
+            const Ymm product = part.vector(i % 2), sum = part.vector(sums + i);
+            code_.vmovupd(product, at(left_row, left + part.begin));
+            code_.vmulpd(product, product, at(right_row, right + part.begin + lanes_));
+            code_.vaddpd(sum, sum, product);
         }
     }
 
     // ---- the motion ----
 
     void inputs() {
-        constexpr Base below = left_row;
-        constexpr unsigned inverse = 0;
+        constexpr Xbyak::Reg64 below = left_row;
+        constexpr Xmm inverse(0);
         const auto n = static_cast<std::uint32_t>(plan_.coordinates());
-        code_.load_address(below, motion, ACHILLES_PLACE(row));
-        code_.memory(Code::load, Width::one, inverse, weights, 1 - OrderCode::weights_per_order);  // 1/k
+        code_.mov(below, at(motion, ACHILLES_PLACE(row)));
+        code_.vmovsd(inverse, at(weights, 1 - OrderCode::weights_per_order));  // 1/k
         for (std::uint32_t i = 0; i < 2 * n; ++i) {
-            const unsigned result = code_.result(1 + i);
+            const Xmm result = code_.result(1 + i);
             if (i < n) {
-                code_.memory(Code::multiply, Width::one, result, inverse, below, n + i);
+                code_.vmulsd(result, inverse, at(below, n + i));
             } else {
-                code_.apply(Code::multiply, result, inverse, plan_.outputs[i - n]);
+                code_.apply(Assembler::vmul, result, inverse, plan_.outputs[i - n]);
             }
             code_.store(result, 1 + i);
-            code_.memory(Code::store, Width::one, result, below, 2 * n + 1 + i);
+            code_.vmovsd(at(below, 2 * n + 1 + i), result);
         }
     }
 
-    // A jump if what is compared is not above 1 any more. Leaves the last row in last_pair.
-    std::size_t keep_and_compare() {
-        constexpr Base state = left_row, largest = right_row;
+    // Compares what is to be compared with 1. Leaves the last row in last_pair.
+    void keep_and_compare() {
+        constexpr Xbyak::Reg64 state = left_row, largest = right_row;
+        constexpr Xmm scaled(0), size(1);
         const auto width = static_cast<Index>(plan_.states());
-        const std::uint32_t watched = plan_.outputs.back();
-        code_.load_address(state, motion, ACHILLES_PLACE(row));
-        code_.address(state, state, width);
-        code_.store_address(state, motion, ACHILLES_PLACE(row));
-        auto held = code_.holder(watched);
-        if (!held) code_.get(0, watched);
-        code_.memory(Code::store, Width::one, held ? *held : 0, state, width - 1);
-        code_.load_address(largest, motion, ACHILLES_PLACE(largest));
-        code_.address(largest, largest, width);
-        code_.store_address(largest, motion, ACHILLES_PLACE(largest));
-        code_.load_address(last_pair, motion, ACHILLES_PLACE(last));
-        code_.memory(Code::load, Width::one, 0, motion, ACHILLES_PLACE(power));
-        code_.memory(Code::multiply, Width::one, 0, 0, motion, ACHILLES_PLACE(target));
-        code_.memory(Code::store, Width::one, 0, motion, ACHILLES_PLACE(power));
-        code_.memory(Code::load, Width::one, 1, largest, 0);
-        code_.memory(Code::both, Width::two, 1, 1, motion, ACHILLES_PLACE(magnitude));
-        code_.registers(Code::multiply, Width::one, 0, 0, 1);
-        return code_.jump_if_not_above(0, motion, ACHILLES_PLACE(one));
+        code_.mov(state, at(motion, ACHILLES_PLACE(row)));
+        code_.lea(state, at(state, width));
+        code_.mov(at(motion, ACHILLES_PLACE(row)), state);
+        code_.vmovsd(at(state, width - 1), code_.held_or(Xmm(0), plan_.outputs.back()));
+        code_.mov(largest, at(motion, ACHILLES_PLACE(largest)));
+        code_.lea(largest, at(largest, width));
+        code_.mov(at(motion, ACHILLES_PLACE(largest)), largest);
+        code_.mov(last_pair, at(motion, ACHILLES_PLACE(last)));
+        code_.vmovsd(scaled, at(motion, ACHILLES_PLACE(power)));
+        code_.vmulsd(scaled, scaled, at(motion, ACHILLES_PLACE(target)));
+        code_.vmovsd(at(motion, ACHILLES_PLACE(power)), scaled);
+        code_.vmovsd(size, at(largest, 0));
+        code_.vandpd(size, size, at(motion, ACHILLES_PLACE(magnitude)));
+        code_.vmulsd(scaled, scaled, size);
+        code_.vucomisd(scaled, at(motion, ACHILLES_PLACE(one)));
     }
 
     // ---- this order as a row ----
 
     // Two numbers side by side.
-    void pair(unsigned to, std::uint32_t low, std::uint32_t high) {
-        const auto a = code_.holder(low), b = code_.holder(high);
-        if (!a) code_.get(to, low);
-        const unsigned from = a ? *a : to;
-        if (b) {
-            code_.registers(Code::unpack, Width::two, to, from, *b);
+    void pair(const Xmm& to, std::uint32_t low, std::uint32_t high) {
+        const Xmm from = code_.held_or(to, low);
+        if (const auto held = code_.holder(high)) {
+            code_.vunpcklpd(to, from, *held);
         } else {
-            code_.memory(Code::load_high, Width::one, to, from, now, high);
+            code_.vmovhpd(to, from, code_.number(high));
         }
     }
-    // So many as the width says, side by side, in `to`; `free` and the next are lost.
-    void gather(const std::uint32_t* numbers, Width width, unsigned to, unsigned free) {
-        pair(to, numbers[0], numbers[1]);
-        pair(free, numbers[2], numbers[3]);
-        code_.join(Width::four, to, to, free);
-        if (width != Width::eight) return;
-        pair(free, numbers[4], numbers[5]);
-        pair(free + 1, numbers[6], numbers[7]);
-        code_.join(Width::four, free, free, free + 1);
-        code_.join(Width::eight, to, to, free);
+    // Four, in register `to`; the next is lost.
+    void four(const std::uint32_t* numbers, int to) {
+        pair(Xmm(to), numbers[0], numbers[1]);
+        pair(Xmm(to + 1), numbers[2], numbers[3]);
+        code_.vinsertf128(Ymm(to), Ymm(to), Xmm(to + 1), 1);
+    }
+    // So many as the part is wide, side by side, in register `to`; the next two are lost.
+    void gather(const std::uint32_t* numbers, const Part& part, int to) {
+        four(numbers + part.begin, to);
+        if (part.width != Width::eight) return;
+        four(numbers + part.begin + 4, to + 1);
+        code_.vinsertf64x4(Zmm(to), Zmm(to), Ymm(to + 1), 1);
     }
 
     // reg *= the order (which = 0) or its successor's inverse (1), in the lanes that are weighted
-    void weigh(const Part& part, unsigned reg, Index which, unsigned free) {
+    void weigh(const Part& part, const Ymm& reg, Index which, const Ymm& free) {
         if (part.begin >= weighted_) return;
         if (part.end() <= weighted_) {
-            code_.broadcast(part.width, free, weights, which);
-            code_.registers(Code::multiply, part.width, reg, reg, free);
+            code_.vbroadcastsd(free, at(weights, which));
+            code_.vmulpd(reg, reg, free);
         } else {
-            code_.memory(Code::multiply, part.width, reg, reg, weights, 2 + 8 * which);
+            code_.vmulpd(reg, reg, at(weights, 2 + 8 * which));
         }
     }
 
     void keep_and_sum(const Part& part, bool first) {
         const Index right = part.begin + lanes_;
-        constexpr unsigned x = 0, y = 1;
-        gather(plan_.left.data() + part.begin, part.width, x, 1);
-        weigh(part, x, 0, 1);
-        code_.memory(Code::store, part.width, x, row, part.begin);
-        gather(plan_.right.data() + part.begin, part.width, y, 2);
-        code_.memory(Code::store, part.width, y, row, right);
-        code_.memory(Code::multiply, part.width, y, y, first_row, part.begin);
+        const Ymm x = part.vector(0), y = part.vector(1), free = part.vector(2);
+        gather(plan_.left.data(), part, 0);
+        weigh(part, x, 0, y);
+        code_.vmovupd(at(row, part.begin), x);
+        gather(plan_.right.data(), part, 1);
+        code_.vmovupd(at(row, right), y);
+        code_.vmulpd(y, y, at(first_row, part.begin));
         if (!first) {
-            code_.memory(Code::multiply, part.width, x, x, first_row, right);
-            code_.registers(Code::add, part.width, y, y, x);
-            code_.memory(Code::add, part.width, y, y, now, older() + part.begin);
+            code_.vmulpd(x, x, at(first_row, right));
+            code_.vaddpd(y, y, x);
+            code_.vaddpd(y, y, at(now, older() + part.begin));
         }
-        weigh(part, y, 1, 2);
-        code_.memory(Code::store, part.width, y, now, sums_ + part.begin);
+        weigh(part, y, 1, free);
+        code_.vmovupd(at(now, sums_ + part.begin), y);
     }
 
     const SeriesPlan& plan_;
