@@ -2,9 +2,24 @@
 
 #include <sys/mman.h>
 
+#include <atomic>
+#include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 namespace achilles {
+
+namespace {
+
+bool is_wanted() {
+    const char* const given = std::getenv("ACHILLES_MACHINE_CODE");
+    return given == nullptr || std::string_view(given) != "0";
+}
+std::atomic<bool> wanted = is_wanted();
+
+}  // namespace
+
+void ask_environment_for_code() { wanted = is_wanted(); }
 
 // Written first, made executable then, and never both at once.
 std::shared_ptr<const MachineCode> MachineCode::of(std::span<const std::uint8_t> bytes) {
@@ -20,6 +35,7 @@ std::shared_ptr<const MachineCode> MachineCode::of(std::span<const std::uint8_t>
 MachineCode::~MachineCode() { munmap(memory_, size_); }
 
 std::optional<Width> best_width() {
+    if (!wanted) return std::nullopt;
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2")) return std::nullopt;
     return __builtin_cpu_supports("avx512f") ? Width::eight : Width::four;

@@ -39,7 +39,10 @@ class MachineCode {
 // How many doubles an instruction works on; four need AVX2, as one does here, and eight AVX-512.
 enum class Width : unsigned { one = 1, four = 4, eight = 8 };
 
-// The widest that this processor and system can run; none where no code can.
+// The widest that this processor and system can run; none where no code can, and none if the environment variable
+// ACHILLES_MACHINE_CODE is 0: what is compiled then is run by loops.
 std::optional<Width> best_width();
+// The variable is read when the program starts: later, other threads may change the environment. This reads it again.
+void ask_environment_for_code();
 
 }  // namespace achilles

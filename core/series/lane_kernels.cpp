@@ -46,7 +46,10 @@ namespace achilles {
 #ifdef ACHILLES_HAS_AVX512
 
 namespace {
-const bool has_avx512 = best_width() == Width::eight;
+const bool has_avx512 = [] {
+    __builtin_cpu_init();
+    return __builtin_cpu_supports("avx512f") != 0;
+}();
 }
 
 void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
@@ -55,6 +58,7 @@ void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
 
 std::vector<Vectors> possible_vectors() {
     if (!has_avx512) return {Vectors::portable};
+    if (!best_width()) return {Vectors::avx512, Vectors::portable};
     return {Vectors::avx512_with_machine_code, Vectors::avx512, Vectors::portable};
 }
 

@@ -7,6 +7,7 @@
 namespace achilles {
 
 std::optional<Width> best_width() { return std::nullopt; }
+void ask_environment_for_code() {}
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width) { return nullptr; }
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan&, Width) { return nullptr; }
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan&, const LanePlan&) { return nullptr; }

@@ -1,22 +1,41 @@
-// There is machine code wherever the processor can run it. What compares its bits with the loops' (expression_test,
-// series_test, side_by_side_test) would compare the loops with themselves if there were none.
+// There is machine code wherever the processor can run it, unless it is switched off; it gives the bits of the loops;
+// it is never writable. What compares its bits with the loops' (here, expression_test, series_test, side_by_side_test)
+// would compare the loops with themselves if there were none.
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
+#include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <string_view>
 
+#include "core/machine_code.hpp"
 #include "core/systems.hpp"
+#include "output/output.hpp"
 #include "program/program_code.hpp"
 #include "series/lane_access.hpp"
 #include "series/lane_order.hpp"
 #include "series/lane_stepper.hpp"
+#include "simulate/simulate.hpp"
 
 namespace achilles {
 namespace {
 
 // What the processor says itself, not what core makes of it.
 std::optional<Width> widest_of_processor() {
-#if defined(__x86_64__) && defined(__linux__)
+#if ACHILLES_MACHINE_CODE
     __builtin_cpu_init();
     if (__builtin_cpu_supports("avx2")) return __builtin_cpu_supports("avx512f") ? Width::eight : Width::four;
 #endif
@@ -27,17 +46,29 @@ class MachineCodes : public testing::Test {
  protected:
     void SetUp() override {
         EXPECT_EQ(best_width(), widest_of_processor());
-        if (!widest_of_processor()) GTEST_SKIP() << "no AVX2, or not Linux: everything is evaluated by loops";
+        if (!widest_of_processor()) GTEST_SKIP() << "no AVX2, or built without: everything is evaluated by loops";
     }
     // Where there are vectors of eight.
     static bool has_eight() { return widest_of_processor() == Width::eight; }
+
+ private:
+    test::MachineCodeSwitch on_{nullptr};
 };
 
+std::shared_ptr<const Model> load_without(const std::string& system) {
+    const test::MachineCodeSwitch off("0");
+    auto model = test::load(system);
+    for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) model->motion(held);  // compiled while it is off
+    return model;
+}
+
+// Register 2 is x + y, 3 is that times y, 4 its sine.
+constexpr Instruction few[] = {{Operation::add, 0, 1}, {Operation::multiply, 2, 1}, {Operation::sin, 3}};
+
+// ---- where there is code ----
+
 TEST_F(MachineCodes, AreMadeOfExpressions) {
-    // Register 2 is x + y, 3 is that times y, 4 its sine.
-    const std::vector<Instruction> instructions{
-        {Operation::add, 0, 1}, {Operation::multiply, 2, 1}, {Operation::sin, 3}};
-    const auto code = machine_code(instructions, 2, Width::one);
+    const auto code = machine_code(few, 2, Width::one);
     ASSERT_TRUE(code);
     std::array<double, 5> registers{0.25, 3.0, 0.0, 0.0, 0.0};
     code->as<void(double*)>()(registers.data());
@@ -68,6 +99,230 @@ TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
             EXPECT_TRUE(LaneOrderCode::of(plan, LanePlan(plan, series->inner_sums()))) << system;
         }
     }
+}
+
+TEST_F(MachineCodes, AreNotMadeWhereTheyAreSwitchedOff) {
+    const auto model = test::load("ball_on_sine");
+    const SeriesPlan& plan = LaneAccess::plan_of(model->motion({}).series);
+    for (const char* value : {"", "1", "on"}) {
+        const test::MachineCodeSwitch on(value);
+        EXPECT_TRUE(machine_code(few, 2, Width::one)) << value;
+    }
+    const test::MachineCodeSwitch off("0");
+    EXPECT_FALSE(best_width());
+    EXPECT_FALSE(machine_code(few, 2, Width::one));
+    EXPECT_FALSE(OrderCode::of(plan, Width::four));
+    EXPECT_FALSE(LaneOrderCode::of(plan, LanePlan(plan, model->motion({}).series.inner_sums())));
+    for (const Vectors vectors : possible_vectors()) EXPECT_NE(vectors, Vectors::avx512_with_machine_code);
+}
+
+// Also run with the variable set: core/without_machine_code.
+TEST(MachineCodeSwitch, IsTheProgramsEnvironment) {
+    const char* const given = std::getenv("ACHILLES_MACHINE_CODE");
+    const bool off = given != nullptr && std::string_view(given) == "0";
+    EXPECT_EQ(best_width(), off ? std::nullopt : widest_of_processor());
+}
+
+// ---- the memory where it stands ----
+
+struct Mapping {
+    std::uintptr_t begin = 0, end = 0;
+    std::string permissions, path;
+};
+
+std::vector<Mapping> mappings() {
+    std::ifstream file("/proc/self/maps");
+    std::vector<Mapping> all;
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream words(line);
+        Mapping one;
+        std::string offset, device, inode;
+        char dash = 0;
+        words >> std::hex >> one.begin >> dash >> one.end >> one.permissions >> offset >> device >> inode >> one.path;
+        all.push_back(one);
+    }
+    return all;
+}
+
+// Bytes that can be run and come from no file.
+std::size_t bytes_of_code() {
+    std::size_t bytes = 0;
+    for (const Mapping& one : mappings())
+        if (one.permissions[2] == 'x' && one.path.empty()) bytes += one.end - one.begin;
+    return bytes;
+}
+
+TEST_F(MachineCodes, StandWhereNothingIsWritten) {
+    const auto code = machine_code(few, 2, Width::one);
+    ASSERT_TRUE(code);
+    const auto address = reinterpret_cast<std::uintptr_t>(code->as<void(double*)>());
+    bool found = false;
+    for (const Mapping& one : mappings()) {
+        EXPECT_FALSE(one.permissions[1] == 'w' && one.permissions[2] == 'x') << one.path;
+        if (address < one.begin || address >= one.end) continue;
+        found = true;
+        EXPECT_EQ(one.permissions, "r-xp");
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST_F(MachineCodes, LeaveNoMemoryBehind) {
+    const std::size_t before = bytes_of_code();
+    const auto without = load_without("triple_pendulum");
+    EXPECT_EQ(bytes_of_code(), before);
+    {
+        const auto with = test::load("triple_pendulum");
+        EXPECT_GT(bytes_of_code(), before);
+    }
+    EXPECT_EQ(bytes_of_code(), before);
+}
+
+// From here on the system makes no memory executable for this thread; false if it lets nobody ask for that.
+bool deny_executable_memory() {
+    sock_filter filter[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_mprotect, 0, 3),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[2])),
+        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, PROT_EXEC, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+    };
+    const sock_fprog program{std::size(filter), filter};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+std::string run_of(const std::shared_ptr<const Model>& model) { return to_json(simulate(model, model->default_run())); }
+
+TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
+    enum Status { as_expected, has_code, other_bits, not_denied };
+    const std::string expected = run_of(test::load("ball_on_sine"));
+    const pid_t child = fork();  // what is denied stays so
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        if (!deny_executable_memory()) _exit(not_denied);
+        if (machine_code(few, 2, Width::one)) _exit(has_code);
+        const auto model = test::load("ball_on_sine");
+        make_lane_stepper(model->lane_programs(), 1e-10);
+        _exit(run_of(model) == expected ? as_expected : other_bits);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == not_denied) GTEST_SKIP() << "no seccomp here";
+    EXPECT_EQ(WEXITSTATUS(status), as_expected);
+}
+
+// ---- the same bits as the loops, in all systems; runs side by side: side_by_side_test ----
+
+// How many are numbers.
+int expect_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
+    EXPECT_EQ(a.size(), b.size());
+    int numbers = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        EXPECT_TRUE(std::isnan(a[i]) ? std::isnan(b[i])
+                                     : std::bit_cast<std::uint64_t>(a[i]) == std::bit_cast<std::uint64_t>(b[i]))
+            << what << ", " << i << ": " << a[i] << ", " << b[i];
+        if (std::isfinite(a[i])) ++numbers;
+    }
+    return numbers;
+}
+
+// Near the start, or far from it.
+std::vector<double> any_state(const Model& model, std::mt19937_64& random) {
+    const Run run = model.default_run();
+    std::vector<double> state(run.q.begin(), run.q.end());
+    state.insert(state.end(), run.v.begin(), run.v.end());
+    std::normal_distribution<double> number(0.0, random() % 2 == 0 ? 0.1 : 3.0);
+    for (double& x : state) x += number(random);
+    return state;
+}
+
+TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
+    const auto outputs = [](const Model& model, const Program& program, const std::vector<double>& state) {
+        Evaluator<double> evaluator = model.evaluator(program, model.default_run().parameters);
+        for (std::size_t i = 0; i < state.size(); ++i) evaluator.input(i) = state[i];
+        evaluator.run();
+        std::vector<double> values;
+        for (std::size_t i = 0; i < evaluator.output_count(); ++i) values.push_back(evaluator.output(i));
+        return values;
+    };
+    for (const std::string& system : test::all_systems()) {
+        const auto with = test::load(system), without = load_without(system);
+        std::mt19937_64 random(8);
+        const auto programs = [](const Model& model) {
+            return std::vector<const Program*>{&model.motion({}).program,
+                                               &model.motion(ContactSet::of(0)).program,
+                                               &model.gap(),
+                                               &model.force(),
+                                               &model.normal_acceleration(),
+                                               &model.release_terms(),
+                                               &model.contact_terms(),
+                                               &model.definition7_terms(),
+                                               &model.energy(),
+                                               &model.restitution()};
+        };
+        for (std::size_t k = 0; k < programs(*with).size(); ++k) {
+            int numbers = 0;
+            for (int i = 0; i < 30; ++i) {
+                const auto state = any_state(*with, random);
+                numbers += expect_bits(outputs(*with, *programs(*with)[k], state),
+                                       outputs(*without, *programs(*without)[k], state), system);
+            }
+            EXPECT_GT(numbers, 15) << system;
+        }
+    }
+}
+
+// All orders of a motion from this state, the second order by itself, and order 0.
+std::vector<double> orders_of(const Model& model, const SeriesProgram& program, const std::vector<double>& state) {
+    const std::size_t n = state.size() / 2, width = 2 * n + 1;
+    SeriesEvaluator series(program, model.default_run().parameters);
+    std::vector<double> rows(width * (SeriesEvaluator::highest_order + 1));
+    std::copy(state.begin(), state.end(), rows.begin());
+    const auto begin = [&] {
+        series.begin(rows.data());
+        rows[2 * n] = series.start(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            rows[width + i] = rows[n + i];
+            rows[width + n + i] = series.start(i);
+        }
+        series.extend(1, rows.data() + width);
+        rows[width + 2 * n] = series.output(n);
+    };
+    begin();
+    SeriesMotion motion;
+    motion.row = rows.data() + width;
+    motion.largest = motion.row + n;
+    motion.power = 1e4;
+    motion.target = 0.9;
+    const int last = series.extend(motion, 2, SeriesEvaluator::highest_order);
+    rows.push_back(last);
+    rows.push_back(motion.power);
+    begin();
+    series.extend(2, rows.data() + width);
+    for (std::size_t i = 0; i <= n; ++i) rows.push_back(series.output(i));
+    return rows;
+}
+
+TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
+    for (const std::string& system : test::all_systems()) {
+        const auto with = test::load(system), without = load_without(system);
+        std::mt19937_64 random(9);
+        for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) {
+            int numbers = 0;
+            for (int i = 0; i < 30; ++i) {
+                const auto state = any_state(*with, random);
+                numbers += expect_bits(orders_of(*with, with->motion(held).series, state),
+                                       orders_of(*without, without->motion(held).series, state), system);
+            }
+            EXPECT_GT(numbers, 30 * 3 * with->dof()) << system;
+        }
+    }
+}
+
+TEST_F(MachineCodes, GiveTheRunsOfTheLoops) {
+    for (const std::string& system : test::all_systems())
+        EXPECT_TRUE(run_of(test::load(system)) == run_of(load_without(system))) << system;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <random>
 
+#include "core/machine_code.hpp"
 #include "core/systems.hpp"
 #include "series/lane_stepper.hpp"
 #include "simulate/many.hpp"
@@ -377,6 +378,18 @@ TEST(RunsSideBySide, SayWhatARunAloneSays) {
     EXPECT_GT(outcomes[static_cast<int>(Outcome::Kind::end_time)], 20);
     EXPECT_GT(outcomes[static_cast<int>(Outcome::Kind::too_many_impacts)], 2);
     EXPECT_GT(outcomes[static_cast<int>(Outcome::Kind::too_many_steps)], 2);
+}
+
+TEST(RunsSideBySide, AreTheSameWithoutMachineCode) {
+    const test::MachineCodeSwitch on(nullptr);
+    for (const auto& [name, model] : models()) {
+        const auto runs = near_default(*model, 16, 0.1, 7);
+        const auto by_code = together(model, runs);
+        const test::MachineCodeSwitch off("0");
+        const auto by_loops = together(std::make_shared<const Model>(model->description()), runs);
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            EXPECT_TRUE(end_of(by_code[i]) == end_of(by_loops[i])) << name << " " << i;
+    }
 }
 
 // Where a function has an edge, every run goes its own way.

@@ -1,0 +1,32 @@
+// The switch of machine code, for the tests.
+#pragma once
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+#include "program/machine.hpp"
+
+namespace achilles::test {
+
+// The environment variable ACHILLES_MACHINE_CODE as it is given, or unset; as before when this ends.
+class MachineCodeSwitch {
+ public:
+    explicit MachineCodeSwitch(const char* value) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        set(value);
+    }
+    ~MachineCodeSwitch() { set(before_ ? before_->c_str() : nullptr); }
+    MachineCodeSwitch(const MachineCodeSwitch&) = delete;
+    MachineCodeSwitch& operator=(const MachineCodeSwitch&) = delete;
+
+ private:
+    static constexpr const char* name = "ACHILLES_MACHINE_CODE";
+    static void set(const char* value) {
+        value != nullptr ? setenv(name, value, 1) : unsetenv(name);
+        ask_environment_for_code();
+    }
+    std::optional<std::string> before_;
+};
+
+}  // namespace achilles::test
