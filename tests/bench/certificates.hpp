@@ -13,7 +13,7 @@ namespace achilles::bench {
 // Every collision at which a run asked for a certificate: its impacts, of which the last before a Zeno point is the
 // cut.
 inline std::vector<Collision> collisions(const Trajectory& trajectory) {
-    Surface surface(*trajectory.model, trajectory.run);
+    ContactKinematics surface(*trajectory.model, trajectory.run);
     std::vector<Collision> result;
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::impact) continue;
