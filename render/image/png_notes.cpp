@@ -1,7 +1,8 @@
 #include "image/png_notes.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -20,19 +21,8 @@ constexpr std::size_t longest_chunk = 0x7FFFFFFF, longest_keyword = 79;
 constexpr std::size_t most_notes = std::size_t{1} << 16;
 constexpr const char* too_many = "a PNG file holds at most 65536 notes";
 
-// CRC-32 as PNG wants it (ISO 3309): polynomial 0xEDB88320, the lowest bit first.
 std::uint32_t check_sum(std::string_view bytes) {
-    static const auto table = [] {
-        std::array<std::uint32_t, 256> made{};
-        for (std::uint32_t n = 0; n < made.size(); ++n) {
-            made[n] = n;
-            for (int bit = 0; bit < 8; ++bit) made[n] = made[n] >> 1 ^ ((made[n] & 1U) != 0 ? 0xEDB88320U : 0U);
-        }
-        return made;
-    }();
-    std::uint32_t sum = 0xFFFFFFFFU;
-    for (const char c : bytes) sum = table[(sum ^ static_cast<unsigned char>(c)) & 0xFFU] ^ sum >> 8;
-    return ~sum;
+    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
 std::string big_endian(std::uint32_t value) {
