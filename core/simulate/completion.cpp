@@ -1,20 +1,137 @@
-// The part of an execution on the surface: completion of a bouncing, contact, release.
+// What an execution does at its events: impact, completion of a bouncing, Zeno point, release.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simulate/execution.hpp"
 
 namespace achilles {
 
+namespace {
+
+double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
+
+}  // namespace
+
+// ---- impact ----
+
+void Execution::land(const Contact& contact) {
+    if (!(contact.hdot < 0.0)) {
+        stop(Outcome::Kind::undecided,
+             "an impact whose speed is zero to within rounding at " + where(next_.t, next_.state));
+        return;
+    }
+    if (record_.impacts() >= run_.options.max_impacts) {
+        const bool elastic = restitution_ >= 1.0;
+        stop(Outcome::Kind::too_many_impacts,
+             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
+                         next_.t, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
+        return;
+    }
+    // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
+    if (restitution_ > 0.0 && conditions_ && conditions_->fails_by_speed(-contact.hdot) &&
+        is_well_resolved(-contact.hdot))
+        return bounce(contact, restitution_);
+    const Vector tangential = reinitialize(contact, next_.state.v, Reinitialization::kinetic);
+    const Reinitialization kind = run_.options.truncation.reinitialization;
+    const bool kinetic = kind == Reinitialization::kinetic;
+    Collision collision{next_.t, next_.state, -contact.hdot, tangential,
+                        kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
+    if (restitution_ == 0.0) {
+        capture(contact, collision);
+    } else if (auto certificate =
+                   could_truncate(collision) ? prove(&TruncationConditions::certify, collision) : std::nullopt) {
+        complete(contact, collision, std::move(*certificate));
+    } else if (too_short_to_resolve(collision, restitution_)) {
+        if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
+            complete(contact, collision, std::move(*proved));
+        } else {
+            stop(Outcome::Kind::undecided,
+                 "flights became shorter than floating point resolves, and no truncation is certified at " +
+                     where(next_.t, next_.state));
+        }
+    } else {
+        bounce(contact, restitution_);
+    }
+}
+
+// The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
+bool Execution::could_truncate(const Collision& collision) {
+    if (!conditions_) conditions_ = timed([&] { return truncation_conditions(*model_, run_); });
+    return !conditions_->fails_at_point(collision);
+}
+
+// Asks for a proof, after could_truncate().
+std::optional<Certificate> Execution::prove(
+    std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
+    return timed([&] { return ((*conditions_).*question)(collision); });
+}
+
+// Newton's law, and the flight it starts.
+void Execution::bounce(const Contact& contact, double e) {
+    const Vector v_after = impact(contact, next_.state.v, e);
+    record_.impact(next_.t, next_.state, v_after, -contact.hdot);
+    next_.state.v = v_after;
+    const double hdot = -e * contact.hdot;
+    next_.start = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+    begin_stretch({}, run_.options.end_time);
+    if (run_.options.method == Method::taylor) return;  // a series tells its length itself
+    const double hddot = kinematics_->normal_acceleration(next_.state);
+    next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
+}
+
+// Far from what follows: the last step was neither short nor low.
+bool Execution::is_well_resolved(double speed) const {
+    const double q = next_.state.q.cwiseAbs().maxCoeff();
+    return last_step_ > 1e-6 * (1.0 + next_.t) && last_step_ * speed > 1e-8 * (1.0 + q);
+}
+
+// theory.md 6.3: the next flight is lower than the rounding of h, or shorter than that of t.
+bool Execution::too_short_to_resolve(const Collision& collision, double e) {
+    if (is_well_resolved(collision.speed)) return false;
+    const double u = e * collision.speed;
+    const double a = -kinematics_->normal_acceleration({collision.before.q, collision.tangential});
+    if (!(a > 0.0)) return false;
+    return u * u / (2.0 * a) < 4.0 * kinematics_->gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
+}
+
+// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and the completion is exact.
+void Execution::capture(const Contact& contact, const Collision& before) {
+    Collision collision = before;
+    collision.restart = collision.tangential;
+    const Interval hddot = kinematics_->normal({collision.before.q, collision.restart}).hddot;
+    if (certainly_negative(hddot)) {
+        Certificate certificate;
+        certificate.certified = true;
+        certificate.conditions = run_.options.truncation.conditions;
+        certificate.reinitialization = Reinitialization::kinetic;
+        certificate.zeno_low = certificate.zeno_high = certificate.zeno_time = next_.t;
+        certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
+        certificate.a_min = -hddot.hi();
+        certificate.a_max = -hddot.lo();
+        certificate.decisive = "exact: restitution 0";
+        certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
+        complete(contact, collision, std::move(certificate));
+    } else if (certainly_positive(hddot)) {
+        bounce(contact, 0.0);
+        next_.start = {{0.0, 0.0}, 2};
+    } else {
+        stop(Outcome::Kind::undecided,
+             "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +
+                 where(next_.t, next_.state));
+    }
+}
+
 // ---- completion ----
 
 // The collision is the last impact that is drawn: the bouncing after it is replaced by the constrained motion. The
 // phase changes at the best estimate of the Zeno time.
-void Execution::complete(const Collision& collision, Certificate certificate) {
-    record_.impact(t_, state_, impact(contact_, state_.v, restitution_), collision.speed);
-    state_ = {collision.before.q, collision.restart};
-    record_.stretch(state_);
-    constrained_start_ = {};
+void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
+    record_.impact(next_.t, next_.state, impact(contact, next_.state.v, restitution_), collision.speed);
+    next_.state = {collision.before.q, collision.restart};
+    next_.start = {};
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -22,162 +139,44 @@ void Execution::complete(const Collision& collision, Certificate certificate) {
     event.truncation =
         Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
     event.certificate = std::move(certificate);
+    begin_stretch(ContactSet::of(0), std::min(event.t, run_.options.end_time));
 }
 
-double Execution::contact_until() const {
-    return completion_ ? std::min(completion_->t, run_.options.end_time) : run_.options.end_time;
-}
-
-void Execution::wait_for_zeno_point() {
-    const Beginning start = beginning();
-    bool vanished = false;
-    do {
-        flow().stay(t_, state_, start.state_error);
-        vanished = advance_constrained(contact_until());
-    } while (doubt_ && try_exactly(start));
-    settle();
+// The motion in contact has come to the Zeno time.
+void Execution::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
-    if (vanished)
-        stop(Outcome::Kind::undecided, "the contact force vanishes before the Zeno time at " + where(t_, state_));
-    if (outcome_ || event.t > run_.options.end_time) return;
-    t_ = event.t;
-    event.q = state_.q;
-    event.v_before = event.v_after = state_.v;
+    next_.t = event.t;
+    event.q = next_.state.q;
+    event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
-    record_.close(t_);
-    record_.open(Phase::Kind::constrained, t_);
-    constrained_ = true;
+    record_.close(next_.t);
+    record_.open(Phase::Kind::constrained, next_.t);
+    begin_stretch(ContactSet::of(0), run_.options.end_time);
 }
 
-// ---- contact ----
-
-void Execution::stay_until_release() {
-    const Beginning start = beginning();
-    bool vanished = false;
-    do {
-        flow().stay(t_, state_, start.state_error);
-        record_.stretch(state_);
-        vanished = advance_constrained(run_.options.end_time);
-    } while (doubt_ && try_exactly(start));
-    settle();
-    if (vanished) release();
-}
-
-// Moves on the surface until a time (false) or until the contact force vanishes (true).
-bool Execution::advance_constrained(double until) {
-    while (!outcome_ && !doubt_ && until - t_ > 1e-15 * std::abs(t_))
-        if (constrained_step(until)) return true;
-    if (!outcome_ && !doubt_ && until >= run_.options.end_time) stop(Outcome::Kind::end_time, "reached the end time");
-    return false;
-}
-
-// One step of it. True if the contact force vanishes where it ends.
-bool Execution::constrained_step(double until) {
-    if (!advance(until)) return false;
-    Descent descent = flow().stays_negative() ? Descent{} : force_descent();
-    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
-    bool asked_again = false;
-    switch (descent.kind) {
-        case Descent::Kind::none:
-            break;
-        case Descent::Kind::root:
-            if (descent.theta == 0.0) return true;
-            if (locate_release(descent.theta)) return !outcome_;
-            break;  // the step became shorter
-        case Descent::Kind::rose:
-            if (!knows_its_start() || constrained_start_.asked_again) return doubt_force(0.0);
-            break;
-        case Descent::Kind::open:
-            // As in flight: a dip that holds the end of a step lies inside the next one.
-            asked_again = !constrained_start_.asked_again && end_step_at(descent.theta);
-            if (!asked_again && !(knows_its_start() && flow().end_time() >= until)) return doubt_force(descent.theta);
-            break;
-        case Descent::Kind::undecided:
-            return doubt_force(descent.theta);
-    }
-    constrained_start_ = {0, asked_again};
-    accept_constrained_step();
-    return false;
-}
-
-// Accepts the flow's last step, moved onto the surface. False, and the run is over, if it cannot be.
-bool Execution::accept_constrained_step() {
-    const auto projected = kinematics_.project(flow().edit_end(), false);
-    accept_step(projected ? *projected : kinematics_.at(flow().end()));
-    if (!projected) fail_projection(t_, state_);
-    return projected.has_value();
-}
-
-// Whether the force vanishes cannot be told from theta on: the motion goes there, and ends in doubt. Always false.
-bool Execution::doubt_force(double theta) {
-    if (end_step_at(theta) && !accept_constrained_step()) return false;
-    doubt_ = "the contact force comes closer to zero than the integration knows it just after " + where(t_, state_);
-    return false;
-}
-
-// Where the contact force vanishes along the last step: -hddot = W lambda. At theta = 0 if it did before, to within
-// rounding.
-Descent Execution::force_descent() {
-    Polynomial force = flow().event_function();
-    for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
-    if (!flow().is_expansion()) {
-        State end = flow().end();
-        kinematics_.project(end, false);
-        force.c[2] += -kinematics_.normal_acceleration(end) - force(1.0);
-    }
-    if (constrained_start_.known > 0) {
-        force.c[0] = 0.0;
-    } else if (!(force.c[0] > 0.0)) {
-        return {Descent::Kind::root, 0.0};
-    }
-    return first_descent(force, constrained_start_.known, flow().remainder(force));
-}
-
-// The same as locate_impact, for hddot = 0 along the constrained motion.
-bool Execution::locate_release(double theta) {
-    double duration = theta * flow().duration();
-    for (int round = 0; round < 8; ++round) {
-        if (const auto failure = flow().redo_step(duration); failure != StepFailure::none) {
-            stop_at(failure);
-            return true;
-        }
-        const auto projected = kinematics_.project(flow().edit_end(), false);
-        if (!projected || flow().duration() < duration * (1.0 - 1e-12)) return false;
-        const State& end = flow().end();
-        const double correction = -kinematics_.normal_acceleration(end) / kinematics_.jerk(end);
-        const bool close = std::abs(correction) < 1e-7;
-        if (close) {
-            flow().shift_end(correction);
-            kinematics_.project(flow().edit_end(), false);
-            break;
-        }
-        if (!std::isfinite(correction)) break;  // a touch: the release decides
-        duration = std::max(duration + correction, 0.5 * duration);
-    }
-    accept_step(kinematics_.at(flow().end()));
-    return true;
-}
+// ---- release ----
 
 // lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
 void Execution::release() {
-    if (!certainly_positive(kinematics_.normal(state_).jerk)) {
+    if (completing())
+        return stop(Outcome::Kind::undecided,
+                    "the contact force vanishes before the Zeno time at " + where(next_.t, next_.state));
+    if (!certainly_positive(kinematics_->normal(next_.state).jerk)) {
         stop(Outcome::Kind::undecided,
-             "the contact force touches zero and h''' > 0 is not proved at " + where(t_, state_));
+             "the contact force touches zero and h''' > 0 is not proved at " + where(next_.t, next_.state));
         return;
     }
     Event event;
     event.kind = Event::Kind::release;
-    event.t = t_;
-    event.q = state_.q;
-    event.v_before = event.v_after = state_.v;
+    event.t = next_.t;
+    event.q = next_.state.q;
+    event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
-    record_.close(t_);
-    record_.open(Phase::Kind::hybrid, t_);
-    constrained_ = false;
-    constrained_start_ = {};
-    flight_start_ = {{0.0, 0.0}, 3};
-    first_step_ = 0.0;
+    record_.close(next_.t);
+    record_.open(Phase::Kind::hybrid, next_.t);
+    next_.start = {{0.0, 0.0}, 3};
+    begin_stretch({}, run_.options.end_time);
 }
 
 }  // namespace achilles

@@ -11,14 +11,6 @@ Flow::Flow(const Model& model, const Run& run)
       model_(&model),
       parameters_(run.parameters) {}
 
-void Flow::fly(double t, const State& state, const Gap& gap, double first_step) {
-    start({}, t, state, gap, first_step);
-}
-
-void Flow::stay(double t, const State& state, double state_error) {
-    start(ContactSet::of(0), t, state, {0.0, 0.0, 0.0, 0.0, state_error}, 0.0);
-}
-
 void Flow::start(ContactSet held, double t, const State& state, const Gap& gap, double first_step) {
     held_ = held;
     t_ = end_ = t;

@@ -16,9 +16,9 @@ class Flow {
  public:
     Flow(const Model& model, const Run& run);
 
-    // Start a stretch at (t, state). The first step is at most `first_step` (s); 0 leaves it to the stepper.
-    void fly(double t, const State& state, const Gap& gap, double first_step);
-    void stay(double t, const State& state, double state_error);
+    // Starts a stretch at (t, state) that holds these contacts. In flight the first step is at most `first_step` (s); 0
+    // leaves it to the stepper. In contact only the gap's state_error counts.
+    void start(ContactSet held, double t, const State& state, const Gap& gap, double first_step);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
     // domain inside a step the step is shortened, until it is too short to be a step: that is the failure. So it is
     // where one comes to an edge inside (model/edges.hpp).
@@ -53,7 +53,6 @@ class Flow {
     long evaluations() const { return stepper_->evaluations(); }
 
  private:
-    void start(ContactSet held, double t, const State& state, const Gap& gap, double first_step);
     double least() const;
 
     std::unique_ptr<Stepper> stepper_;

@@ -14,10 +14,17 @@ constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter 
 
 }  // namespace
 
+SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run)
+    : index(number),
+      kinematics(*model, run),
+      execution(model, run, kinematics, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
+      stepper(*model, run, kinematics) {}
+
 SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
                        const std::function<Run(std::size_t)>& run_of,
                        const std::function<void(std::size_t, Attempt&&)>& take)
     : step_(model->lane_programs().coordinates),
+      end_{Vector(model->dof()), Vector(model->dof())},
       model_(model),
       count_(count),
       next_(next),
@@ -52,10 +59,7 @@ void SideBySide::begin(std::size_t index) {
                           !model_->motion({}).series.is_partial() &&
                           !model_->motion(ContactSet::of(0)).series.is_partial();
     if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));
-    Member& member = member_for(index, run);
-    member.execution.asks_again_ = false;  // an undecided run is made again as a whole
-    member.execution.begin();
-    go_on(member);
+    go_on(member_for(index, run), false);
 }
 
 SideBySide::Member& SideBySide::member_for(std::size_t index, const Run& run) {
@@ -68,7 +72,9 @@ SideBySide::Member& SideBySide::member_for(std::size_t index, const Run& run) {
     spare_.pop_back();
     member.index = index;
     if (!member.execution.restart(run)) {
-        member.execution = Execution(model_, run, nullptr, Keep::end);
+        member.kinematics = ContactKinematics(*model_, run);
+        member.execution = Execution(model_, run, member.kinematics, nullptr, Keep::end, Execution::InDoubt::end);
+        member.stepper = EventStepper(*model_, run, member.kinematics);
         member.set = set_of(run.parameters);
     }
     return member;
@@ -82,35 +88,38 @@ std::size_t SideBySide::set_of(const std::vector<double>& parameters) {
     return sets_;
 }
 
-// Into line, after what only the run itself can do.
-void SideBySide::go_on(Member& member) {
+// Into line with what it needs next. What is not plain, and what lanes have just refused, its own stepper answers: one
+// step in contact, else the rest of the stretch, which is short.
+void SideBySide::go_on(Member& member, bool refused) {
     Execution& run = member.execution;
-    while (run.running()) {
-        const bool in_contact = run.constrained_ || run.completing();
-        const double until = in_contact ? run.contact_until() : run.run_.options.end_time;
-        const bool plain = run.record_.steps() < run.run_.options.max_steps && run.stalled_ == 0 &&
-                           until - run.t_ > 1e-15 * std::abs(run.t_);
-        if (in_contact) {
-            if (plain && !run.constrained_start_.asked_again) return staying_.push_back(&member);
-            run.completing() ? run.wait_for_zeno_point() : run.stay_until_release();
-        } else {
-            const bool known = !run.at_impact_ && run.flight_start_.multiplicity <= 1 && !run.flight_start_.asked_again;
-            if (plain && known) return flying_.push_back(&member);
-            run.fly_to_impact();
-        }
+    while ((member.request = run.next()) != nullptr) {
+        const bool flying = member.request->held.empty();
+        if (member.request->begins) member.alone = false;
+        if (member.request->plain && !member.alone && !refused) return (flying ? flying_ : staying_).push_back(&member);
+        StepRequest own = *member.request;
+        if (!member.alone) own.begins = true;  // for this stepper: the step before was not its own
+        member.alone = !refused || flying || run.completing();
+        refused = false;
+        run.accept(member.stepper.step(own));
     }
-    const bool decided = run.outcome_->kind != Outcome::Kind::undecided;
+    finish(member);
+}
+
+void SideBySide::finish(Member& member) {
+    Trajectory trajectory = member.execution.finish();
     // The longer steps of a run alone may know enough.
-    take_(member.index, decided ? run.finish() : simulate(model_, run.run_, nullptr, Keep::end));
+    if (trajectory.outcome.kind == Outcome::Kind::undecided)
+        trajectory = simulate(model_, member.execution.run(), nullptr, Keep::end);
+    take_(member.index, std::move(trajectory));
     spare_.push_back(&member);
 }
 
 // The first of the line, and those of its tolerance: steps have one order.
 void SideBySide::choose(Line& line) {
     members_.clear();
-    const double tolerance = line.front()->execution.run_.options.tolerance;
+    const double tolerance = line.front()->execution.run().options.tolerance;
     std::erase_if(line, [&](Member* member) {
-        if (members_.size() == Eight::count || member->execution.run_.options.tolerance != tolerance) return false;
+        if (members_.size() == Eight::count || member->execution.run().options.tolerance != tolerance) return false;
         members_.push_back(member);
         return true;
     });
@@ -123,22 +132,17 @@ void SideBySide::step(Line& line, bool flying) {
     if (flying) {
         stepper.fly(step_);
     } else {
-        stepper.stay(step_, most_steps_in_contact());
+        stepper.stay(step_, most_steps());
     }
     for (std::size_t lane = 0; lane < members_.size(); ++lane) {
-        Execution& run = members_[lane]->execution;
-        if (flying) {
-            after_flight(run, lane);
-        } else {
-            after_contact(run, lane);
-        }
-        go_on(*members_[lane]);
+        if (read(lane, flying)) members_[lane]->execution.accept(result_);
+        go_on(*members_[lane], step_.end[lane] == LaneStep::End::not_plain);
     }
 }
 
 // The stepper for these, with their parameters in its lanes. Lanes without a run repeat the first.
 LaneStepper& SideBySide::prepare() {
-    const double tolerance = members_.front()->execution.run_.options.tolerance;
+    const double tolerance = members_.front()->execution.run().options.tolerance;
     auto found = steppers_.find(tolerance);
     if (found == steppers_.end())
         found = steppers_.emplace(tolerance, Prepared{make_lane_stepper(model_->lane_programs(), tolerance), {}}).first;
@@ -147,27 +151,27 @@ LaneStepper& SideBySide::prepare() {
     for (std::size_t lane = 0; lane < Eight::count; ++lane) sets[lane] = member_in(lane).set;
     if (prepared.sets == sets) return *prepared.stepper;
     prepared.sets = sets;
-    std::vector<Eight> parameters(members_.front()->execution.run_.parameters.size());
+    std::vector<Eight> parameters(members_.front()->execution.run().parameters.size());
     for (std::size_t lane = 0; lane < Eight::count; ++lane)
         for (std::size_t i = 0; i < parameters.size(); ++i)
-            parameters[i][lane] = member_in(lane).execution.run_.parameters[i];
+            parameters[i][lane] = member_in(lane).execution.run().parameters[i];
     prepared.stepper->fix(parameters);
     return *prepared.stepper;
 }
 
 void SideBySide::gather(bool flying) {
     for (std::size_t lane = 0; lane < Eight::count; ++lane) {
-        const Execution& run = member_in(lane).execution;
-        const auto n = run.state_.q.size();
+        const StepRequest& request = *member_in(lane).request;
+        const auto n = request.state.q.size();
         for (Eigen::Index i = 0; i < n; ++i) {
-            step_.q_and_v[static_cast<std::size_t>(i)][lane] = run.state_.q[i];
-            step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = run.state_.v[i];
+            step_.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
+            step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
         }
-        step_.t[lane] = run.t_;
-        step_.state_error[lane] = flying ? run.flight_start_.gap.state_error : run.state_error();
-        step_.until[lane] = flying ? run.run_.options.end_time : run.contact_until();
+        const auto& [gap, multiplicity, asked_again] = request.start;
+        step_.t[lane] = request.t;
+        step_.until[lane] = request.until;
+        step_.state_error[lane] = gap.state_error;
         if (!flying) continue;
-        const auto& [gap, multiplicity, asked_again] = run.flight_start_;
         step_.h[lane] = gap.h;
         step_.hdot[lane] = gap.hdot;
         step_.error[lane] = gap.error;
@@ -176,8 +180,41 @@ void SideBySide::gather(bool flying) {
     }
 }
 
-Contact SideBySide::contact_of(std::size_t lane) const {
-    Contact contact;
+// The fewest that one of the runs may still make.
+long SideBySide::most_steps() const {
+    long most = std::numeric_limits<long>::max();
+    for (const Member* member : members_) most = std::min(most, member->request->most);
+    return most;
+}
+
+// What came of the steps in a lane, as far as they were plain; false if none was.
+bool SideBySide::read(std::size_t lane, bool flying) {
+    const bool plain = step_.end[lane] != LaneStep::End::not_plain;
+    result_.steps = flying ? (plain ? 1 : 0) : (plain ? step_.steps : step_.steps - 1);
+    if (result_.steps == 0) return false;
+    const auto n = end_.q.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        end_.q[i] = step_.q_and_v[static_cast<std::size_t>(i)][lane];
+        end_.v[i] = step_.q_and_v[static_cast<std::size_t>(n + i)][lane];
+    }
+    result_.state = &end_;
+    result_.t = step_.t[lane];
+    result_.duration = step_.duration[lane];
+    result_.gap = flying ? step_.end_h[lane] : step_.least_gap[lane];
+    result_.evaluations = result_.steps;
+    result_.end = StepResult::End::no_event;
+    if (step_.end[lane] == LaneStep::End::impact) {
+        result_.end = StepResult::End::impact;
+        read_contact(lane);
+    } else {
+        result_.start = {};
+        if (flying) read_gap(lane);
+    }
+    return true;
+}
+
+void SideBySide::read_contact(std::size_t lane) {
+    Contact& contact = result_.contact;
     contact.h = step_.end_h[lane];
     contact.hdot = step_.end_hdot[lane];
     contact.W = step_.end_W[lane];
@@ -188,59 +225,18 @@ Contact SideBySide::contact_of(std::size_t lane) const {
         contact.impulse_direction.data()[i] = step_.impulse_direction[i][lane];
         contact.g.data()[i] = step_.g[i][lane];
     }
-    return contact;
 }
 
-// The fewest that one of the runs may still make.
-long SideBySide::most_steps_in_contact() const {
-    long most = std::numeric_limits<long>::max();
-    for (const Member* member : members_)
-        most = std::min(most, member->execution.run_.options.max_steps - member->execution.record_.steps());
-    return most;
-}
-
-// To the end of so many steps.
-void SideBySide::move(Execution& run, std::size_t lane, long steps, double least_gap) const {
-    const auto n = run.state_.q.size();
-    for (Eigen::Index i = 0; i < n; ++i) {
-        run.state_.q[i] = step_.q_and_v[static_cast<std::size_t>(i)][lane];
-        run.state_.v[i] = step_.q_and_v[static_cast<std::size_t>(n + i)][lane];
-    }
-    run.record_.steps(steps, least_gap);
-    run.advance_clock(step_.duration[lane], step_.t[lane]);
-    run.other_evaluations_ += steps;
-}
-
-void SideBySide::after_flight(Execution& run, std::size_t lane) {
-    if (step_.end[lane] == LaneStep::End::impact) {
-        move(run, lane, 1, step_.end_h[lane]);
-        run.contact_ = contact_of(lane);
-        run.land();
-    } else if (step_.end[lane] == LaneStep::End::no_event) {
-        move(run, lane, 1, step_.end_h[lane]);
-        Gap gap{step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
-        const double off = step_.end_h[lane] - gap.h;
-        if (std::abs(off) > 2.0 * step_.rounding[lane] &&
-            !run.kinematics_.within_gap_error(off, 4.0, contact_of(lane), run.state_)) {
-            gap.h = step_.end_h[lane];
-            gap.hdot = step_.end_hdot[lane];
-        }
-        run.flight_start_ = {gap, 0};
-    } else {
-        run.fly_to_impact();
-    }
-}
-
-void SideBySide::after_contact(Execution& run, std::size_t lane) {
-    const bool plain = step_.end[lane] == LaneStep::End::no_event;
-    const long steps = plain ? step_.steps : step_.steps - 1;
-    if (steps > 0) move(run, lane, steps, step_.least_gap[lane]);
-    if (plain) return;
-    if (run.completing()) return run.wait_for_zeno_point();
-    run.flow_.stay(run.t_, run.state_, run.state_error());
-    const bool vanished = run.constrained_step(run.run_.options.end_time);
-    run.settle();
-    if (vanished) run.release();
+// The gap at the end of a step without event: by its series, or as it stands there where that is known better.
+void SideBySide::read_gap(std::size_t lane) {
+    Gap& gap = result_.start.gap;
+    gap = {step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
+    const double off = step_.end_h[lane] - gap.h;
+    if (!(std::abs(off) > 2.0 * step_.rounding[lane])) return;
+    read_contact(lane);
+    if (members_[lane]->kinematics.within_gap_error(off, 4.0, result_.contact, end_)) return;
+    gap.h = step_.end_h[lane];
+    gap.hdot = step_.end_hdot[lane];
 }
 
 }  // namespace achilles

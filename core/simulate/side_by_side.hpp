@@ -5,15 +5,18 @@
 #include <map>
 
 #include "series/lane_stepper.hpp"
+#include "simulate/event_stepper.hpp"
 #include "simulate/execution.hpp"
 #include "simulate/many.hpp"
 
 namespace achilles {
 
-// One thread's share of them. A few dozen runs are under way; those in flight and those in contact wait in two lines,
-// and whichever is longer makes a step. What is not plain is done by the run's own Execution.
+// One thread's share of them. A few dozen runs are under way; the requests of those in flight and of those in contact
+// wait in two lines, and eight of whichever is longer are answered by one vector step. What is not plain is answered by
+// the run's own stepper.
 class SideBySide {
  public:
+    // For 0 <= i < count, as next.fetch_add(1) gives them: take(i, what run_of(i) came to).
     SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
                const std::function<Run(std::size_t)>& run_of, const std::function<void(std::size_t, Attempt&&)>& take);
 
@@ -22,31 +25,37 @@ class SideBySide {
 
  private:
     struct Member {
-        Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run)
-            : index(number), execution(model, run, nullptr, Keep::end) {}
+        Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run);
         std::size_t index;
         std::size_t set = 0;  // of parameters: no two members with one number differ in them
+        ContactKinematics kinematics;
         Execution execution;
+        EventStepper stepper;
+        const StepRequest* request = nullptr;  // that waits in line
+        bool alone = false;                    // the rest of this stretch is left to its own stepper
     };
     using Line = std::vector<Member*>;
 
     void begin(std::size_t index);
     Member& member_for(std::size_t index, const Run& run);
     std::size_t set_of(const std::vector<double>& parameters);
-    void go_on(Member& member);
+    void go_on(Member& member, bool refused);
+    void finish(Member& member);
     void step(Line& line, bool flying);
     void choose(Line& line);
     // The run in a lane; lanes without one repeat the first.
     Member& member_in(std::size_t lane) const { return *members_[lane < members_.size() ? lane : 0]; }
     LaneStepper& prepare();
     void gather(bool flying);
-    void after_flight(Execution& run, std::size_t lane);
-    void after_contact(Execution& run, std::size_t lane);
-    Contact contact_of(std::size_t lane) const;
-    long most_steps_in_contact() const;
-    void move(Execution& run, std::size_t lane, long steps, double least_gap) const;
+    long most_steps() const;
+    bool read(std::size_t lane, bool flying);
+    void read_contact(std::size_t lane);
+    void read_gap(std::size_t lane);
 
     LaneStep step_;
+    // The same of one lane, as it is told.
+    State end_;
+    StepResult result_;
     Line members_;  // of the step that is made: a lane each
     const std::shared_ptr<const Model>& model_;
     std::size_t count_;

@@ -4,26 +4,18 @@
 #include <chrono>
 
 #include "number/ground.hpp"
+#include "simulate/event_stepper.hpp"
 #include "simulate/execution.hpp"
 
 namespace achilles {
 
 namespace {
 
-// Defs. 4 and 5: a hybrid execution that converges to its Zeno point is followed by a constrained one, which a
-// vanishing contact force releases into the next hybrid execution.
 Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch, Keep keep) {
-    Execution execution(model, run, watch, keep);
-    execution.begin();
-    while (execution.running()) {
-        if (execution.completing()) {
-            execution.wait_for_zeno_point();
-        } else if (execution.constrained()) {
-            execution.stay_until_release();
-        } else {
-            execution.fly_to_impact();
-        }
-    }
+    ContactKinematics kinematics(*model, run);
+    Execution execution(model, run, kinematics, watch, keep, Execution::InDoubt::ask_exactly);
+    EventStepper stepper(*model, run, kinematics);
+    while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
     return execution.finish();
 }
 
@@ -38,9 +30,9 @@ Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* w
     Run used = run;
     raise_to_least(used.options);
     Trajectory trajectory = execute(model, used, watch, keep);
-    if (trajectory.outcome.kind == Outcome::Kind::undecided && used.options.tolerance > Execution::least_tolerance) {
+    if (trajectory.outcome.kind == Outcome::Kind::undecided && used.options.tolerance > exact_tolerance) {
         Run exact = used;
-        exact.options.tolerance = Execution::least_tolerance;
+        exact.options.tolerance = exact_tolerance;
         for (double* eps : {&exact.options.truncation.eps_q, &exact.options.truncation.eps_v})
             *eps = std::min(*eps, 1e-12);
         trajectory = execute(model, exact, watch, keep);

@@ -1,0 +1,59 @@
+// What an execution asks of whoever makes its steps, and what it is told: all that passes between the two.
+#pragma once
+
+#include "simulate/flow.hpp"
+#include "simulate/impact.hpp"
+
+namespace achilles {
+
+// The least tolerance that steps can serve: below it they are rounding.
+inline constexpr double exact_tolerance = 1e-14;
+
+// How what is watched along a step leaves the step's start: the gap in flight, the contact force in contact.
+struct EventStart {
+    Gap gap;                   // in contact its state_error alone has a meaning
+    int multiplicity = 0;      // of the zero there: of h in flight; of the force 1 where it starts from zero
+    bool asked_again = false;  // the step before was ended where it entered its remainder (theory-truncation.md 6)
+};
+
+// A step of smooth motion, from t to `until` at the latest, or to the first event in (t, until]: in flight the gap
+// closes, in contact the contact force vanishes. A zero at t itself is none, as often as start.multiplicity says.
+struct StepRequest {
+    ContactSet held;
+    double t = 0.0;           // s
+    State state;              // at t
+    EventStart start;         // at t
+    double until = 0.0;       // s, > t
+    double first_step = 0.0;  // s, where a flight begins: a length that is known to be sensible; 0: none is
+    long most = 1;            // as many steps may be made at once where none has an event
+    bool begins = true;       // a stretch of motion begins here; else the step goes on from where the last one ended
+    bool exactly = false;     // at exact_tolerance instead of the run's
+    bool plain = false;       // steps that show at once that they have no event, or just an impact, may answer it
+};
+
+// What came of a request: in (request.t, t) there is no event, at t what `end` says.
+struct StepResult {
+    enum class End : char {
+        no_event,        // none: the next step starts there, as `start` says
+        impact,          // in flight: the gap closes, as `contact` says; `state` is on the surface, before the impact
+        force_vanishes,  // in contact
+        doubt,           // none, but whether one follows just after t cannot be told
+        off_surface,     // `state` cannot be moved onto the surface, on which it belongs
+        no_step          // no step could be made, for the reason of `failure`: t and `state` are those of the request
+    };
+    End end = End::no_event;
+    // Steps that were made. Where there is none, t is that of the request: an event there is one that the end of the
+    // step before had come to, within its remainder. Then `state` may still be moved onto the surface.
+    long steps = 0;
+    double t = 0.0, duration = 0.0;  // s; of the last step
+    const State* state = nullptr;    // it stands until the next step
+    double gap = 0.0;                // at t; the least of several steps' ends
+    EventStart start;
+    Contact contact;
+    double remainder = 0.0;  // doubt in flight: what the gap is known to
+    StepFailure failure = StepFailure::none;
+    const Flow* flow = nullptr;  // that made the step, with all of it; null where the end alone is known
+    long evaluations = 0;        // of the motion, also for what led to no step
+};
+
+}  // namespace achilles

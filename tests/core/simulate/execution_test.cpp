@@ -1,0 +1,315 @@
+// The automaton by itself: what it asks for, and what it makes of an answer, whoever gives it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/systems.hpp"
+#include "simulate/event_stepper.hpp"
+#include "simulate/execution.hpp"
+
+namespace achilles {
+namespace {
+
+using End = StepResult::End;
+using InDoubt = Execution::InDoubt;
+
+// A throw from x = 0 upwards at speed 1: it lands at t = 2, with -1. Steps are told, not made.
+class Told : public testing::Test {
+ protected:
+    Told() {
+        run_.v << 1.0;
+        run_.options.end_time = 10.0;
+    }
+    Execution execution(InDoubt in_doubt = InDoubt::ask_exactly) {
+        return Execution(model_, run_, kinematics_, nullptr, Keep::end, in_doubt);
+    }
+    // The motion at t, as that of one step without an event; `end` and what it needs may be changed.
+    StepResult at(double t, End end = End::no_event) {
+        state_.q.resize(1);
+        state_.v.resize(1);
+        state_.q << t - 0.5 * t * t;
+        state_.v << 1.0 - t;
+        StepResult result;
+        result.end = end;
+        result.steps = result.evaluations = 1;
+        result.t = t;
+        result.duration = t;
+        result.state = &state_;
+        result.gap = state_.q[0];
+        result.start.gap = {state_.q[0], state_.v[0]};
+        result.contact = kinematics_.at(state_);
+        return result;
+    }
+
+    std::shared_ptr<const Model> model_ = test::drop();
+    achilles::Run run_ = model_->default_run();
+    ContactKinematics kinematics_{*model_, run_};
+    State state_;
+};
+
+TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
+    auto execution = this->execution();
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(request->held.empty());
+    EXPECT_EQ(request->t, 0.0);
+    EXPECT_EQ(request->until, 10.0);
+    EXPECT_EQ(request->start.multiplicity, 1);
+    EXPECT_EQ(request->start.gap.hdot, 1.0);
+    EXPECT_TRUE(request->begins && request->plain && !request->exactly);
+    EXPECT_EQ(request->most, run_.options.max_steps);
+    EXPECT_EQ(execution.next(), request);  // as long as nothing came
+    EXPECT_TRUE(request->begins);
+    execution.accept(at(0.5));
+    request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_EQ(request->t, 0.5);
+    EXPECT_EQ(request->state.q[0], 0.375);
+    EXPECT_EQ(request->start.gap.h, 0.375);
+    EXPECT_EQ(request->start.multiplicity, 0);
+    EXPECT_FALSE(request->begins);
+    EXPECT_EQ(request->most, run_.options.max_steps - 1);
+}
+
+// Newton's law; and where the next one is certified to be followed by a Zeno point, contact.
+TEST_F(Told, BouncesOrCompletes) {
+    auto bouncing = execution();
+    ASSERT_NE(bouncing.next(), nullptr);
+    bouncing.accept(at(2.0, End::impact));
+    const StepRequest* request = bouncing.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(request->held.empty());
+    EXPECT_TRUE(request->begins);
+    EXPECT_EQ(request->t, 2.0);
+    EXPECT_EQ(request->state.v[0], 0.5);
+    EXPECT_EQ(request->start.gap.hdot, 0.5);
+    EXPECT_EQ(request->start.multiplicity, 1);
+
+    run_.options.truncation.eps_q = run_.options.truncation.eps_v = run_.options.truncation.eps_t = 10.0;
+    auto completing = execution();
+    ASSERT_NE(completing.next(), nullptr);
+    completing.accept(at(2.0, End::impact));
+    request = completing.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(completing.completing());
+    EXPECT_EQ(request->held, ContactSet::of(0));
+    EXPECT_TRUE(request->begins);
+    EXPECT_EQ(request->state.v[0], 0.0);
+    EXPECT_NEAR(request->until, 4.0, 1e-9);  // 2 + 2 e/(1 - e)
+    StepResult result = at(request->until);
+    state_.q << 0.0;
+    state_.v << 0.0;
+    completing.accept(result);
+    request = completing.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_FALSE(completing.completing());
+    EXPECT_EQ(request->held, ContactSet::of(0));
+    EXPECT_TRUE(request->begins);
+    EXPECT_EQ(request->until, 10.0);
+    result.t = 10.0;
+    completing.accept(result);
+    EXPECT_EQ(completing.next(), nullptr);
+    EXPECT_EQ(completing.next(), nullptr);
+    const Trajectory trajectory = completing.finish();
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time);
+    ASSERT_EQ(trajectory.phases.size(), 2u);
+    EXPECT_EQ(trajectory.phases[1].kind, Phase::Kind::constrained);
+    EXPECT_EQ(trajectory.statistics.impacts, 1);
+    EXPECT_EQ(trajectory.statistics.evaluations, 3);
+}
+
+// On the floor, which does not let go: g = 1.
+TEST_F(Told, ReleasesOnlyWhereTheForceIsProvedToFall) {
+    run_.v << 0.0;
+    auto execution = this->execution();
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_EQ(request->held, ContactSet::of(0));
+    StepResult result = at(0.5, End::force_vanishes);
+    state_.q << 0.0;
+    state_.v << 0.0;
+    execution.accept(result);
+    EXPECT_EQ(execution.next(), nullptr);
+    EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::undecided);
+}
+
+// The whole stretch, from its beginning, once.
+TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
+    auto execution = this->execution();
+    for (const double t : {0.5, 1.0}) {
+        ASSERT_NE(execution.next(), nullptr);
+        execution.accept(at(t));
+    }
+    ASSERT_NE(execution.next(), nullptr);
+    execution.accept(at(1.5, End::doubt));
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(request->exactly && request->begins);
+    EXPECT_EQ(request->t, 0.0);
+    EXPECT_EQ(request->state.q[0], 0.0);
+    EXPECT_EQ(request->start.multiplicity, 1);
+    EXPECT_EQ(request->most, run_.options.max_steps);
+    execution.accept(at(0.5));
+    request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(request->exactly && !request->begins);
+    execution.accept(at(1.5, End::doubt));
+    EXPECT_EQ(execution.next(), nullptr);
+    const Trajectory trajectory = execution.finish();
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::undecided);
+    EXPECT_EQ(trajectory.end_time, 1.5);
+    EXPECT_EQ(trajectory.statistics.steps, 2);
+    EXPECT_EQ(trajectory.statistics.evaluations, 5);
+}
+
+TEST_F(Told, AsksExactlyForOneStretchOnly) {
+    auto execution = this->execution();
+    ASSERT_NE(execution.next(), nullptr);
+    execution.accept(at(1.5, End::doubt));
+    ASSERT_TRUE(execution.next()->exactly);
+    execution.accept(at(2.0, End::impact));
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(!request->exactly && request->begins);
+    StepResult result = at(2.1, End::doubt);  // of another flight
+    execution.accept(result);
+    request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_TRUE(request->exactly);
+    EXPECT_EQ(request->t, 2.0);
+}
+
+TEST_F(Told, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
+    for (const bool exact : {false, true}) {
+        if (exact) run_.options.tolerance = exact_tolerance;
+        auto execution = this->execution(exact ? InDoubt::ask_exactly : InDoubt::end);
+        ASSERT_NE(execution.next(), nullptr);
+        execution.accept(at(1.5, End::doubt));
+        EXPECT_EQ(execution.next(), nullptr);
+        EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::undecided);
+    }
+}
+
+// An event that the step before had come to: no step is counted, and time stands; the state is moved to the surface.
+TEST_F(Told, LandsWithoutAStep) {
+    auto execution = this->execution();
+    ASSERT_NE(execution.next(), nullptr);
+    execution.accept(at(1.999999));
+    ASSERT_NE(execution.next(), nullptr);
+    StepResult result = at(2.0, End::impact);
+    result.t = 1.999999;
+    result.steps = 0;
+    execution.accept(result);
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_EQ(request->t, 1.999999);
+    EXPECT_EQ(request->state.q[0], 0.0);
+    EXPECT_EQ(request->state.v[0], 0.5);
+    EXPECT_EQ(request->most, run_.options.max_steps - 1);
+}
+
+TEST_F(Told, EndsWhereNoStepFollowsOrTheSurfaceIsNotReached) {
+    for (const auto& [end, kind] : {std::pair(End::no_step, Outcome::Kind::not_a_number),
+                                    std::pair(End::off_surface, Outcome::Kind::left_the_domain)}) {
+        auto execution = this->execution();
+        ASSERT_NE(execution.next(), nullptr);
+        StepResult result = at(0.5, end);
+        result.failure = StepFailure::not_a_number;
+        execution.accept(result);
+        EXPECT_EQ(execution.next(), nullptr);
+        EXPECT_EQ(execution.finish().outcome.kind, kind);
+    }
+}
+
+TEST_F(Told, CountsStepsAgainstTheirBoundAndEndsAtTheEndTime) {
+    run_.options.max_steps = 3;
+    auto execution = this->execution();
+    ASSERT_NE(execution.next(), nullptr);
+    StepResult result = at(0.5);
+    result.steps = 2;
+    execution.accept(result);
+    const StepRequest* request = execution.next();
+    ASSERT_NE(request, nullptr);
+    EXPECT_EQ(request->most, 1);
+    execution.accept(at(1.0));
+    EXPECT_EQ(execution.next(), nullptr);
+    EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::too_many_steps);
+
+    run_.options.end_time = 1.0;
+    ASSERT_TRUE(execution.restart(run_));
+    ASSERT_NE(execution.next(), nullptr);
+    execution.accept(at(1.0));
+    EXPECT_EQ(execution.next(), nullptr);
+    EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::end_time);
+}
+
+// Steps of the resolution of time: not for lanes, and not for ever.
+TEST_F(Told, GivesUpWhereTimeStandsStill) {
+    auto execution = this->execution();
+    ASSERT_NE(execution.next(), nullptr);
+    execution.accept(at(1.0));
+    ASSERT_TRUE(execution.next()->plain);
+    int steps = 0;
+    for (; execution.next() != nullptr && steps < 1000; ++steps) {
+        EXPECT_EQ(execution.next()->plain, steps == 0);
+        execution.accept(at(1.0));
+    }
+    EXPECT_EQ(steps, 101);
+    EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::step_too_small);
+}
+
+TEST_F(Told, StartsAgainOnlyForARunOfItsKind) {
+    auto execution = this->execution();
+    const auto refuses = [&](const auto& change) {
+        auto other = run_;
+        change(other);
+        return !execution.restart(other);
+    };
+    EXPECT_TRUE(refuses([](achilles::Run& run) { run.parameters[0] = 2.0; }));
+    EXPECT_TRUE(refuses([](achilles::Run& run) { run.options.tolerance *= 0.1; }));
+    EXPECT_TRUE(refuses([](achilles::Run& run) { run.options.method = Method::dopri5; }));
+    EXPECT_TRUE(refuses([](achilles::Run& run) { run.options.truncation.eps_q *= 0.1; }));
+    EXPECT_FALSE(refuses([](achilles::Run& run) { run.q[0] = 1.0; }));
+    EXPECT_EQ(execution.next()->state.q[0], 1.0);
+}
+
+// ---- with its stepper ----
+
+// Def. 5: flights and impacts, then contact, up to the next flight. A stretch begins at every event, and only there.
+TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
+    const auto model = test::load("ball_on_sine");
+    const auto run = model->default_run();
+    ContactKinematics kinematics(*model, run);
+    Execution execution(model, run, kinematics, nullptr, Keep::everything, InDoubt::ask_exactly);
+    EventStepper stepper(*model, run, kinematics);
+    long stretches = 0;
+    bool event = true, released = false;
+    while (const StepRequest* request = execution.next()) {
+        stretches += request->begins ? 1 : 0;
+        const bool zeno = request->begins && !event;  // the motion in contact goes on past the Zeno point
+        if (zeno) {
+            EXPECT_EQ(request->held, ContactSet::of(0));
+        } else {
+            EXPECT_EQ(request->begins, event);
+        }
+        if (released) {
+            EXPECT_TRUE(request->held.empty());
+        }
+        const double t = request->t, until = request->until;
+        const ContactSet held = request->held;
+        const StepResult& result = stepper.step(*request);
+        EXPECT_GT(result.t, t);
+        EXPECT_LE(result.t, until);
+        event = result.end != End::no_event;
+        released = result.end == End::force_vanishes;
+        EXPECT_TRUE(!event || result.end == (held.empty() ? End::impact : End::force_vanishes));
+        execution.accept(result);
+    }
+    const Trajectory trajectory = execution.finish(), alone = simulate(model, run);
+    EXPECT_EQ(stretches, 1 + static_cast<long>(trajectory.events.size()));
+    EXPECT_EQ(trajectory.outcome.message, alone.outcome.message);
+    EXPECT_EQ(to_text(trajectory), to_text(alone));
+}
+
+}  // namespace
+}  // namespace achilles
