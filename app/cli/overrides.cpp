@@ -1,5 +1,4 @@
 #include "cli/overrides.hpp"
-#include "model/read_system.hpp"
 
 #include <fmt/format.h>
 
@@ -37,35 +36,16 @@ void apply(const OptionOverrides& overrides, Options& options) {
     put_positive(truncation.eps_t, overrides.eps_t, "--eps-t");
 }
 
-SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
-                           const OptionOverrides& overrides) {
-    for (const std::string& setting : settings) assign(description, setting);
-    apply(overrides, description.options);
-    return description;
-}
-
-SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                              const OptionOverrides& overrides) {
-    return adjusted(read_system(file), settings, overrides);
+Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
+              const OptionOverrides& overrides) {
+    Run run = default_run(description);
+    for (const std::string& setting : settings) assign(run, description, setting);
+    apply(overrides, run.options);
+    return run;
 }
 
 void warn(const Options& options) {
     for (const std::string& warning : warnings(options)) fmt::print(stderr, "achilles: warning: {}\n", warning);
-}
-
-Run run_of_text(const SystemDescription& description) {
-    const SystemDescription text = parse_system(description.source_text, description.file);
-    Run run;
-    run.options = text.options;
-    const auto n = static_cast<Eigen::Index>(text.coordinates.size());
-    run.q.resize(n);
-    run.v.resize(n);
-    for (const ParameterDescription& parameter : text.parameters) run.parameters.push_back(parameter.value);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        run.q[i] = text.coordinates[static_cast<std::size_t>(i)].start;
-        run.v[i] = text.coordinates[static_cast<std::size_t>(i)].rate;
-    }
-    return run;
 }
 
 }  // namespace achilles

@@ -1,7 +1,6 @@
-// What the command line changes in a system: the top of "command line over file over default".
+// What the command line changes in a run: the top of "command line over file over default".
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,19 +21,15 @@ struct OptionOverrides {
     std::optional<double> eps_q, eps_v, eps_t;
 };
 
-// Puts them over the options of a system just read. Throws InputError (without a location) for a value out of range.
+// Puts them over the options of a file. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);
 
-// A system with --set and the options over it, ready for Model; from its description, or its file.
-SystemDescription adjusted(SystemDescription description, const std::vector<std::string>& settings,
-                           const OptionOverrides& overrides);
-SystemDescription open_system(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                              const OptionOverrides& overrides);
+// The run of a system that a command line asks for: the file's own, with --set and the options over it. Throws
+// InputError.
+Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
+              const OptionOverrides& overrides);
 
 // Tells on standard error what a person should know of the options of a run: core's warnings().
 void warn(const Options& options);
-
-// What the text of a system says, whatever the command line put over it: where "reset" leads.
-Run run_of_text(const SystemDescription& description);
 
 }  // namespace achilles

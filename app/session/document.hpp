@@ -35,7 +35,7 @@ void save(Document& document, const std::string& file, bool overwrite);
 void mark_saved(Document& document, const std::string& file);
 
 // The run of a model derived from an edited text: what the text says, but where a value stands in the text as before,
-// what a slider or the command line made of it. `before` is the text that `run` belongs to, as it was read.
+// what a slider or the command line made of it. `run` is one of `before`.
 Run carried_over(const SystemDescription& before, const Run& run, const Model& after);
 
 }  // namespace achilles

@@ -15,12 +15,12 @@ std::string first_system() {
     return std::find(names.begin(), names.end(), usual) != names.end() ? usual : names.front();
 }
 
-Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
+Session open_session(const std::string& name, const SystemDescription& first, const std::vector<std::string>& settings,
                      const OptionOverrides& overrides, SystemSource library, Patience patience) {
-    library.finish = [overrides](SystemDescription& description) { apply(overrides, description.options); };
-    SystemDescription description = adjusted(std::move(first), settings, overrides);
-    warn(description.options);
-    return {name, std::move(description), std::move(library), patience};
+    library.finish = [overrides](Options& options) { apply(overrides, options); };
+    const Run run = asked_run(first, settings, overrides);
+    warn(run.options);
+    return {name, first, run, std::move(library), patience};
 }
 
 SystemSource source_of(PictureJob& job) {

@@ -14,9 +14,9 @@ struct OptionOverrides;
 // Where none is asked for: the paper's first example, or whatever there is.
 std::string first_system();
 
-// A session on a system as the command line changes it: `settings` for this one, `overrides` for every one that is
+// A session on a system, its run as the command line changes it: `settings` for this one, `overrides` for every one that is
 // opened. Throws InputError.
-Session open_session(const std::string& name, SystemDescription first, const std::vector<std::string>& settings,
+Session open_session(const std::string& name, const SystemDescription& first, const std::vector<std::string>& settings,
                      const OptionOverrides& overrides, SystemSource library, Patience patience);
 
 // A picture's systems and journals. What its journal writes is written only when it is made for the first time.

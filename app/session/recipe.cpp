@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "cli/overrides.hpp"
 #include "model/model.hpp"
 
 namespace achilles {
@@ -145,7 +144,7 @@ std::vector<Command> recipe(const Session& session) {
         const SystemDescription& other = pinned->model->description();
         append(steps, steps_to_text(session.pinned_system(), is_untitled(session.pinned_system()), held_by(other.file),
                                     other.source_text));
-        append(steps, steps_between(other, run_of_text(other), pinned->run));
+        append(steps, steps_between(other, pinned->model->default_run(), pinned->run));
         steps.emplace_back(command::Pin{true});
     }
     append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "cli/overrides.hpp"
 #include "expression/nearest.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
@@ -22,32 +21,13 @@ void expect_positive(double value, const char* what) {
         throw refusal(fmt::format("{} must be positive and finite, but it would be {}", what, value));
 }
 
-// Where a run keeps the value of a name: a parameter, a coordinate's start x, its rate x'. Null if there is none.
-double* find_value(const SystemDescription& description, Run& run, const std::string& name) {
-    for (std::size_t i = 0; i < description.parameters.size(); ++i)
-        if (description.parameters[i].name == name) return &run.parameters[i];
-    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
-        const std::string& coordinate = description.coordinates[i].name;
-        if (name == coordinate) return &run.q[static_cast<Eigen::Index>(i)];
-        if (name == coordinate + "'") return &run.v[static_cast<Eigen::Index>(i)];
-    }
-    return nullptr;
-}
-
-InputError no_such_name(const SystemDescription& description, const std::string& name) {
-    std::vector<std::string> names;
-    for (const ParameterDescription& p : description.parameters) names.push_back(p.name);
-    for (const CoordinateDescription& c : description.coordinates) names.insert(names.end(), {c.name, c.name + "'"});
-    return refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name, did_you_mean(name, names)));
-}
-
 }  // namespace
 
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
     : name(name_as_opened),
       model(std::make_shared<const Model>(description)),
       mechanism(*model),
-      file_run(run_of_text(description)) {}
+      file_run(model->default_run()) {}
 
 Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
                         Watch* watch)
@@ -61,13 +41,14 @@ Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const 
       dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
-Session::Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience)
+Session::Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
+                 Patience patience)
     : library_(std::move(library)),
       patience_(patience),
       document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
       system_(std::make_shared<const System>(name, first)),
       plots_(system_->model) {
-    change_system(system_, plots_, system_->model->default_run());
+    change_system(system_, plots_, run);
 }
 
 void Session::apply(const Command& command) {
@@ -147,16 +128,17 @@ void Session::perform(const command::New&) { begin_document(new_document()); }
 void Session::begin_document(Document document) {
     document_ = std::move(document);
     try {
-        SystemDescription description = parse_system(document_.text, document_.source);
-        if (library_.finish) library_.finish(description);
+        const SystemDescription description = parse_system(document_.text, document_.source);
+        Run run = default_run(description);
+        if (library_.finish) library_.finish(run.options);
         const auto system = std::make_shared<const System>(document_.name, description);
-        system->model->check(system->model->default_run());
+        system->model->check(run);
         playing_ = false;
         selected_ = 0;
         time_ = 0.0;
         scene_.forget_place();
         placed_.reset();
-        change_system(system, Plots(system->model), system->model->default_run());
+        change_system(system, Plots(system->model), run);
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
         scene_.perform(command::Show{"editor", true});
@@ -183,9 +165,7 @@ void Session::read_document() {
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
         const auto system = std::make_shared<const System>(document_.name, description);
-        // Read once more as it stood there: the command line may have put other values over it.
-        const SystemDescription before = parse_system(this->description().source_text, this->description().file);
-        Run run = carried_over(before, asked_, *system->model);
+        Run run = carried_over(this->description(), asked_, *system->model);
         try {
             system->model->check(run);
         } catch (const InputError&) {  // what the sliders changed does not fit the new text: the text alone
@@ -220,7 +200,9 @@ void Session::perform(const command::Start& command) {
     Run changed = run();
     for (const auto& [name, value] : command.values) {
         double* const found = find_value(description(), changed, name);
-        if (found == nullptr) throw no_such_name(description(), name);
+        if (found == nullptr)
+            throw refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name,
+                                      did_you_mean(name, settable_names(description()))));
         if (!std::isfinite(value)) throw refusal(fmt::format("'{}' must be finite", name));
         *found = value;
     }

@@ -25,7 +25,7 @@ namespace achilles {
 // How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
 struct SystemSource {
     std::function<std::filesystem::path(const std::string& system)> find{};  // its file
-    std::function<void(SystemDescription&)> finish{};  // what the command line puts over the file; may be empty
+    std::function<void(Options&)> finish{};  // what the command line puts over those of a file; may be empty
     std::function<Document(const std::string& system)> open{};                                // empty: from its file
     std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
     std::function<std::string(const std::string& journal)> journal{};  // the text of one; empty: there are none
@@ -38,8 +38,12 @@ struct SystemSource {
 // run is under way are done again when it is there, and so mean what they mean in a replayed journal.
 class Session {
  public:
-    // Opens `first`, known as `name`. Throws InputError if it cannot be derived or cannot start.
-    Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience = {});
+    // Opens `first`, known as `name`, with a run of it. Throws InputError if it cannot be derived or cannot start.
+    Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
+            Patience patience = {});
+    // With the run that it asks for.
+    Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience = {})
+        : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
     // text is no system.

@@ -84,19 +84,6 @@ const Bouncing& Model::bouncing() const {
     return *bouncing_;
 }
 
-Run Model::default_run() const {
-    Run run;
-    run.options = description_.options;
-    for (const auto& parameter : description_.parameters) run.parameters.push_back(parameter.value);
-    run.q.resize(dof());
-    run.v.resize(dof());
-    for (int i = 0; i < dof(); ++i) {
-        run.q[i] = description_.coordinates[static_cast<std::size_t>(i)].start;
-        run.v[i] = description_.coordinates[static_cast<std::size_t>(i)].rate;
-    }
-    return run;
-}
-
 Program Model::compile_view(std::span<const Text> texts) const {
     Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
     const Scope scope = view_scope(description_, layout_, graph, equations_);

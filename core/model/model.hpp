@@ -92,7 +92,7 @@ class Model {
     }
 
     // The run that the description asks for.
-    Run default_run() const;
+    Run default_run() const { return achilles::default_run(description_); }
     // Throws InputErrors if the run cannot start: start not finite or T, V, h or the acceleration undefined there,
     // restitution outside [0,1], M not positive definite, gap clearly negative, dh = 0 in contact, a parameter
     // subnormal, eps, tolerance or end time not positive.

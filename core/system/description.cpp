@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
@@ -46,7 +47,39 @@ Location place_in(const Text& text, std::size_t offset) {
     return at;
 }
 
-void assign(SystemDescription& description, std::string_view name_value) {
+Run default_run(const SystemDescription& description) {
+    Run run;
+    run.options = description.options;
+    for (const ParameterDescription& parameter : description.parameters) run.parameters.push_back(parameter.value);
+    const auto n = static_cast<Eigen::Index>(description.coordinates.size());
+    run.q.resize(n);
+    run.v.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        run.q[i] = description.coordinates[static_cast<std::size_t>(i)].start;
+        run.v[i] = description.coordinates[static_cast<std::size_t>(i)].rate;
+    }
+    return run;
+}
+
+std::vector<std::string> settable_names(const SystemDescription& description) {
+    std::vector<std::string> names;
+    for (const CoordinateDescription& c : description.coordinates) names.insert(names.end(), {c.name, c.name + "'"});
+    for (const ParameterDescription& p : description.parameters) names.push_back(p.name);
+    return names;
+}
+
+double* find_value(const SystemDescription& description, Run& run, std::string_view name) {
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        if (description.parameters[i].name == name) return &run.parameters[i];
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const std::string& coordinate = description.coordinates[i].name;
+        if (name == coordinate) return &run.q[static_cast<Eigen::Index>(i)];
+        if (name == coordinate + "'") return &run.v[static_cast<Eigen::Index>(i)];
+    }
+    return nullptr;
+}
+
+void assign(Run& run, const SystemDescription& description, std::string_view name_value) {
     const auto refuse = [&](const std::string& why, const std::string& hint = {}) {
         return InputError("--set " + shown(name_value), {}, why, hint);
     };
@@ -57,21 +90,14 @@ void assign(SystemDescription& description, std::string_view name_value) {
     const std::string name(trimmed(name_value.substr(0, equals))), written(name_value.substr(equals + 1));
     const std::optional<double> value = plain_number(written);
     if (!value || !std::isfinite(*value)) throw refuse(fmt::format("'{}' is not a finite number", shown(written)));
-
-    std::vector<std::string> names;
-    for (CoordinateDescription& coordinate : description.coordinates) {
-        if (coordinate.name == name) return void(coordinate.start = *value);
-        if (coordinate.name + "'" == name) return void(coordinate.rate = *value);
-        names.insert(names.end(), {coordinate.name, coordinate.name + "'"});
-    }
-    for (ParameterDescription& parameter : description.parameters) {
-        if (parameter.name == name && is_subnormal(*value))
-            throw refuse(subnormal_parameter(name, *value), subnormal_hint);
-        if (parameter.name == name) return void(parameter.value = *value);
-        names.push_back(parameter.name);
-    }
-    throw refuse(fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
-                             did_you_mean(name, names)));
+    double* const place = find_value(description, run, name);
+    if (place == nullptr)
+        throw refuse(fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
+                                 did_you_mean(name, settable_names(description))));
+    const bool is_parameter = std::any_of(description.parameters.begin(), description.parameters.end(),
+                                          [&](const ParameterDescription& p) { return p.name == name; });
+    if (is_parameter && is_subnormal(*value)) throw refuse(subnormal_parameter(name, *value), subnormal_hint);
+    *place = *value;
 }
 
 std::vector<Text> texts_of(const DrawingDescription& drawing) {

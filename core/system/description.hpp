@@ -112,7 +112,16 @@ inline constexpr std::size_t largest_file = std::size_t{4} << 20;
 // What a file holds. Throws InputError if there is none to read. Of a file that is too large it is only so much that
 // the size tells: parse_system will say so.
 std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
-// Assigns "NAME=VALUE" (a parameter, a coordinate x, a rate x') as --set does. Throws InputError without a location.
-void assign(SystemDescription& description, std::string_view name_value);
+
+// A description is never edited: what a person sets is set in a run of it.
+
+// The run that it asks for.
+Run default_run(const SystemDescription& description);
+// What a person may set: coordinates x and their rates x', parameters.
+std::vector<std::string> settable_names(const SystemDescription& description);
+// Where a run keeps the value of such a name; null if there is none.
+double* find_value(const SystemDescription& description, Run& run, std::string_view name);
+// Assigns "NAME=VALUE" as --set does. Throws InputError without a location, and leaves the run as it is.
+void assign(Run& run, const SystemDescription& description, std::string_view name_value);
 
 }  // namespace achilles

@@ -153,10 +153,11 @@ TEST(Session, a_text_takes_effect_and_keeps_what_the_sliders_changed) {
 
 // What the command line puts over a file stays over its edited text too, until the text says something else.
 TEST(Session, a_text_keeps_what_the_command_line_said) {
-    SystemDescription description = test::system("ball_on_sine");
-    assign(description, "g=3");
-    description.options.end_time = 7.0;
-    Session session("ball_on_sine", description, test::library());
+    const SystemDescription description = test::system("ball_on_sine");
+    auto run = default_run(description);
+    assign(run, description, "g=3");
+    run.options.end_time = 7.0;
+    Session session("ball_on_sine", description, run, test::library());
     const std::string text = session.document().text;
     session.apply(command::Text{text + "# more\n"});
     EXPECT_EQ(session.run().parameters[1], 3.0);

@@ -20,27 +20,29 @@ class ClosedForm : public testing::TestWithParam<Method> {
  protected:
     // The system with these values set, integrated finely, so that the comparison is with the theory.
     Trajectory simulated(const std::string& system, const std::vector<std::string>& settings, double end_time) {
-        description_ = model_of(system)->description();
-        for (const std::string& setting : settings) assign(description_, setting);
-        const auto model = std::make_shared<const Model>(description_);
+        const auto model = model_of(system);
         auto run = model->default_run();
+        for (const std::string& setting : settings) assign(run, model->description(), setting);
         run.options.method = GetParam();
         run.options.end_time = end_time;
         run.options.tolerance = 1e-13;
         run.options.truncation.eps_t = 1e-10;
+        description_ = &model->description();
+        run_ = run;
         Trajectory trajectory = simulate(model, run);
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         return trajectory;
     }
     // A parameter's value in the last simulated system.
     double value(const std::string& parameter) const {
-        for (const ParameterDescription& p : description_.parameters)
-            if (p.name == parameter) return p.value;
-        throw std::logic_error("no parameter " + parameter);
+        auto run = run_;
+        const double* const found = find_value(*description_, run, parameter);
+        return found != nullptr ? *found : throw std::logic_error("no parameter " + parameter);
     }
 
  private:
-    SystemDescription description_;
+    const SystemDescription* description_ = nullptr;
+    achilles::Run run_;
 };
 
 Event only(const Trajectory& trajectory, Event::Kind kind) {

@@ -10,6 +10,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/write_files.hpp"
 #include "model/model.hpp"
+#include "model/read_system.hpp"
 
 namespace achilles {
 
@@ -23,11 +24,11 @@ struct CheckArguments {
 };
 
 int check(const CheckArguments& arguments) {
-    SystemDescription description = open_system(find_system(arguments.system), arguments.settings, arguments.overrides);
+    const SystemDescription description = read_system(find_system(arguments.system));
+    const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
-    const Model model(std::move(description));
+    const Model model(description);
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
-    const Run run = model.default_run();
     model.check(run);
     warn(run.options);
     double disagreement = 0.0;

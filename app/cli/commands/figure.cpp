@@ -74,10 +74,10 @@ int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job)
 int draw(const FigureArguments& arguments, PictureJob& job) {
     const bool as_svg = wants_svg(arguments);
     if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, job);
-    const auto model = std::make_shared<const Model>(
-        adjusted(job.inputs().system(arguments.system), arguments.settings, arguments.overrides));
-    const std::vector<ViewDescription> views = views_of(model->description(), arguments.views);
-    const Run run = model->default_run();
+    const SystemDescription description = job.inputs().system(arguments.system);
+    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const auto model = std::make_shared<const Model>(description);
+    const std::vector<ViewDescription> views = views_of(description, arguments.views);
     model->check(run);
     warn(run.options);
     job.add(arguments.out);

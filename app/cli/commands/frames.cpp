@@ -113,10 +113,10 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
 }
 
 int draw_frames(const FramesArguments& arguments, PictureJob& job) {
-    const auto model = std::make_shared<const Model>(
-        adjusted(job.inputs().system(arguments.system), arguments.settings, arguments.overrides));
-    const std::vector<ViewDescription> views = views_for(model->description(), arguments.views);
-    const Run run = model->default_run();
+    const SystemDescription description = job.inputs().system(arguments.system);
+    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const auto model = std::make_shared<const Model>(description);
+    const std::vector<ViewDescription> views = views_for(description, arguments.views);
     model->check(run);
     warn(run.options);
     check_count({arguments.fps, arguments.speed, run.options.end_time});

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 Trajectory run(Inputs& inputs, const std::string& system) {
-    const auto model = std::make_shared<const Model>(adjusted(inputs.system(system), {}, {}));
+    const auto model = std::make_shared<const Model>(inputs.system(system));
     Run paper = model->default_run();
     paper.options.truncation.conditions = Conditions::paper;  // its figures show its truncation
     return simulate(model, paper);

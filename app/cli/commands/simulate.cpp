@@ -9,6 +9,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/write_files.hpp"
 #include "model/model.hpp"
+#include "model/read_system.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -25,9 +26,9 @@ struct SimulateArguments {
 };
 
 int run(const SimulateArguments& arguments) {
-    const auto model = std::make_shared<const Model>(
-        open_system(find_system(arguments.system), arguments.settings, arguments.overrides));
-    const Run run = model->default_run();
+    const SystemDescription description = read_system(find_system(arguments.system));
+    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const auto model = std::make_shared<const Model>(description);
     model->check(run);
     warn(run.options);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.

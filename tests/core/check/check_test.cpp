@@ -20,8 +20,8 @@ struct Condition {
     bool definite;
 };
 
-Condition condition(const Model& model) {
-    const Simplified simplified(model, model.default_run());
+Condition condition(const Model& model, const Run& run) {
+    const Simplified simplified(model, run);
     EXPECT_TRUE(simplified.zeno);
     if (!simplified.zeno) return {};
     const ZenoCondition& zeno = *simplified.zeno;
@@ -38,6 +38,7 @@ Condition condition(const Model& model) {
             zeno.definite};
 }
 
+Condition condition(const Model& model) { return condition(model, model.default_run()); }
 Condition condition(const std::string& asset) { return condition(*test::load(asset)); }
 
 using Verdict = ZenoCondition::Verdict;
@@ -133,9 +134,10 @@ restitution = 0.5
 
 // A parameter set to a value outside its range is not taken to be positive.
 TEST(ZenoCondition, BelievesValuesOverRanges) {
-    SystemDescription description = read_system(test::source_file("assets/systems/ball_on_floor.toml"));
-    assign(description, "g=-1");
-    EXPECT_EQ(condition(Model(description)).verdict, Verdict::depends);
+    const auto model = test::load("ball_on_floor");
+    auto run = model->default_run();
+    assign(run, model->description(), "g=-1");
+    EXPECT_EQ(condition(*model, run).verdict, Verdict::depends);
 }
 
 // Denominators that only the definiteness of M shows to be positive.

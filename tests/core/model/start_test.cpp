@@ -38,16 +38,17 @@ TEST(SubnormalParameters, AreRefusedWhereTheyStand) {
 }
 
 TEST(SubnormalParameters, AreRefusedWhereTheyAreSet) {
-    SystemDescription description = parse_system(text_with("1", "m*x'^2/2", "m*x", "x"), "f.toml");
+    const SystemDescription description = parse_system(text_with("1", "m*x'^2/2", "m*x", "x"), "f.toml");
+    auto set = default_run(description);
     try {
-        assign(description, "m=-1e-310");
+        assign(set, description, "m=-1e-310");
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   "--set m=-1e-310: the parameter 'm' is -1e-310: so small a number has lost digits\n"
                   "0, or at least 2.3e-308 in size: choose units in which it is larger");
     }
-    assign(description, "x=5e-324");  // a start is what it is
+    assign(set, description, "x=5e-324");  // a start is what it is
     const auto model = test::typed(text_with("1", "m*x'^2/2", "m*x", "x"));
     auto run = model->default_run();
     run.parameters[0] = 5e-324;

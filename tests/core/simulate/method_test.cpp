@@ -10,10 +10,11 @@
 namespace achilles {
 namespace {
 
-std::shared_ptr<const Model> with(const std::string& asset, std::initializer_list<const char*> settings) {
-    SystemDescription description = test::load(asset)->description();
-    for (const char* setting : settings) assign(description, setting);
-    return std::make_shared<const Model>(description);
+// The model's own run with these values set.
+Run with(const Model& model, std::initializer_list<const char*> settings) {
+    Run run = model.default_run();
+    for (const char* setting : settings) assign(run, model.description(), setting);
+    return run;
 }
 
 double energy_of(const Model& model, const Run& run, const State& state) {
@@ -82,8 +83,8 @@ TEST(Methods, TaylorReachesTheReferenceTo1e13) {
 
 // A ball that slides to and fro in a valley: its surface, its rate and its energy are kept.
 TEST(LongRuns, AThousandSecondsInContact) {
-    const auto model = with("ball_on_sine", {"x=-1", "y=-0.8414709848078965", "x'=0.2", "y'=0.10806046117362795"});
-    auto run = model->default_run();
+    const auto model = test::load("ball_on_sine");
+    auto run = with(*model, {"x=-1", "y=-0.8414709848078965", "x'=0.2", "y'=0.10806046117362795"});
     run.options.method = Method::taylor;
     run.options.tolerance = 1e-13;
     run.options.end_time = 1000.0;
@@ -105,8 +106,8 @@ TEST(LongRuns, AThousandSecondsInContact) {
 TEST(LongRuns, AThousandElasticImpacts) {
     for (const char* asset : {"ball_on_sine", "double_pendulum"}) {
         SCOPED_TRACE(asset);
-        const auto model = with(asset, {"e=1"});
-        auto run = model->default_run();
+        const auto model = test::load(asset);
+        auto run = with(*model, {"e=1"});
         run.options.method = Method::taylor;
         run.options.tolerance = 1e-14;
         run.options.end_time = 1e5;

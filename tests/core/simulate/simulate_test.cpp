@@ -165,10 +165,9 @@ TEST(Restitution, FourValuesThatBrokeCarefulCode) {
     const auto model = test::load("ball_on_sine");
     const auto expected = test::reference("ball_restitution");
     for (const char* e : {"0.35", "0.46", "0.505", "0.52"}) {
-        SystemDescription description = model->description();
-        assign(description, std::string("e=") + e);
-        const auto changed = std::make_shared<const Model>(description);
-        const Trajectory trajectory = simulate(changed, changed->default_run());
+        auto run = model->default_run();
+        assign(run, model->description(), std::string("e=") + e);
+        const Trajectory trajectory = simulate(model, run);
         const auto zenos = test::events_of(trajectory, Event::Kind::zeno);
         const auto releases = test::events_of(trajectory, Event::Kind::release);
         ASSERT_EQ(zenos.size(), 2u) << e;
@@ -187,11 +186,9 @@ double energy(const Model& model, const Run& run, const State& state) {
 }
 
 TEST(Restitution, OneNeverTruncatesAndKeepsItsEnergy) {
-    const auto model = test::load("ball_on_sine");
-    SystemDescription description = model->description();
-    assign(description, "e=1");
-    const auto elastic = std::make_shared<const Model>(description);
+    const auto elastic = test::load("ball_on_sine");
     auto run = elastic->default_run();
+    assign(run, elastic->description(), "e=1");
     run.options.end_time = 1000.0;
     run.options.max_impacts = 200;
     const Trajectory trajectory = simulate(elastic, run);
@@ -204,11 +201,9 @@ TEST(Restitution, OneNeverTruncatesAndKeepsItsEnergy) {
 }
 
 TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) {
-    const auto model = test::load("ball_on_sine");
-    SystemDescription description = model->description();
-    assign(description, "e=0");
-    const auto plastic = std::make_shared<const Model>(description);
-    const auto run = plastic->default_run();
+    const auto plastic = test::load("ball_on_sine");
+    auto run = plastic->default_run();
+    assign(run, plastic->description(), "e=0");
     const Trajectory trajectory = simulate(plastic, run);
     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     auto normal = plastic->evaluator(plastic->release_terms(), run.parameters);

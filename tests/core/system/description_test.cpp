@@ -257,9 +257,10 @@ TEST(Description, hostile_files_end_in_a_message) {
 }
 
 std::string assignment_error(const std::string& text) {
-    SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
+    const SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
+    Run run = default_run(system);
     try {
-        assign(system, text);
+        assign(run, system, text);
     } catch (const InputError& error) {
         EXPECT_EQ(error.at.line, 0);
         return error.what();
@@ -268,13 +269,14 @@ std::string assignment_error(const std::string& text) {
 }
 
 TEST(Description, assigns) {
-    SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
-    assign(system, "mass=2.5");
-    assign(system, "x = -1e-3");
-    assign(system, "x'=+4");
-    EXPECT_EQ(system.parameters[0].value, 2.5);
-    EXPECT_EQ(system.coordinates[0].start, -1e-3);
-    EXPECT_EQ(system.coordinates[0].rate, 4.0);
+    const SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
+    auto run = default_run(system);
+    assign(run, system, "mass=2.5");
+    assign(run, system, "x = -1e-3");
+    assign(run, system, "x'=+4");
+    EXPECT_EQ(run.parameters[0], 2.5);
+    EXPECT_EQ(run.q[0], -1e-3);
+    EXPECT_EQ(run.v[0], 4.0);
     EXPECT_EQ(assignment_error("mas=2"),
               "--set mas=2: 'mas' is no parameter, coordinate or rate of this system; did you mean 'mass'?");
     EXPECT_EQ(assignment_error("mass=1x"), "--set mass=1x: '1x' is not a finite number");
