@@ -44,16 +44,12 @@ constexpr double frame_patience = 1.0 / 40.0;
 // line.
 std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
     std::vector<Command> commands{command::Open{session.system()}};
-    const Options& run = session.run().options;
-    const OptionOverrides& given = options.overrides;
-    if (given.end_time) commands.emplace_back(command::End{run.end_time});
-    if (given.method) commands.emplace_back(command::UseMethod{run.method});
-    if (given.max_impacts) commands.emplace_back(command::MaxImpacts{run.max_impacts});
-    if (given.tolerance) commands.emplace_back(command::Tolerance{run.tolerance});
-    if (given.eps || given.eps_q || given.eps_v || given.eps_t)
-        commands.emplace_back(command::Eps{run.truncation.eps_q, run.truncation.eps_v, run.truncation.eps_t});
-    if (given.conditions) commands.emplace_back(command::UseConditions{*given.conditions});
-    if (given.reinitialization) commands.emplace_back(command::UseReinitialization{*given.reinitialization});
+    for (const auto group : options_by_command()) {
+        const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
+            return options.overrides.given(option) != nullptr;
+        });
+        if (is_given) commands.emplace_back(command::UseOption(group[0], session.run().options));
+    }
     for (const std::string& setting : options.settings) {
         std::string name = setting.substr(0, setting.find('='));
         name.erase(std::remove(name.begin(), name.end(), ' '), name.end());

@@ -2,38 +2,34 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdio>
 
 namespace achilles {
 
-namespace {
+std::string common_flag(const Option& option) { return "--" + std::string(option.command); }
 
-void put_positive(double& target, const std::optional<double>& value, const char* option) {
-    if (!value) return;
-    if (!(std::isfinite(*value) && *value > 0.0))
-        throw InputError(option, {}, fmt::format("the value must be positive and finite, but it is {}", *value));
-    target = *value;
+const std::pair<const std::string, OptionValue>* OptionOverrides::given(const Option& option) const {
+    auto found = by_flag.find(option.flag);
+    if (found == by_flag.end()) found = by_flag.find(common_flag(option));
+    return found == by_flag.end() ? nullptr : &*found;
 }
 
-}  // namespace
-
 void apply(const OptionOverrides& overrides, Options& options) {
-    Truncation& truncation = options.truncation;
-    put_positive(options.end_time, overrides.end_time, "--end");
-    put_positive(options.tolerance, overrides.tolerance, "--tolerance");
-    if (overrides.method) options.method = *overrides.method;
-    if (overrides.max_impacts) {
-        if (*overrides.max_impacts < 1) throw InputError("--max-impacts", {}, "at least one impact must be allowed");
-        options.max_impacts = *overrides.max_impacts;
+    const auto check = [](const Option& option, const auto& flag, const OptionValue& value) {
+        if (allows(option, value)) return;
+        if (std::holds_alternative<double>(value))
+            throw InputError(flag, {},
+                             fmt::format("the value must be positive and finite, but it is {}", to_text(value)));
+        throw InputError(flag, {}, std::string(option.wrong));
+    };
+    for (const Option& option : all_options()) {
+        if (const auto all = overrides.by_flag.find(common_flag(option)); all != overrides.by_flag.end())
+            check(option, all->first, all->second);
+        if (const auto* given = overrides.given(option)) {
+            check(option, given->first, given->second);
+            option.set(options, given->second);
+        }
     }
-    if (overrides.conditions) truncation.conditions = *overrides.conditions;
-    if (overrides.reinitialization) truncation.reinitialization = *overrides.reinitialization;
-    for (double* eps : {&truncation.eps_q, &truncation.eps_v, &truncation.eps_t})
-        put_positive(*eps, overrides.eps, "--eps");
-    put_positive(truncation.eps_q, overrides.eps_q, "--eps-q");
-    put_positive(truncation.eps_v, overrides.eps_v, "--eps-v");
-    put_positive(truncation.eps_t, overrides.eps_t, "--eps-t");
 }
 
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,

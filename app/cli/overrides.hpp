@@ -1,25 +1,26 @@
 // What the command line changes in a run: the top of "command line over file over default".
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "run/trajectory.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
 
-// Every option that was given; the others keep what the file or the default says.
+// The options that were given, by flag; the others keep what the file or the default says. `--eps` gives the three of
+// the explorer's command `eps`, and --eps-q and its kin go over it.
 struct OptionOverrides {
-    std::optional<double> end_time, tolerance;
-    std::optional<Method> method;
-    std::optional<int> max_impacts;
-    std::optional<Conditions> conditions;
-    std::optional<Reinitialization> reinitialization;
-    std::optional<double> eps;  // all three; --eps-q and its kin go over it
-    std::optional<double> eps_q, eps_v, eps_t;
+    std::map<std::string, OptionValue, std::less<>> by_flag;
+
+    // What was given for an option: the flag, and its value; null if nothing was.
+    const std::pair<const std::string, OptionValue>* given(const Option& option) const;
 };
+// The flag that gives all options of one command of the explorer. Most stand alone: it is theirs.
+std::string common_flag(const Option& option);
 
 // Puts them over the options of a file. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);

@@ -49,22 +49,10 @@ void describe_system(const Session& session) {
     ImGui::PopStyleVar();
 }
 
-bool same(const Truncation& a, const Truncation& b) {
-    return a.eps_q == b.eps_q && a.eps_v == b.eps_v && a.eps_t == b.eps_t && a.conditions == b.conditions &&
-           a.reinitialization == b.reinitialization;
-}
-
-// Whether every value is as the file has it.
-bool is_original(const Run& run, const Run& file) {
-    return run.parameters == file.parameters && run.q == file.q && run.v == file.v &&
-           run.options.end_time == file.options.end_time && run.options.tolerance == file.options.tolerance &&
-           same(run.options.truncation, file.options.truncation);
-}
-
 // The first heading; at its right end what puts all values back, if there is something to put back.
 void first_section(const char* title, const Session& session, const Run& file, PanelState& state, Commands& commands) {
     const char* text = "reset all";
-    const bool changed = !is_original(session.run(), file);
+    const bool changed = session.run() != file;
     const float width = ImGui::CalcTextSize(text).x;
     section(title, changed ? width + units(8.0F) : 0.0F);
     if (!changed) return;
@@ -120,80 +108,95 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
 }
 
-// A row of buttons of which one is down.
-template <class Value, class Make>
-void choice(const char* id, const std::string& title, const std::string& about, Value now, Value original,
-            std::initializer_list<Value> all, PanelState& state, Commands& commands, const Make& make) {
-    label(title, units(label_width));
-    tooltip(about);
-    if (now != original) {
+// An option under the hand: a slider, or a row of buttons of which one is down.
+struct OptionRow {
+    const char* key;
+    const char* id;  // of its place, for a slider
+    const char* title;
+    const char* about;
+    double low = 0.0, high = 1.0;  // of a slider
+    int digits = 3;                // that a dragged value keeps
+};
+
+void choice(const OptionRow& row, const Options& now, const Options& file, PanelState& state, Commands& commands) {
+    const Option& chosen = option(row.key);
+    const auto choose = [&](const OptionValue& value) {
+        Options changed = now;
+        chosen.set(changed, value);
+        commands.emplace_back(command::UseOption(chosen, changed));
+    };
+    label(row.title, units(label_width));
+    tooltip(row.about);
+    if (chosen.get(now) != chosen.get(file)) {
         mark_changed();
-        if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right))
-            commands.emplace_back(make(original));
+        if (ImGui::IsItemHovered() && ImGui::IsMouseClicked(ImGuiMouseButton_Right)) choose(chosen.get(file));
     }
     ImGui::SameLine(0.0F, 0.0F);
-    const float width =
-        (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemInnerSpacing.x) / static_cast<float>(all.size());
-    bool first = true;
-    for (const Value value : all) {
-        if (!first) ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
-        first = false;
-        const std::string word(to_text(value));
-        const ImGuiCol color = value == now ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg;
-        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(color));
-        if (ImGui::Button((word + "##" + id).c_str(), {width, 0.0F}) && value != now)
-            commands.emplace_back(make(value));
+    const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemInnerSpacing.x) /
+                        static_cast<float>(chosen.words.size());
+    for (const std::string_view word : chosen.words) {
+        if (word != chosen.words[0]) ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+        const bool is_down = chosen.get(now) == OptionValue(word);
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(is_down ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
+        if (ImGui::Button(fmt::format("{}##{}", word, row.key).c_str(), {width, 0.0F}) && !is_down) choose(word);
         ImGui::PopStyleColor();
-        remember(state, std::string(id) + " " + word);
-        tooltip(about);
+        remember(state, fmt::format("{} {}", row.key, word));
+        tooltip(row.about);
     }
+}
+
+// The option's value in `options` under the hand; true where it has moved it.
+bool moved(const OptionRow& row, Options& options, const Options& file, PanelState& state) {
+    const Option& slid = option(row.key);
+    const bool is_of_cut = slid.table == "truncation";
+    Slider slider{
+        row.title, row.id,   is_of_cut ? "" : std::string(slid.unit), row.about, std::get<double>(slid.get(options)),
+        row.low,   row.high, std::get<double>(slid.get(file)),        1.0,       row.digits};
+    if (!moved(slider, state)) return false;
+    slid.set(options, slider.value);
+    return true;
 }
 
 void truncation(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    const Truncation &t = session.run().options.truncation, &own = file.options.truncation;
     section("Truncation of the bouncing");
-    const auto eps = [&](const char* name, const char* id, double value, double original, const char* about) {
-        Slider slider{name, id, "", about, value, 1e-12, 1e-1, original, 1.0, 3};
-        return moved(slider, state) ? slider.value : value;
-    };
     // One slider for all three, and one for each.
-    const double all = eps("\u03b5, all", "eps", t.eps_q, own.eps_q, "all three bounds below at once");
-    const double q =
-        eps("   position", "eps q", t.eps_q, own.eps_q, "bound on the error of the position at the Zeno point");
-    const double v =
-        eps("   velocity", "eps v", t.eps_v, own.eps_v, "bound on the error of the velocity at the Zeno point");
-    const double time = eps("   time", "eps t", t.eps_t, own.eps_t, "bound on the error of the Zeno time, s");
-    if (all != t.eps_q)
-        commands.emplace_back(command::Eps{all, all, all});
-    else if (q != t.eps_q || v != t.eps_v || time != t.eps_t)
-        commands.emplace_back(command::Eps{q, v, time});
-    choice<Conditions>(
-        "conditions", "conditions",
-        "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
-        "which choose their own neighbourhood and certify the restarted motion",
-        t.conditions, own.conditions, {Conditions::paper, Conditions::sharp}, state, commands,
-        [](Conditions c) { return command::UseConditions{c}; });
-    choice<Reinitialization>("reinitialization", "restart",
-                             "the velocity the constrained motion starts with: the paper's "
-                             "euclidean projection, or the kinetic one of a plastic impact",
-                             t.reinitialization, own.reinitialization,
-                             {Reinitialization::euclidean, Reinitialization::kinetic}, state, commands,
-                             [](Reinitialization r) { return command::UseReinitialization{r}; });
+    constexpr double low = 1e-12, high = 1e-1;
+    const OptionRow all{"eps_q", "eps", "\u03b5, all", "all three bounds below at once", low, high};
+    const OptionRow each[] = {
+        {"eps_q", "eps q", "   position", "bound on the error of the position at the Zeno point", low, high},
+        {"eps_v", "eps v", "   velocity", "bound on the error of the velocity at the Zeno point", low, high},
+        {"eps_t", "eps t", "   time", "bound on the error of the Zeno time, s", low, high}};
+    const Options& now = session.run().options;
+    Options changed = now;
+    const bool all_moved = moved(all, changed, file.options, state);
+    const OptionValue common = option("eps_q").get(changed);
+    if (all_moved) changed = now;
+    for (const OptionRow& row : each) moved(row, changed, file.options, state);
+    if (all_moved)
+        for (const OptionRow& row : each) option(row.key).set(changed, common);
+    if (changed != now) commands.emplace_back(command::UseOption(option("eps_q"), changed));
+    choice(
+        {"conditions", "", "conditions",
+         "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
+         "which choose their own neighbourhood and certify the restarted motion"},
+        now, file.options, state, commands);
+    choice({"reinitialization", "", "restart",
+            "the velocity the constrained motion starts with: the paper's "
+            "euclidean projection, or the kinetic one of a plastic impact"},
+           now, file.options, state, commands);
 }
 
 void integration(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    const Options& o = session.run().options;
     section("Integration");
-    Slider tolerance{"tolerance", "tolerance",
-                     "",          "local error per step, absolute and relative",
-                     o.tolerance, 1e-14,
-                     1e-4,        file.options.tolerance,
-                     1.0,         3};
-    if (moved(tolerance, state)) commands.emplace_back(command::Tolerance{tolerance.value});
     // Of the file, not of the run: a range that grew with the value would run away under the hand.
     const double longest = std::max(50.0, 2.0 * file.options.end_time);
-    Slider end{"end", "end", "s", "the run stops here at the latest", o.end_time, 0.1, longest, file.options.end_time};
-    if (moved(end, state)) commands.emplace_back(command::End{end.value});
+    for (const OptionRow& row :
+         {OptionRow{"tolerance", "tolerance", "tolerance", "local error per step, absolute and relative", 1e-14, 1e-4},
+          OptionRow{"end_time", "end", "end", "the run stops here at the latest", 0.1, longest, 4}}) {
+        Options changed = session.run().options;
+        if (moved(row, changed, file.options, state))
+            commands.emplace_back(command::UseOption(option(row.key), changed));
+    }
 }
 
 }  // namespace

@@ -69,13 +69,12 @@ std::string parameters_text(const Trajectory& trajectory) {
     return text;
 }
 
-std::string options_text(const Options& o) {
-    const Truncation& t = o.truncation;
-    return fmt::format(
-        "tolerance {}, method {}, end time {}, at most {} impacts, {} conditions, {} re-initialization, eps_q {}, "
-        "eps_v {}, eps_t {}",
-        o.tolerance, to_text(o.method), o.end_time, o.max_impacts, to_text(t.conditions), to_text(t.reinitialization),
-        t.eps_q, t.eps_v, t.eps_t);
+std::string options_text(const Options& options) {
+    std::string text;
+    for (const Option* option : told_options({"tolerance", "method"}))
+        if (!option->quiet || option->get(options) != option->get({}))
+            text += (text.empty() ? "" : ", ") + phrase(*option, options);
+    return text;
 }
 
 std::string certificates_text(const Trajectory& trajectory) {

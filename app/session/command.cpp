@@ -19,40 +19,39 @@ Command& Command::operator=(const Command& other) = default;
 Command& Command::operator=(Command&& other) noexcept = default;
 Command::~Command() = default;
 
+command::UseOption::UseOption(std::string_view command, std::vector<OptionValue> for_each)
+    : name(command), values(std::move(for_each)) {}
+
+command::UseOption::UseOption(const Option& option, const Options& as_there) : name(option.command) {
+    for (const Option& o : options_set_by(name)) values.push_back(o.get(as_there));
+}
+
+bool command::UseOption::is_of_one_value() const {
+    return std::all_of(values.begin(), values.end(), [&](const OptionValue& value) { return value == values[0]; });
+}
+
 namespace {
 
-Command read_eps(const Line& line) {
-    line.expect_arguments(1, 3, "write: eps 1e-6, or: eps POSITION VELOCITY TIME");
-    if (line.count() == 3) throw line.error(line.word(2).column, "eps takes one number or three", "write: eps 1e-6");
-    const double first = line.number(1);
-    if (line.count() == 2) return command::Eps{first, first, first};
-    return command::Eps{first, line.number(2), line.number(3)};
+OptionValue read_value(const Option& option, const Line& line, std::size_t i) {
+    if (std::holds_alternative<double>(option.get({}))) return line.number(i);
+    if (std::holds_alternative<int>(option.get({}))) return line.whole_number(i);
+    const std::string& text = line.word(i).text;
+    const auto found = std::find(option.words.begin(), option.words.end(), text);
+    if (found != option.words.end()) return *found;
+    throw line.error(line.word(i).column, fmt::format(fmt::runtime(option.wrong), text), std::string(option.usage));
 }
 
-Command read_conditions(const Line& line) {
-    line.expect_arguments(1, 1, "write: conditions paper, or: conditions sharp");
-    if (const auto value = conditions_from(line.word(1).text)) return command::UseConditions{*value};
-    throw line.error(line.word(1).column, fmt::format("there are no conditions '{}'", line.word(1).text),
-                     "write: conditions paper, or: conditions sharp");
-}
-
-Command read_reinitialization(const Line& line) {
-    line.expect_arguments(1, 1, "write: reinitialization kinetic, or: reinitialization euclidean");
-    if (const auto value = reinitialization_from(line.word(1).text)) return command::UseReinitialization{*value};
-    throw line.error(line.word(1).column, fmt::format("there is no re-initialization '{}'", line.word(1).text),
-                     "write: reinitialization kinetic, or: reinitialization euclidean");
-}
-
-Command read_method(const Line& line) {
-    line.expect_arguments(1, 1, "write: method taylor, or: method dopri5");
-    if (const auto value = method_from(line.word(1).text)) return command::UseMethod{*value};
-    throw line.error(line.word(1).column, fmt::format("there is no method '{}'", line.word(1).text),
-                     "write: method taylor, or: method dopri5");
-}
-
-Command read_max_impacts(const Line& line) {
-    line.expect_arguments(1, 1, "write: max-impacts NUMBER");
-    return command::MaxImpacts{line.whole_number(1)};
+// One value, for all options that the command sets, or one for each of them.
+Command read_option(const Line& line, std::span<const Option> options) {
+    const std::string& name = line.word(0).text;
+    line.expect_arguments(1, options.size(), std::string(options[0].usage));
+    if (line.count() != 2 && line.count() != options.size() + 1)
+        throw line.error(line.word(2).column, fmt::format("{} takes one number or three", name),
+                         fmt::format("write: {} 1e-6", name));
+    std::vector<OptionValue> values;
+    for (std::size_t i = 0; i < options.size(); ++i)
+        values.push_back(read_value(options[i], line, line.count() == 2 ? 1 : i + 1));
+    return command::UseOption(name, values);
 }
 
 Command read_set(const Line& line) {
@@ -248,13 +247,8 @@ Command read_size(const Line& line) {
     return command::Size{panel, share};
 }
 
-constexpr std::array<Verb, 45> verbs{{{"open", read_open},
+constexpr std::array<Verb, 38> verbs{{{"open", read_open},
                                       {"set", read_set},
-                                      {"end", read_number<command::End>},
-                                      {"tolerance", read_number<command::Tolerance>},
-                                      {"eps", read_eps},
-                                      {"conditions", read_conditions},
-                                      {"reinitialization", read_reinitialization},
                                       {"seek", read_number<command::Seek>},
                                       {"play", read_alone<command::Play>},
                                       {"pause", read_alone<command::Pause>},
@@ -286,8 +280,6 @@ constexpr std::array<Verb, 45> verbs{{{"open", read_open},
                                       {"size", read_size},
                                       {"reset", read_alone<command::Reset>},
                                       {"done", read_alone<command::Done>},
-                                      {"method", read_method},
-                                      {"max-impacts", read_max_impacts},
                                       {"export", read_file_to_write<command::Export>},
                                       {"copy", read_copy},
                                       {"wait", read_wait},
@@ -299,7 +291,9 @@ constexpr std::array<Verb, 45> verbs{{{"open", read_open},
 Command parse_command(std::string_view text, const std::string& file, int line_number) {
     const Line line(text, file, line_number);
     if (line.count() == 0) throw line.error(1, "there is no command here");
+    if (const auto options = options_set_by(line.word(0).text); !options.empty()) return read_option(line, options);
     std::vector<std::string> names;
+    for (const auto group : options_by_command()) names.emplace_back(group[0].command);
     for (const Verb& verb : verbs) {
         if (verb.name == line.word(0).text) return verb.read(line);
         names.emplace_back(verb.name);

@@ -10,7 +10,7 @@
 //     start x 0.3 x' 1.5       look 2 0.5 8 (middle, width)   look all    speed 0.1    loop on     step -1
 //     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
 //     zoom 1 0 5 -1 2.5        fit 1     range 1 x 0 5     log 1 y on    curve 1 2 off
-//     method dopri5            max-impacts 1000
+//     method dopri5            max-impacts 1000   max-steps 100000
 //     export ball.svg          export run.json overwrite (.svg, .png the plots; .json, .csv the run; .journal all)
 //     copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
 //     say "Look at the ball."  wait 2.5 (s; passes at once without a window)         replay the_ball
@@ -41,25 +41,39 @@ struct Set {
     double value = 0.0;
     friend bool operator==(const Set&, const Set&) = default;
 };
-struct End {
-    double time = 0.0;  // s
-    friend bool operator==(const End&, const End&) = default;
+// A new value for an option (all_options()), or for all that its command sets: what it is called, how it is written
+// and what it may be stands there.
+struct UseOption {
+    std::string name;                 // of the command
+    std::vector<OptionValue> values;  // of each of options_set_by(name)
+
+    UseOption(std::string_view name, std::vector<OptionValue> values);
+    // What sets an option, and those that it is set together with, as they are there.
+    UseOption(const Option& option, const Options& as_there);
+    bool is_of_one_value() const;  // the same for all that it sets
+    friend bool operator==(const UseOption&, const UseOption&) = default;
 };
-struct Tolerance {
-    double value = 0.0;
-    friend bool operator==(const Tolerance&, const Tolerance&) = default;
+// The same, for those who write C++.
+struct End : UseOption {
+    explicit End(double time) : UseOption("end", {time}) {}
 };
-struct Eps {
-    double q = 0.0, v = 0.0, t = 0.0;
-    friend bool operator==(const Eps&, const Eps&) = default;
+struct Tolerance : UseOption {
+    explicit Tolerance(double value) : UseOption("tolerance", {value}) {}
 };
-struct UseConditions {
-    Conditions conditions = Conditions::paper;
-    friend bool operator==(const UseConditions&, const UseConditions&) = default;
+struct Eps : UseOption {
+    Eps(double q, double v, double t) : UseOption("eps", {q, v, t}) {}
 };
-struct UseReinitialization {
-    Reinitialization reinitialization = Reinitialization::kinetic;
-    friend bool operator==(const UseReinitialization&, const UseReinitialization&) = default;
+struct UseConditions : UseOption {
+    explicit UseConditions(Conditions value) : UseOption("conditions", {to_text(value)}) {}
+};
+struct UseReinitialization : UseOption {
+    explicit UseReinitialization(Reinitialization value) : UseOption("reinitialization", {to_text(value)}) {}
+};
+struct UseMethod : UseOption {
+    explicit UseMethod(Method value) : UseOption("method", {to_text(value)}) {}
+};
+struct MaxImpacts : UseOption {
+    explicit MaxImpacts(int count) : UseOption("max-impacts", {count}) {}
 };
 struct Seek {
     double time = 0.0;  // s; beyond the run: its end
@@ -193,15 +207,6 @@ struct Lens {
     double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens
     friend bool operator==(const Lens&, const Lens&) = default;
 };
-struct UseMethod {
-    Method method = Method::taylor;
-    friend bool operator==(const UseMethod&, const UseMethod&) = default;
-};
-struct MaxImpacts {
-    int count = 1;  // after so many the run stops
-    friend bool operator==(const MaxImpacts&, const MaxImpacts&) = default;
-};
-
 struct Export {
     std::string file;        // what goes there, its ending tells
     bool overwrite = false;  // whatever file may be there
@@ -230,14 +235,13 @@ struct Replay {
 }  // namespace command
 
 using AnyCommand =
-    std::variant<command::Open, command::Set, command::End, command::Tolerance, command::Eps, command::UseConditions,
-                 command::UseReinitialization, command::Seek, command::Play, command::Pause, command::Select,
-                 command::New, command::Text, command::Save, command::Show, command::Grid, command::PlotView,
-                 command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link, command::Start,
-                 command::Look, command::LookAll, command::Speed, command::Loop, command::Step, command::Undo,
-                 command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme, command::Reset,
-                 command::Done, command::UseMethod, command::MaxImpacts, command::Export, command::Copy, command::Range,
-                 command::Say, command::Wait, command::Replay>;
+    std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
+                 command::Select, command::New, command::Text, command::Save, command::Show, command::Grid,
+                 command::PlotView, command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link,
+                 command::Start, command::Look, command::LookAll, command::Speed, command::Loop, command::Step,
+                 command::Undo, command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme,
+                 command::Reset, command::Done, command::Export, command::Copy, command::Range, command::Say,
+                 command::Wait, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

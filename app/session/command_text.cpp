@@ -15,16 +15,11 @@ struct Print {
     std::string operator()(const command::Set& c) const {
         return fmt::format("set {} {}", quoted_where_needed(c.name), c.value);
     }
-    std::string operator()(const command::End& c) const { return fmt::format("end {}", c.time); }
-    std::string operator()(const command::Tolerance& c) const { return fmt::format("tolerance {}", c.value); }
-    std::string operator()(const command::Eps& c) const {
-        return c.q == c.v && c.v == c.t ? fmt::format("eps {}", c.q) : fmt::format("eps {} {} {}", c.q, c.v, c.t);
-    }
-    std::string operator()(const command::UseConditions& c) const {
-        return fmt::format("conditions {}", to_text(c.conditions));
-    }
-    std::string operator()(const command::UseReinitialization& c) const {
-        return fmt::format("reinitialization {}", to_text(c.reinitialization));
+    std::string operator()(const command::UseOption& c) const {
+        std::string text = c.name;
+        for (std::size_t i = 0; i < (c.is_of_one_value() ? 1 : c.values.size()); ++i)
+            text += " " + to_text(c.values[i]);
+        return text;
     }
     std::string operator()(const command::Seek& c) const { return fmt::format("seek {}", c.time); }
     std::string operator()(const command::Play&) const { return "play"; }
@@ -71,8 +66,6 @@ struct Print {
     std::string operator()(const command::ShowCurve& c) const {
         return fmt::format("curve {} {} {}", c.plot, c.curve, on_off(c.shown));
     }
-    std::string operator()(const command::UseMethod& c) const { return fmt::format("method {}", to_text(c.method)); }
-    std::string operator()(const command::MaxImpacts& c) const { return fmt::format("max-impacts {}", c.count); }
     std::string operator()(const command::Export& c) const {
         return fmt::format("export {}{}", quoted_where_needed(c.file), c.overwrite ? " overwrite" : "");
     }

@@ -144,23 +144,8 @@ Run carried_over(const SystemDescription& before, const Run& run, const Model& a
             if (here.start == there.start) result.q[to] = run.q[from];
             if (here.rate == there.rate) result.v[to] = run.v[from];
         }
-    const auto keep = [&](auto member) {
-        if (now.options.*member == before.options.*member) result.options.*member = run.options.*member;
-    };
-    keep(&Options::end_time);
-    keep(&Options::tolerance);
-    keep(&Options::method);
-    keep(&Options::max_impacts);
-    keep(&Options::max_steps);
-    const auto keep_truncation = [&](auto member) {
-        if (now.options.truncation.*member == before.options.truncation.*member)
-            result.options.truncation.*member = run.options.truncation.*member;
-    };
-    keep_truncation(&Truncation::eps_q);
-    keep_truncation(&Truncation::eps_v);
-    keep_truncation(&Truncation::eps_t);
-    keep_truncation(&Truncation::conditions);
-    keep_truncation(&Truncation::reinitialization);
+    for (const Option& option : all_options())
+        if (option.get(now.options) == option.get(before.options)) option.set(result.options, option.get(run.options));
     return result;
 }
 

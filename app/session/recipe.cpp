@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/overrides.hpp"
 #include "model/model.hpp"
 
 namespace achilles {
@@ -28,10 +29,6 @@ std::vector<std::pair<std::string, double>> changed_values(const SystemDescripti
     return changed;
 }
 
-bool same_eps(const Truncation& a, const Truncation& b) {
-    return a.eps_q == b.eps_q && a.eps_v == b.eps_v && a.eps_t == b.eps_t;
-}
-
 // From one run of a system to another.
 std::vector<Command> steps_between(const SystemDescription& description, const Run& from, const Run& to) {
     std::vector<Command> steps;
@@ -39,16 +36,10 @@ std::vector<Command> steps_between(const SystemDescription& description, const R
     const auto values = changed_values(description, from, to);
     if (values.size() == 1) steps.emplace_back(command::Set{values[0].first, values[0].second});
     if (values.size() > 1) steps.emplace_back(command::Start{values});
-    const Options &a = from.options, &b = to.options;
-    const Truncation& t = b.truncation;
-    if (a.end_time != b.end_time) steps.emplace_back(command::End{b.end_time});
-    if (a.tolerance != b.tolerance) steps.emplace_back(command::Tolerance{b.tolerance});
-    if (a.method != b.method) steps.emplace_back(command::UseMethod{b.method});
-    if (a.max_impacts != b.max_impacts) steps.emplace_back(command::MaxImpacts{b.max_impacts});
-    if (!same_eps(a.truncation, t)) steps.emplace_back(command::Eps{t.eps_q, t.eps_v, t.eps_t});
-    if (a.truncation.conditions != t.conditions) steps.emplace_back(command::UseConditions{t.conditions});
-    if (a.truncation.reinitialization != t.reinitialization)
-        steps.emplace_back(command::UseReinitialization{t.reinitialization});
+    for (const auto group : options_by_command()) {
+        const command::UseOption step(group[0], to.options);
+        if (step != command::UseOption(group[0], from.options)) steps.emplace_back(step);
+    }
     return steps;
 }
 
@@ -165,24 +156,16 @@ std::vector<std::string> run_options(const Session& session) {
     std::vector<std::string> words;
     for (const auto& [name, value] : changed_values(description, text, run))
         words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});
-    const Options &a = text.options, &b = run.options;
-    const Truncation &s = a.truncation, &t = b.truncation;
-    const auto add = [&](const char* option, const auto& before, const auto& now) {
-        if (before != now) words.insert(words.end(), {option, fmt::format("{}", now)});
-    };
-    add("--end", a.end_time, b.end_time);
-    add("--tolerance", a.tolerance, b.tolerance);
-    add("--method", to_text(a.method), to_text(b.method));
-    add("--max-impacts", a.max_impacts, b.max_impacts);
-    if (!same_eps(s, t) && t.eps_q == t.eps_v && t.eps_v == t.eps_t) {
-        words.insert(words.end(), {"--eps", fmt::format("{}", t.eps_q)});
-    } else {
-        add("--eps-q", s.eps_q, t.eps_q);
-        add("--eps-v", s.eps_v, t.eps_v);
-        add("--eps-t", s.eps_t, t.eps_t);
+    for (const auto group : options_by_command()) {
+        const command::UseOption before(group[0], text.options), now(group[0], run.options);
+        if (now.values != before.values && now.is_of_one_value()) {
+            words.insert(words.end(), {common_flag(group[0]), to_text(now.values[0])});
+            continue;
+        }
+        for (std::size_t i = 0; i < group.size(); ++i)
+            if (now.values[i] != before.values[i])
+                words.insert(words.end(), {std::string(group[i].flag), to_text(now.values[i])});
     }
-    add("--conditions", to_text(s.conditions), to_text(t.conditions));
-    add("--reinitialization", to_text(s.reinitialization), to_text(t.reinitialization));
     return words;
 }
 

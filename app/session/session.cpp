@@ -14,15 +14,6 @@
 
 namespace achilles {
 
-namespace {
-
-void expect_positive(double value, const char* what) {
-    if (!(std::isfinite(value) && value > 0.0))
-        throw refusal(fmt::format("{} must be positive and finite, but it would be {}", what, value));
-}
-
-}  // namespace
-
 Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
     : name(name_as_opened),
       model(std::make_shared<const Model>(description)),
@@ -215,51 +206,14 @@ std::optional<double> Session::value(const std::string& name) const {
     return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
-void Session::perform(const command::End& command) {
-    expect_positive(command.time, "the end time");
+void Session::perform(const command::UseOption& command) {
     Run changed = run();
-    changed.options.end_time = command.time;
-    rerun(changed);
-}
-
-void Session::perform(const command::Tolerance& command) {
-    expect_positive(command.value, "the tolerance");
-    Run changed = run();
-    changed.options.tolerance = command.value;
-    rerun(changed);
-}
-
-void Session::perform(const command::Eps& command) {
-    for (const double value : {command.q, command.v, command.t}) expect_positive(value, "eps");
-    Run changed = run();
-    changed.options.truncation.eps_q = command.q;
-    changed.options.truncation.eps_v = command.v;
-    changed.options.truncation.eps_t = command.t;
-    rerun(changed);
-}
-
-void Session::perform(const command::UseConditions& command) {
-    Run changed = run();
-    changed.options.truncation.conditions = command.conditions;
-    rerun(changed);
-}
-
-void Session::perform(const command::UseReinitialization& command) {
-    Run changed = run();
-    changed.options.truncation.reinitialization = command.reinitialization;
-    rerun(changed);
-}
-
-void Session::perform(const command::UseMethod& command) {
-    Run changed = run();
-    changed.options.method = command.method;
-    rerun(changed);
-}
-
-void Session::perform(const command::MaxImpacts& command) {
-    if (command.count < 1) throw refusal("at least one impact must be allowed");
-    Run changed = run();
-    changed.options.max_impacts = command.count;
+    for (std::size_t i = 0; i < command.values.size(); ++i) {
+        const Option& option = options_set_by(command.name)[i];
+        if (!allows(option, command.values[i]))
+            throw refusal(fmt::format(fmt::runtime(option.wrong), to_text(command.values[i])));
+        option.set(changed.options, command.values[i]);
+    }
     rerun(changed);
 }
 

@@ -137,11 +137,7 @@ class Session {
 
     void perform(const command::Open& command);
     void perform(const command::Set& command);
-    void perform(const command::End& command);
-    void perform(const command::Tolerance& command);
-    void perform(const command::Eps& command);
-    void perform(const command::UseConditions& command);
-    void perform(const command::UseReinitialization& command);
+    void perform(const command::UseOption& command);
     void perform(const command::Seek& command);
     void perform(const command::Play& command);
     void perform(const command::Pause& command);
@@ -157,8 +153,6 @@ class Session {
     void perform(const command::Reset& command);
     void perform(const command::Done&) {}  // the history heard it
     void perform(const command::UseTheme& command);
-    void perform(const command::UseMethod& command);
-    void perform(const command::MaxImpacts& command);
     void perform(const command::Export& command);
     void perform(const command::Copy& command);
     void perform(const command::Wait& command);

@@ -18,18 +18,7 @@ void Model::check(const Run& run) const {
     const auto refuse = [&](Location at, const std::string& message, const std::string& hint = {}) {
         mistakes.add({at, message, hint});
     };
-    const Options& options = run.options;
-    const auto positive = [&](const char* name, double value) {
-        if (!(value > 0.0) || !std::isfinite(value))
-            refuse({}, fmt::format("{} must be a positive number, but it is {}", name, value));
-    };
-    positive("end_time", options.end_time);
-    positive("tolerance", options.tolerance);
-    positive("eps_q", options.truncation.eps_q);
-    positive("eps_v", options.truncation.eps_v);
-    positive("eps_t", options.truncation.eps_t);
-    if (options.max_impacts < 1) refuse({}, "max_impacts must be at least 1");
-    if (options.max_steps < 1) refuse({}, "max_steps must be at least 1");
+    for (const std::string& fault : faults(run.options)) refuse({}, fault);
     const std::size_t before = mistakes.count();
     for (std::size_t i = 0; i < run.parameters.size(); ++i) {
         const auto& parameter = description_.parameters[i];

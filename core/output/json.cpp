@@ -31,17 +31,14 @@ Json system_of(const Trajectory& trajectory) {
 }
 
 Json options_of(const Options& options) {
-    const Truncation& t = options.truncation;
-    return {{"method", to_text(options.method)},
-            {"tolerance", number(options.tolerance)},
-            {"end_time", number(options.end_time)},
-            {"max_impacts", options.max_impacts},
-            {"max_steps", options.max_steps},
-            {"conditions", to_text(t.conditions)},
-            {"reinitialization", to_text(t.reinitialization)},
-            {"eps_q", number(t.eps_q)},
-            {"eps_v", number(t.eps_v)},
-            {"eps_t", number(t.eps_t)}};
+    Json result = Json::object();
+    for (const Option* option : told_options({"method", "tolerance"})) {
+        const OptionValue value = option->get(options);
+        const auto* x = std::get_if<double>(&value);
+        result[std::string(option->key)] =
+            x ? number(*x) : std::visit([](const auto& other) { return Json(other); }, value);
+    }
+    return result;
 }
 
 Json certificate_of(const Certificate& c) {

@@ -91,10 +91,10 @@ std::string summary(const Trajectory& trajectory) {
     const Model& model = *trajectory.model;
     const Options& o = trajectory.run.options;
     std::string text = fmt::format("{}\n", model.description().title);
-    text +=
-        fmt::format("  {}, tolerance {:g}, {} conditions, {} re-initialization, eps_q {:g}, eps_v {:g}, eps_t {:g}\n\n",
-                    to_text(o.method), o.tolerance, to_text(o.truncation.conditions),
-                    to_text(o.truncation.reinitialization), o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t);
+    text += fmt::format("  {}", to_text(o.method));
+    for (const Option* option : told_options())
+        if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
+    text += "\n\n";
     std::vector<const Event*> impacts;
     std::size_t next = 0;
     for (const Phase& phase : trajectory.phases) {

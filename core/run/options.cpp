@@ -4,55 +4,249 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
+#include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace achilles {
 
-std::string_view to_text(Method method) { return method == Method::dopri5 ? "dopri5" : "taylor"; }
-std::string_view to_text(Conditions conditions) { return conditions == Conditions::paper ? "paper" : "sharp"; }
-std::string_view to_text(Reinitialization kind) { return kind == Reinitialization::kinetic ? "kinetic" : "euclidean"; }
-
 namespace {
 
-template <class Value>
-std::optional<Value> one_of(std::string_view text, Value a, Value b) {
-    if (text == to_text(a)) return a;
-    if (text == to_text(b)) return b;
-    return std::nullopt;
+// The words of a choice, in the order of its enumerators.
+template <class Choice>
+constexpr std::array<std::string_view, 2> words_of{};
+template <>
+constexpr std::array<std::string_view, 2> words_of<Method>{"dopri5", "taylor"};
+template <>
+constexpr std::array<std::string_view, 2> words_of<Conditions>{"paper", "sharp"};
+template <>
+constexpr std::array<std::string_view, 2> words_of<Reinitialization>{"euclidean", "kinetic"};
+
+template <class Choice>
+std::string_view word_of(Choice choice) {
+    return words_of<Choice>[static_cast<std::size_t>(choice)];
+}
+
+template <class Choice>
+std::optional<Choice> choice_from(std::string_view text) {
+    const auto& words = words_of<Choice>;
+    const auto found = std::find(words.begin(), words.end(), text);
+    return found == words.end() ? std::nullopt : std::optional(static_cast<Choice>(found - words.begin()));
 }
 
 }  // namespace
 
-std::optional<Method> method_from(std::string_view text) { return one_of(text, Method::dopri5, Method::taylor); }
-std::optional<Conditions> conditions_from(std::string_view text) {
-    return one_of(text, Conditions::paper, Conditions::sharp);
-}
+std::string_view to_text(Method method) { return word_of(method); }
+std::string_view to_text(Conditions conditions) { return word_of(conditions); }
+std::string_view to_text(Reinitialization kind) { return word_of(kind); }
+std::optional<Method> method_from(std::string_view text) { return choice_from<Method>(text); }
+std::optional<Conditions> conditions_from(std::string_view text) { return choice_from<Conditions>(text); }
 std::optional<Reinitialization> reinitialization_from(std::string_view text) {
-    return one_of(text, Reinitialization::euclidean, Reinitialization::kinetic);
+    return choice_from<Reinitialization>(text);
+}
+
+std::string to_text(const OptionValue& value) {
+    return std::visit([](const auto& x) { return fmt::format("{}", x); }, value);
 }
 
 namespace {
 
-template <class AnyOptions>
-auto tolerances(AnyOptions& options) {
-    auto& truncation = options.truncation;
-    return std::array{std::pair("tolerance", &options.tolerance), std::pair("eps_q", &truncation.eps_q),
-                      std::pair("eps_v", &truncation.eps_v), std::pair("eps_t", &truncation.eps_t)};
+// The member that a path of pointers leads to.
+template <auto first, auto... rest, class Owner>
+auto& member(Owner& owner) {
+    if constexpr (sizeof...(rest) == 0)
+        return owner.*first;
+    else
+        return member<rest...>(owner.*first);
 }
 
+// A row with what follows from the member: how it is read and written, and its words.
+template <auto... path>
+constexpr Option at(Option said) {
+    using Value = std::remove_cvref_t<decltype(member<path...>(std::declval<Options&>()))>;
+    said.get = [](const Options& options) -> OptionValue {
+        if constexpr (std::is_enum_v<Value>)
+            return word_of(member<path...>(options));
+        else
+            return member<path...>(options);
+    };
+    said.set = [](Options& options, const OptionValue& value) {
+        if constexpr (std::is_enum_v<Value>)
+            member<path...>(options) = choice_from<Value>(std::get<std::string_view>(value)).value();
+        else
+            member<path...>(options) = std::get<Value>(value);
+    };
+    if constexpr (std::is_enum_v<Value>) said.words = words_of<Value>;
+    return said;
+}
+
+constexpr auto cut = &Options::truncation;
+constexpr std::string_view usage_of_eps = "write: eps 1e-6, or: eps POSITION VELOCITY TIME";
+constexpr std::string_view wrong_eps = "eps must be positive and finite, but it would be {}";
+
+constexpr std::array options{
+    at<&Options::end_time>({.key = "end_time",
+                            .table = "run",
+                            .flag = "--end",
+                            .command = "end",
+                            .usage = "write: end NUMBER",
+                            .wrong = "the end time must be positive and finite, but it would be {}",
+                            .unit = "s",
+                            .about = "end time",
+                            .phrase = "end time {}"}),
+    at<&Options::tolerance>({.key = "tolerance",
+                             .table = "run",
+                             .flag = "--tolerance",
+                             .command = "tolerance",
+                             .usage = "write: tolerance NUMBER",
+                             .wrong = "the tolerance must be positive and finite, but it would be {}",
+                             .about = "local error per step, absolute and relative",
+                             .phrase = "tolerance {}",
+                             .is_tolerance = true}),
+    at<&Options::method>({.key = "method",
+                          .table = "run",
+                          .flag = "--method",
+                          .command = "method",
+                          .usage = "write: method taylor, or: method dopri5",
+                          .wrong = "there is no method '{}'",
+                          .about = "of the integration",
+                          .phrase = "method {}"}),
+    at<&Options::max_impacts>({.key = "max_impacts",
+                               .table = "run",
+                               .flag = "--max-impacts",
+                               .command = "max-impacts",
+                               .usage = "write: max-impacts NUMBER",
+                               .wrong = "at least one impact must be allowed",
+                               .about = "after so many the run stops",
+                               .phrase = "at most {} impacts"}),
+    at<&Options::max_steps>({.key = "max_steps",
+                             .table = "run",
+                             .flag = "--max-steps",
+                             .command = "max-steps",
+                             .usage = "write: max-steps NUMBER",
+                             .wrong = "at least one step must be allowed",
+                             .about = "of the integration: after so many the run stops",
+                             .phrase = "at most {} steps",
+                             .quiet = true}),
+    at<cut, &Truncation::eps_q>({.key = "eps_q",
+                                 .table = "truncation",
+                                 .flag = "--eps-q",
+                                 .command = "eps",
+                                 .usage = usage_of_eps,
+                                 .wrong = wrong_eps,
+                                 .about = "position",
+                                 .phrase = "eps_q {}",
+                                 .is_tolerance = true}),
+    at<cut, &Truncation::eps_v>({.key = "eps_v",
+                                 .table = "truncation",
+                                 .flag = "--eps-v",
+                                 .command = "eps",
+                                 .usage = usage_of_eps,
+                                 .wrong = wrong_eps,
+                                 .about = "velocity",
+                                 .phrase = "eps_v {}",
+                                 .is_tolerance = true}),
+    at<cut, &Truncation::eps_t>({.key = "eps_t",
+                                 .table = "truncation",
+                                 .flag = "--eps-t",
+                                 .command = "eps",
+                                 .usage = usage_of_eps,
+                                 .wrong = wrong_eps,
+                                 .unit = "s",
+                                 .about = "time",
+                                 .phrase = "eps_t {}",
+                                 .is_tolerance = true}),
+    at<cut, &Truncation::conditions>({.key = "conditions",
+                                      .table = "truncation",
+                                      .flag = "--conditions",
+                                      .command = "conditions",
+                                      .usage = "write: conditions paper, or: conditions sharp",
+                                      .wrong = "there are no conditions '{}'",
+                                      .about = "when infinitely many impacts may be cut short",
+                                      .phrase = "{} conditions"}),
+    at<cut, &Truncation::reinitialization>({.key = "reinitialization",
+                                            .table = "truncation",
+                                            .flag = "--reinitialization",
+                                            .command = "reinitialization",
+                                            .usage = "write: reinitialization kinetic, or: reinitialization euclidean",
+                                            .wrong = "there is no re-initialization '{}'",
+                                            .about = "the velocity that contact starts with",
+                                            .phrase = "{} re-initialization"}),
+};
+
 }  // namespace
+
+std::span<const Option> all_options() { return options; }
+
+const Option& option(std::string_view key) {
+    const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.key == key; });
+    assert(found != options.end());
+    return *found;
+}
+
+std::span<const Option> options_set_by(std::string_view command) {
+    const auto is_of_it = [&](const Option& o) { return o.command == command; };
+    const auto first = std::find_if(options.begin(), options.end(), is_of_it);
+    return {first, std::find_if_not(first, options.end(), is_of_it)};
+}
+
+std::vector<std::span<const Option>> options_by_command() {
+    std::vector<std::span<const Option>> groups;
+    for (auto rest = all_options(); !rest.empty(); rest = rest.subspan(groups.back().size()))
+        groups.push_back(options_set_by(rest.front().command));
+    return groups;
+}
+
+std::vector<const Option*> told_options(std::initializer_list<std::string_view> first) {
+    std::vector<const Option*> told;
+    for (const Option& o : options) told.push_back(&o);
+    const auto rank = [&](const Option* o) {
+        const auto named = std::find(first.begin(), first.end(), o->key);
+        const bool is_of_cut = o->table == "truncation";
+        return (named - first.begin()) + (is_of_cut ? 1 : 0) + (is_of_cut && o->words.empty() ? 1 : 0);
+    };
+    std::stable_sort(told.begin(), told.end(), [&](const Option* a, const Option* b) { return rank(a) < rank(b); });
+    return told;
+}
+
+bool allows(const Option& option, const OptionValue& value) {
+    if (const auto* number = std::get_if<double>(&value)) return std::isfinite(*number) && *number > 0.0;
+    if (const auto* whole = std::get_if<int>(&value)) return *whole >= 1;
+    const auto& words = option.words;
+    return std::find(words.begin(), words.end(), std::get<std::string_view>(value)) != words.end();
+}
+
+std::string phrase(const Option& option, const Options& options, std::string_view number) {
+    const OptionValue value = option.get(options);
+    const auto* x = std::get_if<double>(&value);
+    return fmt::format(fmt::runtime(option.phrase), x ? fmt::format(fmt::runtime(number), *x) : to_text(value));
+}
 
 std::vector<std::string> warnings(const Options& options) {
     std::vector<std::string> told;
-    for (const auto& [name, value] : tolerances(options))
-        if (*value < least_tolerance)
-            told.push_back(fmt::format("{} = {} is less than double precision can serve: {} is used", name, *value,
-                                       least_tolerance));
+    for (const Option& o : all_options())
+        if (o.is_tolerance && std::get<double>(o.get(options)) < least_tolerance)
+            told.push_back(fmt::format("{} = {} is less than double precision can serve: {} is used", o.key,
+                                       to_text(o.get(options)), least_tolerance));
     return told;
 }
 
 void raise_to_least(Options& options) {
-    for (const auto& [name, value] : tolerances(options)) *value = std::max(*value, least_tolerance);
+    for (const Option& o : all_options())
+        if (o.is_tolerance) o.set(options, std::max(std::get<double>(o.get(options)), least_tolerance));
+}
+
+std::vector<std::string> faults(const Options& options) {
+    std::vector<std::string> told;
+    for (const Option& o : all_options()) {
+        const OptionValue value = o.get(options);
+        if (allows(o, value)) continue;
+        told.push_back(std::holds_alternative<double>(value)
+                           ? fmt::format("{} must be a positive number, but it is {}", o.key, to_text(value))
+                           : fmt::format("{} must be at least 1", o.key));
+    }
+    return told;
 }
 
 }  // namespace achilles

@@ -1,9 +1,13 @@
-// Everything a run may be told, apart from the system itself.
+// Everything a run may be told, apart from the system itself. Every option is said once, in the table of all_options():
+// the system file, the command line, the explorer, JSON and the notes of pictures iterate it.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "run/state.hpp"
@@ -39,7 +43,47 @@ struct Options {
     int max_impacts = 200000;        // over the run; then Outcome "too many impacts"
     int max_steps = 2000000;         // of the integration, over the run: all are kept; then Outcome "too many steps"
     Truncation truncation;
+
+    friend bool operator==(const Options&, const Options&) = default;
 };
+
+// A positive number, a whole number from 1 on, or one of the option's words.
+using OptionValue = std::variant<double, int, std::string_view>;
+std::string to_text(const OptionValue& value);
+
+// One row of the table: what an option is called wherever a person meets it, and where a run keeps it.
+struct Option {
+    std::string_view key;         // in a system file, JSON and messages
+    std::string_view table;       // of the system file: "run" or "truncation"
+    std::string_view flag;        // of the command line
+    std::string_view command;     // of the explorer; options that share one are set together, in the table's order
+    std::string_view usage = {};  // how that is written
+    std::string_view wrong = {};  // what the explorer says of a value that is not allowed, {}
+    std::string_view unit = {};
+    std::string_view about = {};                   // what --help says
+    std::string_view phrase = {};                  // in a line about a run, with the value for {}
+    bool quiet = false;                            // such a line has it only where it is not the default
+    bool is_tolerance = false;                     // values below least_tolerance are told, and raised to it
+    std::span<const std::string_view> words = {};  // where it is one of these
+    OptionValue (*get)(const Options&) = nullptr;
+    void (*set)(Options&, const OptionValue&) = nullptr;  // an allowed one
+};
+
+// In the order of the system file.
+std::span<const Option> all_options();
+// The option of a key. There must be one.
+const Option& option(std::string_view key);
+// Those that a command of the explorer sets; none where it is no option's.
+std::span<const Option> options_set_by(std::string_view command);
+// All of them, by the commands that set them.
+std::vector<std::span<const Option>> options_by_command();
+// In the order in which a run is told: those named first, the others of [run], what decides about a cut, its bounds.
+std::vector<const Option*> told_options(std::initializer_list<std::string_view> first = {});
+
+// Whether an option may have a value: a number positive and finite, a whole number at least 1.
+bool allows(const Option& option, const OptionValue& value);
+// The option's words in a line about a run; `number` is how fmt writes its number.
+std::string phrase(const Option& option, const Options& options, std::string_view number = "{}");
 
 // The least tolerance and eps that double precision can serve. A run that asks for less has this.
 inline constexpr double least_tolerance = 1e-15;
@@ -47,12 +91,17 @@ inline constexpr double least_tolerance = 1e-15;
 std::vector<std::string> warnings(const Options& options);
 // Raises those that are below to it.
 void raise_to_least(Options& options);
+// A sentence for each that is not allowed: no run can have it.
+std::vector<std::string> faults(const Options& options);
 
 // One run: options, the parameters' values (in the order of the description), and the start.
 struct Run {
     Options options;
     std::vector<double> parameters;
     Vector q, v;
+
+    // Of runs of one system.
+    friend bool operator==(const Run&, const Run&) = default;
 };
 
 }  // namespace achilles

@@ -142,73 +142,38 @@ void read_constraint(Reading& reading, const Fields& root) {
     reading.mistakes.attempt([&] { reading.system.restitution = fields.expression("restitution"); });
 }
 
-int read_count(const Fields& fields, const std::string& key) {
-    const double count = fields.positive(key);
-    const TomlValue& most = fields.need(key);
-    if (!most.integer || count > INT_MAX)
-        throw Mistake{most.at, fmt::format("'{}' in [run] must be a whole number up to {}", key, INT_MAX), {}};
-    return static_cast<int>(count);
-}
-
-// Reads one of a few names. Throws Mistake with the nearest.
-template <class Value>
-void read_choice(Value& value, const Fields& fields, const std::string& key, const std::vector<std::string>& names,
-                 std::optional<Value> (*from)(std::string_view)) {
-    const Text text = fields.string(key);
-    const std::optional<Value> found = from(text.text);
-    if (!found) {
-        throw Mistake{text.at, fmt::format("unknown {} '{}'{}", key, shown(text.text), did_you_mean(text.text, names)),
+// The option's value. Throws Mistake: with the nearest word where it is none of them.
+OptionValue read_option(const Option& option, const Fields& fields) {
+    const OptionValue usual = option.get({});
+    if (!option.words.empty()) {
+        const Text text = fields.string(option.key);
+        const auto known = std::find(option.words.begin(), option.words.end(), text.text);
+        if (known != option.words.end()) return *known;
+        std::vector<std::string> names{to_text(usual)};
+        for (const std::string_view word : option.words)
+            if (word != names[0]) names.emplace_back(word);
+        throw Mistake{text.at,
+                      fmt::format("unknown {} '{}'{}", option.key, shown(text.text), did_you_mean(text.text, names)),
                       fmt::format("known: {}", listed(names))};
     }
-    value = *found;
+    const double number = fields.positive(option.key);
+    if (std::holds_alternative<double>(usual)) return number;
+    const TomlValue& value = fields.need(option.key);
+    if (!value.integer || number > INT_MAX)
+        throw Mistake{value.at, fmt::format("'{}' in [run] must be a whole number up to {}", option.key, INT_MAX), {}};
+    return static_cast<int>(number);
 }
 
 // [run] or [truncation]: every key has a default.
-class OptionalFields {
- public:
-    OptionalFields(const TomlValue& table, const std::string& where, const std::vector<std::string>& keys,
-                   Mistakes& mistakes)
-        : fields_(table, where), mistakes_(mistakes) {
-        fields_.allow(keys, mistakes_);
-    }
-    // Where the key is there: read(fields), which may throw Mistake.
-    template <class Read>
-    void at(const char* key, const Read& read) {
-        if (fields_.find(key)) mistakes_.attempt([&] { read(fields_); });
-    }
-    void positive(const char* key, double& value) {
-        at(key, [&](const Fields& fields) { value = fields.positive(key); });
-    }
-
- private:
-    Fields fields_;
-    Mistakes& mistakes_;
-};
-
-void read_run(const TomlValue& table, Options& options, Mistakes& mistakes) {
-    OptionalFields run(table, "[run]", {"end_time", "tolerance", "method", "max_impacts", "max_steps"}, mistakes);
-    run.positive("end_time", options.end_time);
-    run.positive("tolerance", options.tolerance);
-    run.at("method", [&](const Fields& fields) {
-        read_choice(options.method, fields, "method", {"taylor", "dopri5"}, method_from);
-    });
-    run.at("max_impacts", [&](const Fields& fields) { options.max_impacts = read_count(fields, "max_impacts"); });
-    run.at("max_steps", [&](const Fields& fields) { options.max_steps = read_count(fields, "max_steps"); });
-}
-
-void read_truncation(const TomlValue& table, Truncation& truncation, Mistakes& mistakes) {
-    OptionalFields fields(table, "[truncation]", {"eps_q", "eps_v", "eps_t", "conditions", "reinitialization"},
-                          mistakes);
-    fields.positive("eps_q", truncation.eps_q);
-    fields.positive("eps_v", truncation.eps_v);
-    fields.positive("eps_t", truncation.eps_t);
-    fields.at("conditions", [&](const Fields& text) {
-        read_choice(truncation.conditions, text, "conditions", {"sharp", "paper"}, conditions_from);
-    });
-    fields.at("reinitialization", [&](const Fields& text) {
-        read_choice(truncation.reinitialization, text, "reinitialization", {"kinetic", "euclidean"},
-                    reinitialization_from);
-    });
+void read_options(const TomlValue& table, const std::string& name, Options& options, Mistakes& mistakes) {
+    Fields fields(table, "[" + name + "]");
+    std::vector<std::string> keys;
+    for (const Option& option : all_options())
+        if (option.table == name) keys.emplace_back(option.key);
+    fields.allow(keys, mistakes);
+    for (const Option& option : all_options())
+        if (option.table == name && fields.find(option.key))
+            mistakes.attempt([&] { option.set(options, read_option(option, fields)); });
 }
 
 void read_pictures(Reading& reading) {
@@ -259,9 +224,9 @@ FileReading read_tables(std::string text, std::string name) {
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
     mistakes.attempt([&] { read_constraint(reading, fields); });
     read_parameters(reading);  // after the constraint: the restitution's slider has a range of its own
-    if (const TomlValue* run = fields.find("run")) mistakes.attempt([&] { read_run(*run, system.options, mistakes); });
-    if (const TomlValue* truncation = fields.find("truncation"))
-        mistakes.attempt([&] { read_truncation(*truncation, system.options.truncation, mistakes); });
+    for (const char* key : {"run", "truncation"})
+        if (const TomlValue* table = fields.find(key))
+            mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
     read_pictures(reading);
     return read;
 }

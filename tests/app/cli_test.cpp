@@ -71,6 +71,10 @@ const Refusal refusals[] = {
     {"number_with_a_tail", "simulate ball_on_sine --tolerance 1e-8x",
      "--tolerance 1e-8x: this is not a finite number\n"},
     {"no_impacts", "simulate ball_on_sine --max-impacts 0", "--max-impacts: at least one impact must be allowed\n"},
+    {"no_steps", "simulate ball_on_sine --max-steps 0", "--max-steps: at least one step must be allowed\n"},
+    {"half_a_step", "simulate ball_on_sine --max-steps 1.5", "--max-steps 1.5: this is not a whole number\n"},
+    {"the_common_eps_first", "simulate ball_on_sine --eps-q -2 --eps -1",
+     "--eps: the value must be positive and finite, but it is -1\n"},
     {"unwritable_output", "simulate ball_on_sine --csv a.csv --json none/a.json",
      "none/a.json: the file cannot be written: No such file or directory\n"},
     {"output_is_a_folder", "simulate ball_on_sine --json /tmp", "/tmp: the file cannot be written: Is a directory\n"},
@@ -306,6 +310,14 @@ TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     EXPECT_EQ(answer.status, 3);
     EXPECT_NE(answer.err.find("achilles: the run stopped early: "), std::string::npos) << answer.err;
     EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
+}
+
+TEST(Cli, TheStepsOfARunCanBeLimited) {
+    const Folder folder;
+    EXPECT_EQ(folder.run("simulate ball_on_sine --max-steps 30 --json a.json").status, 3);
+    const json root = json::parse(content(folder.path() / "a.json"));
+    EXPECT_EQ(root["outcome"]["kind"], "too many steps");
+    EXPECT_EQ(root["options"]["max_steps"], 30);
 }
 
 TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {

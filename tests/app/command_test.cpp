@@ -57,6 +57,7 @@ const std::vector<Command> one_of_each{
     command::Done{},
     command::UseMethod{Method::dopri5},
     command::MaxImpacts{1000},
+    command::UseOption{"max-steps", {100000}},
     command::Range{2, true, -1.0, 0.1 + 0.2},
     command::Range{1, false, 0.0, 1e-7},
     command::Export{"a folder/run.json", false},
@@ -123,6 +124,10 @@ TEST(Journal, names_the_place_of_a_mistake) {
                                 {"conditions strict", 12, "'strict'"},
                                 {"reinitialization none", 18, "'none'"},
                                 {"select 1.5", 8, "whole number"},
+                                {"max-steps 1.5", 11, "whole number"},
+                                {"method", 7, "write: method taylor, or: method dopri5"},
+                                {"method tailor", 8, "there is no method 'tailor'"},
+                                {"eps 1 2 3 4", 11, "write: eps 1e-6, or: eps POSITION VELOCITY TIME"},
                                 {"open \"half", 6, "quotes"},
                                 {"play now", 6, "too much"},
                                 {"\x01\xff", 1, "no command"}};
@@ -137,6 +142,17 @@ TEST(Journal, names_the_place_of_a_mistake) {
             EXPECT_NE(std::string(error.what()).find(mistake.says), std::string::npos) << error.what();
         }
     }
+}
+
+// Every option has a command of its own, or shares one; values that no run can have are refused when it is done.
+TEST(Command, sets_every_option) {
+    for (const auto group : options_by_command()) {
+        const command::UseOption use(group[0], Options{});
+        EXPECT_EQ(use.values.size(), group.size());
+        EXPECT_EQ(parse_command(to_text(use)), Command(use));
+        EXPECT_EQ(to_text(use).rfind(std::string(group[0].command) + " ", 0), 0u);
+    }
+    EXPECT_EQ(to_text(command::UseOption("max-steps", {30})), "max-steps 30");
 }
 
 TEST(Journal, is_a_file_that_grows_line_by_line) {

@@ -77,6 +77,22 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
         EXPECT_NE(all.find(part), std::string::npos) << part << all;
 }
 
+// What limits a run is told; of the steps only where somebody has said so.
+TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    for (const bool limited : {false, true}) {
+        const std::string picture = "a." + GetParam();
+        ASSERT_EQ(folder.run(arguments + picture + (limited ? " --max-steps 100000" : "")).status, 0);
+        const std::string bytes = content(folder.path() / picture);
+        std::string told;
+        for (const Note& note : is_png(bytes) ? png_notes(bytes) : svg_notes(bytes))
+            if (note.keyword == "Achilles Options") told = note.text;
+        EXPECT_EQ(told.find("at most 200000 impacts, at most 100000 steps, ") != std::string::npos, limited) << told;
+        EXPECT_EQ(told.find("steps") != std::string::npos, limited) << told;
+    }
+}
+
 TEST_P(Reproduced, ADifferenceIsTold) {
     const Folder folder;
     folder.put("drop.toml", drop);

@@ -40,14 +40,17 @@ TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
     session.apply(command::Set{"g", 2.0});
     session.apply(command::Seek{3.0});
     const std::string before = to_text(session);
-    const std::pair<Command, std::string> mistakes[] = {{command::Set{"yy", 1.0}, "did you mean 'y'"},
-                                                        {command::Set{"y", -5.0}, "gap"},
-                                                        {command::Set{"e", 1.5}, "restitution"},
-                                                        {command::End{-1.0}, "end time"},
-                                                        {command::Tolerance{0.0}, "tolerance"},
-                                                        {command::Eps{1e-6, -1.0, 1e-6}, "eps"},
-                                                        {command::Select{4000}, "event"},
-                                                        {command::Open{"nowhere"}, "nowhere"}};
+    const std::pair<Command, std::string> mistakes[] = {
+        {command::Set{"yy", 1.0}, "did you mean 'y'"},
+        {command::Set{"y", -5.0}, "gap"},
+        {command::Set{"e", 1.5}, "restitution"},
+        {command::End{-1.0}, "end time"},
+        {command::Tolerance{0.0}, "tolerance"},
+        {command::MaxImpacts{0}, "at least one impact must be allowed"},
+        {command::UseOption{"max-steps", {0}}, "at least one step must be allowed"},
+        {command::Eps{1e-6, -1.0, 1e-6}, "eps"},
+        {command::Select{4000}, "event"},
+        {command::Open{"nowhere"}, "nowhere"}};
     for (const auto& [command, says] : mistakes) {
         session.apply(command);
         EXPECT_NE(session.error().find(says), std::string::npos) << to_text(command) << ": " << session.error();

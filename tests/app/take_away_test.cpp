@@ -30,7 +30,7 @@ void apply(Session& session, const std::string& journal) {
 const std::string changes[] = {
     "",
     "set e 0.3\nset x' 0.7333333333333333\nend 17\n",
-    "start x 0.1 y 2.5 g 1.5 m 3\ntolerance 1e-9\nmethod dopri5\nmax-impacts 5000\n",
+    "start x 0.1 y 2.5 g 1.5 m 3\ntolerance 1e-9\nmethod dopri5\nmax-impacts 5000\nmax-steps 70000\n",
     "eps 1e-5\nconditions paper\nreinitialization euclidean\n",
     "eps 1e-5 1e-4 1e-3\n",
     "grid 3 1\nplot 2 x \"x'^2 + y'^2\" \"y - sin(x)\"\nzoom 1 0.5 4 -2 3\nlog 2 y on\ncurve 2 1 off\n",
@@ -49,6 +49,7 @@ TEST(Recipe, leads_to_the_same_session) {
         const std::vector<Command> steps = recipe(session);
         for (const Command& step : steps) again.apply(step);
         EXPECT_EQ(to_text(again), to_text(session)) << journal << "\nby\n" << journal_text(steps);
+        EXPECT_EQ(again.run(), session.run()) << journal;
         EXPECT_EQ(again.pinned() == nullptr, session.pinned() == nullptr) << journal;
         EXPECT_EQ(parse_journal(journal_text(steps)), steps);
     }

@@ -1,6 +1,7 @@
 #include "cli/commands/common.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -27,26 +28,27 @@ int integer_from(const std::string& option, std::string_view text) {
     return *value;
 }
 
-void add_number(CLI::App& command, const std::string& option, std::optional<double>& target, const std::string& about) {
-    command
-        .add_option_function<std::string>(
-            option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
-        ->type_name("X");
+// One of the option's words, a whole number, or a number.
+OptionValue value_from(const Option& option, const std::string& flag, const std::string& text) {
+    if (std::holds_alternative<int>(option.get({}))) return integer_from(flag, text);
+    if (option.words.empty()) return number_from(flag, text);
+    const auto found = std::find(option.words.begin(), option.words.end(), text);
+    if (found != option.words.end()) return *found;
+    const std::vector<std::string> choices(option.words.begin(), option.words.end());
+    throw InputError(fmt::format("{} {}", flag, text), {},
+                     fmt::format("there is no '{}' to choose{}", text, did_you_mean(text, choices)),
+                     fmt::format("the choice is {}", fmt::join(choices, " or ")));
 }
 
-// One of two words.
-template <class Value>
-void add_choice(CLI::App& command, const std::string& option, std::optional<Value>& target,
-                std::optional<Value> (*from)(std::string_view), const std::vector<std::string>& choices,
-                const std::string& about) {
-    const auto take = [&target, option, from, choices](const std::string& text) {
-        target = from(text);
-        if (!target)
-            throw InputError(fmt::format("{} {}", option, text), {},
-                             fmt::format("there is no '{}' to choose{}", text, did_you_mean(text, choices)),
-                             fmt::format("the choice is {} or {}", choices[0], choices[1]));
+void add_option(CLI::App& command, const Option& option, const std::string& flag, const std::string& about,
+                OptionOverrides& overrides) {
+    const auto take = [&option, flag, &overrides](const std::string& text) {
+        overrides.by_flag.insert_or_assign(flag, value_from(option, flag, text));
     };
-    command.add_option_function<std::string>(option, take, about)->type_name(choices[0] + "|" + choices[1]);
+    const std::string value = !option.words.empty() ? fmt::format("{}", fmt::join(option.words, "|"))
+                              : std::holds_alternative<int>(option.get({})) ? "N"
+                                                                            : "X";
+    command.add_option_function<std::string>(flag, take, about)->type_name(value);
 }
 
 }  // namespace
@@ -104,23 +106,13 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    add_number(command, "--end", overrides.end_time, "end time, s");
-    add_number(command, "--tolerance", overrides.tolerance, "local error per step, absolute and relative");
-    add_choice<Method>(command, "--method", overrides.method, method_from, {"dopri5", "taylor"}, "of the integration");
-    command
-        .add_option_function<std::string>(
-            "--max-impacts",
-            [&overrides](const std::string& text) { overrides.max_impacts = integer_from("--max-impacts", text); },
-            "after so many the run stops")
-        ->type_name("N");
-    add_choice<Conditions>(command, "--conditions", overrides.conditions, conditions_from, {"paper", "sharp"},
-                           "when infinitely many impacts may be cut short");
-    add_choice<Reinitialization>(command, "--reinitialization", overrides.reinitialization, reinitialization_from,
-                                 {"euclidean", "kinetic"}, "the velocity that contact starts with");
-    add_number(command, "--eps", overrides.eps, "the error the cut may cost: position, velocity and time");
-    add_number(command, "--eps-q", overrides.eps_q, "position");
-    add_number(command, "--eps-v", overrides.eps_v, "velocity");
-    add_number(command, "--eps-t", overrides.eps_t, "time, s");
+    for (const Option* option : told_options()) {
+        const std::string flag(option->flag), common = common_flag(*option);
+        if (common != flag && option == &options_set_by(option->command)[0])
+            add_option(command, *option, common, "the error the cut may cost: position, velocity and time", overrides);
+        const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
+        add_option(command, *option, flag, std::string(option->about) + unit, overrides);
+    }
 }
 
 void add_step_option(CLI::App& command, std::vector<std::string>& steps) {

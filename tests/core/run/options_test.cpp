@@ -1,0 +1,77 @@
+// The table of options: every row reads and writes a member of its own, and no member is left out.
+#include "run/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace achilles {
+namespace {
+
+// An allowed value that is not the default.
+OptionValue another(const Option& option) {
+    const OptionValue usual = option.get({});
+    if (const auto* number = std::get_if<double>(&usual)) return 2.0 * *number;
+    if (const auto* whole = std::get_if<int>(&usual)) return *whole + 1;
+    return option.words[usual == OptionValue(option.words[0]) ? 1 : 0];
+}
+
+TEST(Options, each_has_a_place_of_its_own) {
+    std::set<std::string_view> keys, flags;
+    for (const Option& one : all_options()) {
+        SCOPED_TRACE(one.key);
+        EXPECT_TRUE(keys.insert(one.key).second);
+        EXPECT_TRUE(flags.insert(one.flag).second);
+        EXPECT_TRUE(allows(one, one.get({}))) << "the default";
+        ASSERT_TRUE(allows(one, another(one)));
+        Options changed;
+        one.set(changed, another(one));
+        EXPECT_EQ(one.get(changed), another(one));
+        EXPECT_NE(changed, Options{});
+        for (const Option& other : all_options()) {
+            if (&other == &one) continue;
+            EXPECT_EQ(other.get(changed), other.get({})) << other.key;
+        }
+    }
+}
+
+TEST(Options, the_table_has_them_all) {
+    Options all;
+    for (const Option& one : all_options()) one.set(all, another(one));
+    EXPECT_NE(all.end_time, Options{}.end_time);
+    EXPECT_NE(all.tolerance, Options{}.tolerance);
+    EXPECT_NE(all.method, Options{}.method);
+    EXPECT_NE(all.max_impacts, Options{}.max_impacts);
+    EXPECT_NE(all.max_steps, Options{}.max_steps);
+    EXPECT_NE(all.truncation.eps_q, Options{}.truncation.eps_q);
+    EXPECT_NE(all.truncation.eps_v, Options{}.truncation.eps_v);
+    EXPECT_NE(all.truncation.eps_t, Options{}.truncation.eps_t);
+    EXPECT_NE(all.truncation.conditions, Options{}.truncation.conditions);
+    EXPECT_NE(all.truncation.reinitialization, Options{}.truncation.reinitialization);
+}
+
+TEST(Options, what_is_not_allowed_is_told) {
+    Options options;
+    EXPECT_TRUE(faults(options).empty());
+    options.tolerance = -1.0;
+    options.max_steps = 0;
+    options.truncation.eps_t = 1.0 / 0.0;
+    EXPECT_EQ(faults(options), (std::vector<std::string>{"tolerance must be a positive number, but it is -1",
+                                                         "max_steps must be at least 1",
+                                                         "eps_t must be a positive number, but it is inf"}));
+}
+
+TEST(Options, are_told_in_one_order_but_for_the_first) {
+    std::string keys;
+    for (const Option* one : told_options({"tolerance", "method"})) keys += std::string(one->key) + " ";
+    EXPECT_EQ(keys, "tolerance method end_time max_impacts max_steps conditions reinitialization eps_q eps_v eps_t ");
+}
+
+TEST(Options, a_command_sets_those_that_share_it) {
+    EXPECT_EQ(options_set_by("eps").size(), 3u);
+    EXPECT_EQ(options_set_by("end").size(), 1u);
+    EXPECT_TRUE(options_set_by("seek").empty());
+}
+
+}  // namespace
+}  // namespace achilles
