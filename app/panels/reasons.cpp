@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
@@ -44,10 +45,10 @@ void show_rates(const Session& session, const Event& event) {
 }
 
 // The first inequality that does not hold, if any.
-const Inequality* failed(const Certificate& certificate) {
+std::optional<Inequality> failed(const Certificate& certificate) {
     for (const Inequality& inequality : certificate.inequalities())
-        if (!(inequality.left < inequality.right)) return &inequality;
-    return nullptr;
+        if (!(inequality.left < inequality.right)) return inequality;
+    return std::nullopt;
 }
 
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) {
@@ -59,8 +60,8 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) 
                            number(reason.normal_acceleration));
     if (attempt == nullptr)
         return "Not cut: nothing can be proved yet, the gap's acceleration may change its sign on the way.";
-    const Inequality* inequality = failed(*attempt);
-    if (inequality == nullptr) return "Not cut: an impact before the conditions were asked.";
+    const std::optional<Inequality> inequality = failed(*attempt);
+    if (!inequality) return "Not cut: an impact before the conditions were asked.";
     if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} is not proved.", inequality->name);
     return fmt::format("Not cut: the {} asks for {} < {}; it is {} times too large.", inequality->name,
                        number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
