@@ -36,12 +36,6 @@ Line::Line(std::string_view text, const std::string& file, int number) : text_(t
     }
 }
 
-std::vector<std::string> Line::words_from(std::size_t first) const {
-    std::vector<std::string> result;
-    for (std::size_t i = first; i < count(); ++i) result.push_back(words_[i].text);
-    return result;
-}
-
 InputError Line::error(int column, const std::string& message, const std::string& hint) const {
     return {file_, {number_, column}, message, hint, std::string(text_)};
 }
@@ -67,13 +61,6 @@ int Line::whole_number(std::size_t i) const {
     if (value != std::floor(value) || std::abs(value) > 1e9)
         throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
     return static_cast<int>(value);
-}
-
-bool Line::is_on(std::size_t i, const std::string& usage) const {
-    const std::string& text = words_[i].text;
-    if (text != "on" && text != "off")
-        throw error(words_[i].column, fmt::format("'{}' is neither on nor off", text), usage);
-    return text == "on";
 }
 
 std::string Line::plain(std::size_t& at) const {

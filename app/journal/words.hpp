@@ -21,13 +21,10 @@ class Line {
     };
     const Word& word(std::size_t i) const { return words_[i]; }
     std::size_t count() const { return words_.size(); }
-    // The words from number `first` on.
-    std::vector<std::string> words_from(std::size_t first) const;
 
     // Each reads a word and throws an InputError that names its place where it is something else.
     double number(std::size_t i) const;
     int whole_number(std::size_t i) const;
-    bool is_on(std::size_t i, const std::string& usage) const;  // on, or off
     // So many words follow the first, or else an error that shows the usage.
     void expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const;
     InputError error(int column, const std::string& message, const std::string& hint = {}) const;

@@ -1,12 +1,13 @@
+// Commands as lines of a journal, and what undo makes of them: all from what each says of itself.
 #include "session/command.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
+#include <concepts>
+#include <optional>
 #include <utility>
-#include <vector>
 
 #include "expression/nearest.hpp"
 #include "journal/words.hpp"
@@ -19,18 +20,177 @@ Command& Command::operator=(const Command& other) = default;
 Command& Command::operator=(Command&& other) noexcept = default;
 Command::~Command() = default;
 
-command::UseOption::UseOption(std::string_view command, std::vector<OptionValue> for_each)
+namespace command {
+
+UseOption::UseOption(std::string_view command, std::vector<OptionValue> for_each)
     : name(command), values(std::move(for_each)) {}
 
-command::UseOption::UseOption(const Option& option, const Options& as_there) : name(option.command) {
+UseOption::UseOption(const Option& option, const Options& as_there) : name(option.command) {
     for (const Option& o : options_set_by(name)) values.push_back(o.get(as_there));
 }
 
-bool command::UseOption::is_of_one_value() const {
+bool UseOption::is_of_one_value() const {
     return std::all_of(values.begin(), values.end(), [&](const OptionValue& value) { return value == values[0]; });
 }
 
 namespace {
+
+template <class... Values>
+std::string filled(std::string_view text, const Values&... values) {
+    return fmt::format(fmt::runtime(text), values...);
+}
+
+// ---- a value in a line ----
+
+using Words = std::vector<std::string>;
+using Values = std::vector<std::pair<std::string, double>>;
+
+// Where reading stands: at which word, and what is said where the line is wrong.
+struct Reading {
+    const Line& line;
+    std::string usage;
+    std::size_t at = 1;
+
+    bool at_end() const { return at == line.count(); }
+    const std::string& word() const { return line.word(at).text; }
+    InputError error(const std::string& message, const std::string& hint) const {
+        return line.error(line.word(at).column, message, hint);
+    }
+    InputError error(const std::string& message) const { return error(message, usage); }
+};
+
+void read(std::string& word, const How& how, Reading& from) {
+    if (how.one_of && std::find(how.one_of->begin(), how.one_of->end(), from.word()) == how.one_of->end())
+        throw from.error(filled(how.complaint, from.word(), did_you_mean(from.word(), *how.one_of)),
+                         how.known.empty() ? from.usage : filled(how.known, fmt::join(*how.one_of, ", ")));
+    word = from.line.word(from.at++).text;
+}
+void read(bool& value, const How& how, Reading& from) {
+    const std::size_t at = how.is_name ? 0 : from.at;
+    value = at < from.line.count() && from.line.word(at).text == how.yes;
+    if (how.is_name || from.at_end()) return;
+    if (!value && (from.word() != how.no || how.no.empty())) throw from.error(filled(how.complaint, from.word()));
+    ++from.at;
+}
+void read(int& value, const How&, Reading& from) { value = from.line.whole_number(from.at++); }
+void read(double& value, const How& how, Reading& from) {
+    const bool is_zero = !how.zero.empty() && from.word() == how.zero;
+    value = is_zero ? 0.0 : from.line.number(from.at);
+    if (!is_zero && how.fits && !how.fits(value)) throw from.error(filled(how.complaint, value));
+    ++from.at;
+}
+void read(Words& words, const How& how, Reading& from) {
+    while (!from.at_end()) read(words.emplace_back(), how, from);
+}
+void read(Values& values, const How& how, Reading& from) {
+    while (!from.at_end()) {
+        if (from.at + 1 == from.line.count()) throw from.error("this name has no value");
+        auto& [name, value] = values.emplace_back();
+        read(name, how, from);
+        read(value, how, from);
+    }
+}
+
+// As read() takes it, with a space before every word.
+std::string written(const std::string& word, const How& how) {
+    return " " + (how.in_quotes ? quoted(word) : quoted_where_needed(word));
+}
+std::string written(bool value, const How& how) {
+    const std::string_view word = value ? how.yes : how.no;
+    return how.is_name || word.empty() ? "" : fmt::format(" {}", word);
+}
+std::string written(int value, const How&) { return fmt::format(" {}", value); }
+std::string written(double value, const How& how) {
+    return value == 0.0 && !how.zero.empty() ? fmt::format(" {}", how.zero) : fmt::format(" {}", value);
+}
+std::string written(const Words& words, const How& how) {
+    std::string text;
+    for (const std::string& word : words) text += written(word, how);
+    return text;
+}
+std::string written(const Values& values, const How& how) {
+    std::string text;
+    for (const auto& [name, value] : values) text += written(name, how) + written(value, how);
+    return text;
+}
+
+// How many words there may be.
+template <class Value>
+std::pair<std::size_t, std::size_t> count(const How& how) {
+    if (how.is_name) return {0, 0};
+    if (std::same_as<Value, Words>) return {1, 10};
+    if (std::same_as<Value, Values>) return {2, 64};
+    return {std::same_as<Value, bool> && how.no.empty() ? 0 : 1, 1};
+}
+
+// ---- commands ----
+
+// The words that it begins with: its name, or one for each value of a field that the name says. A name of two words is
+// another's, which it is told from by the second.
+template <Spoken Kind>
+std::vector<std::string_view> names_of() {
+    if (Kind::said.name.find(' ') != Kind::said.name.npos) return {};
+    std::vector<std::string_view> names{Kind::said.name};
+    for_each_field<Kind>([&](const auto& field) {
+        if (field.how.is_name) names = {field.how.yes, field.how.no};
+    });
+    return names;
+}
+
+// Reads a line whose name it is; nothing if it is not. A name of two words is the whole line.
+template <Spoken Kind>
+std::optional<Command> read_as(const Line& line) {
+    const std::string& name = line.word(0).text;
+    if (line.count() == 2 && fmt::format("{} {}", name, line.word(1).text) == Kind::said.name) return Kind{};
+    const auto names = names_of<Kind>();
+    if (std::find(names.begin(), names.end(), name) == names.end()) return std::nullopt;
+    Kind kind;
+    Reading from{line, filled(Kind::said.usage, name)};
+    std::size_t least = 0, most = 0;
+    for_each_field<Kind>([&](const auto& field) {
+        const auto words = count<std::remove_cvref_t<decltype(kind.*field.member)>>(field.how);
+        least += words.first;
+        most += words.second;
+    });
+    line.expect_arguments(least, most, from.usage);
+    for_each_field<Kind>([&](const auto& field) { read(kind.*field.member, field.how, from); });
+    return kind;
+}
+
+template <Spoken Kind>
+std::string text_of(const Kind& kind) {
+    std::string_view name = Kind::said.name;
+    std::string words;
+    for_each_field<Kind>([&](const auto& field) {
+        if constexpr (std::same_as<decltype(kind.*field.member), const bool&>)
+            if (field.how.is_name) name = kind.*field.member ? field.how.yes : field.how.no;
+        words += written(kind.*field.member, field.how);
+    });
+    return std::string(name) + words;
+}
+
+template <Spoken Kind>
+void list_names(std::vector<std::string>& names) {
+    for (const std::string_view name : names_of<Kind>()) names.emplace_back(name);
+}
+
+template <Spoken Kind>
+Change change_of(const Kind&) {
+    return Kind::said.change;
+}
+
+// Whether two commands of a kind are about the same thing.
+template <Spoken Kind>
+bool is_about_same(const Kind& a, const Kind& b) {
+    if constexpr (std::tuple_size_v<decltype(Kind::said.fields)> < 2) {
+        return true;
+    } else {
+        const Field first(std::get<0>(Kind::said.fields));
+        return a.*first.member == b.*first.member;
+    }
+}
+
+// ---- options: what the others say of themselves, their table says ----
 
 OptionValue read_value(const Option& option, const Line& line, std::size_t i) {
     if (std::holds_alternative<double>(option.get({}))) return line.number(i);
@@ -38,12 +198,15 @@ OptionValue read_value(const Option& option, const Line& line, std::size_t i) {
     const std::string& text = line.word(i).text;
     const auto found = std::find(option.words.begin(), option.words.end(), text);
     if (found != option.words.end()) return *found;
-    throw line.error(line.word(i).column, fmt::format(fmt::runtime(option.wrong), text), std::string(option.usage));
+    throw line.error(line.word(i).column, filled(option.wrong, text), std::string(option.usage));
 }
 
 // One value, for all options that the command sets, or one for each of them.
-Command read_option(const Line& line, std::span<const Option> options) {
+template <std::same_as<UseOption>>
+std::optional<Command> read_as(const Line& line) {
     const std::string& name = line.word(0).text;
+    const auto options = options_set_by(name);
+    if (options.empty()) return std::nullopt;
     line.expect_arguments(1, options.size(), std::string(options[0].usage));
     if (line.count() != 2 && line.count() != options.size() + 1)
         throw line.error(line.word(2).column, fmt::format("{} takes one number or three", name),
@@ -51,257 +214,77 @@ Command read_option(const Line& line, std::span<const Option> options) {
     std::vector<OptionValue> values;
     for (std::size_t i = 0; i < options.size(); ++i)
         values.push_back(read_value(options[i], line, line.count() == 2 ? 1 : i + 1));
-    return command::UseOption(name, values);
+    return UseOption(name, values);
 }
 
-Command read_set(const Line& line) {
-    line.expect_arguments(2, 2, "write: set NAME VALUE");
-    return command::Set{line.word(1).text, line.number(2)};
+std::string text_of(const UseOption& use) {
+    std::string text = use.name;
+    for (std::size_t i = 0; i < (use.is_of_one_value() ? 1 : use.values.size()); ++i)
+        text += " " + to_text(use.values[i]);
+    return text;
 }
 
-// The first word of a line, and how the rest is read.
-struct Verb {
-    std::string_view name;
-    Command (*read)(const Line&);
-};
-
-template <class Kind>
-Command read_alone(const Line& line) {
-    line.expect_arguments(0, 0, "it stands alone");
-    return Kind{};
+template <std::same_as<UseOption>>
+void list_names(std::vector<std::string>& names) {
+    for (const auto group : options_by_command()) names.emplace_back(group[0].command);
 }
 
-template <class Kind>
-Command read_number(const Line& line) {
-    line.expect_arguments(1, 1, fmt::format("write: {} NUMBER", line.word(0).text));
-    return Kind{line.number(1)};
+// A number has a slider, which is dragged.
+Change change_of(const UseOption& use) {
+    return std::holds_alternative<double>(use.values[0]) ? Change::together : Change::alone;
 }
 
-Command read_open(const Line& line) {
-    line.expect_arguments(1, 1, "write: open SYSTEM; a path with spaces stands in double quotes");
-    return command::Open{line.word(1).text};
+bool is_about_same(const UseOption& a, const UseOption& b) { return a.name == b.name; }
+
+// ---- all of them ----
+
+template <class... Kinds>
+std::optional<Command> read_as_any(const Line& line, const std::variant<Kinds...>*) {
+    std::optional<Command> command;
+    ((command = read_as<Kinds>(line)) || ...);
+    return command;
 }
 
-Command read_select(const Line& line) {
-    line.expect_arguments(1, 1, "write: select NUMBER, counting the events from 1");
-    return command::Select{line.whole_number(1)};
+template <class... Kinds>
+std::vector<std::string> names_of_all(const std::variant<Kinds...>*) {
+    std::vector<std::string> names;
+    (list_names<Kinds>(names), ...);
+    return names;
 }
 
-Command read_text_of_system(const Line& line) {
-    line.expect_arguments(1, 1, "write: text \"the whole file\", with \\n for every new line");
-    return command::Text{line.word(1).text};
-}
-
-// Save or Export: a file, and perhaps that it may be there already.
-template <class Kind>
-Command read_file_to_write(const Line& line) {
-    const std::string usage = fmt::format("write: {0} FILE, or: {0} FILE overwrite", line.word(0).text);
-    line.expect_arguments(1, 2, usage);
-    if (line.count() == 3 && line.word(2).text != "overwrite")
-        throw line.error(line.word(2).column, fmt::format("'{}' is not expected here", line.word(2).text), usage);
-    return Kind{line.word(1).text, line.count() == 3};
-}
-
-Command read_copy(const Line& line) {
-    const auto& things = command::copied_things;
-    const std::string usage = fmt::format("write: copy {}", fmt::join(things, ", or: copy "));
-    line.expect_arguments(1, 1, usage);
-    const std::string& what = line.word(1).text;
-    if (std::find(things.begin(), things.end(), what) == things.end())
-        throw line.error(line.word(1).column, fmt::format("'{}' has no command{}", what, did_you_mean(what, things)),
-                         usage);
-    return command::Copy{what};
-}
-
-Command read_wait(const Line& line) {
-    line.expect_arguments(1, 1, "write: wait SECONDS");
-    const double seconds = line.number(1);
-    if (seconds < 0.0) throw line.error(line.word(1).column, "nobody can wait for the past", "write: wait SECONDS");
-    return command::Wait{seconds};
-}
-
-Command read_say(const Line& line) {
-    line.expect_arguments(1, 1, "write: say \"a sentence\", or: say \"\"");
-    return command::Say{line.word(1).text};
-}
-
-Command read_replay(const Line& line) {
-    line.expect_arguments(1, 1, "write: replay JOURNAL; a path with spaces stands in double quotes");
-    return command::Replay{line.word(1).text};
-}
-
-template <bool pinned>
-Command read_pin(const Line& line) {
-    line.expect_arguments(0, 0, "it stands alone");
-    return command::Pin{pinned};
-}
-
-template <bool shown>
-Command read_show(const Line& line) {
-    line.expect_arguments(1, 1, fmt::format("write: {} editor", line.word(0).text));
-    const auto& things = command::shown_things;
-    const std::string& what = line.word(1).text;
-    if (std::find(things.begin(), things.end(), what) == things.end())
-        throw line.error(line.word(1).column,
-                         fmt::format("there is no '{}' to show{}", what, did_you_mean(what, things)),
-                         fmt::format("these can be shown: {}", fmt::join(things, ", ")));
-    return command::Show{what, shown};
-}
-
-Command read_start(const Line& line) {
-    const std::string usage = "write: start NAME VALUE NAME VALUE ...";
-    line.expect_arguments(2, 64, usage);
-    command::Start start;
-    for (std::size_t i = 1; i < line.count(); i += 2) {
-        if (i + 1 == line.count()) throw line.error(line.word(i).column, "this name has no value", usage);
-        start.values.emplace_back(line.word(i).text, line.number(i + 1));
-    }
-    return start;
-}
-
-Command read_look(const Line& line) {
-    const std::string usage = "write: look X Y WIDTH, or: look all";
-    if (line.count() == 2 && line.word(1).text == "all") return command::LookAll{};
-    line.expect_arguments(3, 3, usage);
-    return command::Look{line.number(1), line.number(2), line.number(3)};
-}
-
-Command read_step(const Line& line) {
-    line.expect_arguments(1, 1, "write: step 1, or: step -1");
-    return command::Step{line.whole_number(1)};
-}
-
-Command read_grid(const Line& line) {
-    line.expect_arguments(2, 2, "write: grid COLUMNS ROWS");
-    return command::Grid{line.whole_number(1), line.whole_number(2)};
-}
-
-Command read_plot(const Line& line) {
-    line.expect_arguments(3, 12, "write: plot NUMBER X Y..., expressions with spaces in double quotes");
-    return command::PlotView{line.whole_number(1), line.word(2).text, line.words_from(3)};
-}
-
-Command read_zoom(const Line& line) {
-    line.expect_arguments(5, 5, "write: zoom NUMBER X_LOW X_HIGH Y_LOW Y_HIGH");
-    return command::Zoom{line.whole_number(1), line.number(2), line.number(3), line.number(4), line.number(5)};
-}
-
-Command read_fit(const Line& line) {
-    line.expect_arguments(1, 1, "write: fit NUMBER");
-    return command::Fit{line.whole_number(1)};
-}
-
-// Whether the second argument is x, and not y.
-bool read_axis(const Line& line, const std::string& usage) {
-    const std::string& axis = line.word(2).text;
-    if (axis != "x" && axis != "y") throw line.error(line.word(2).column, "an axis is x or y", usage);
-    return axis == "x";
-}
-
-Command read_log(const Line& line) {
-    const std::string usage = "write: log NUMBER x on, or: log NUMBER y off";
-    line.expect_arguments(3, 3, usage);
-    return command::AxisScale{line.whole_number(1), read_axis(line, usage), line.is_on(3, usage)};
-}
-
-Command read_range(const Line& line) {
-    const std::string usage = "write: range NUMBER x LOW HIGH, or: range NUMBER y LOW HIGH";
-    line.expect_arguments(4, 4, usage);
-    return command::Range{line.whole_number(1), read_axis(line, usage), line.number(3), line.number(4)};
-}
-
-Command read_curve(const Line& line) {
-    const std::string usage = "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off";
-    line.expect_arguments(3, 3, usage);
-    return command::ShowCurve{line.whole_number(1), line.whole_number(2), line.is_on(3, usage)};
-}
-
-template <class Kind>
-Command read_on_off(const Line& line) {
-    const std::string usage = fmt::format("write: {0} on, or: {0} off", line.word(0).text);
-    line.expect_arguments(1, 1, usage);
-    return Kind{line.is_on(1, usage)};
-}
-
-Command read_theme(const Line& line) {
-    const std::string usage = "write: theme light, or: theme dark";
-    line.expect_arguments(1, 1, usage);
-    const std::string& name = line.word(1).text;
-    if (name != "light" && name != "dark")
-        throw line.error(line.word(1).column, fmt::format("there is no theme '{}'", name), usage);
-    return command::UseTheme{name == "dark"};
-}
-
-Command read_size(const Line& line) {
-    const std::string usage = "write: size controls 0.3 (a share of the window), or: size plots auto";
-    line.expect_arguments(2, 2, usage);
-    const std::string& panel = line.word(1).text;
-    const auto& panels = command::sized_panels;
-    if (std::find(panels.begin(), panels.end(), panel) == panels.end())
-        throw line.error(line.word(1).column,
-                         fmt::format("there is no panel '{}'{}", panel, did_you_mean(panel, panels)), usage);
-    if (line.word(2).text == "auto") return command::Size{panel, 0.0};
-    const double share = line.number(2);
-    if (!(share > 0.0 && share < 1.0))
-        throw line.error(line.word(2).column, fmt::format("a panel cannot take {} of the window", share), usage);
-    return command::Size{panel, share};
-}
-
-constexpr std::array<Verb, 38> verbs{{{"open", read_open},
-                                      {"set", read_set},
-                                      {"seek", read_number<command::Seek>},
-                                      {"play", read_alone<command::Play>},
-                                      {"pause", read_alone<command::Pause>},
-                                      {"select", read_select},
-                                      {"new", read_alone<command::New>},
-                                      {"text", read_text_of_system},
-                                      {"save", read_file_to_write<command::Save>},
-                                      {"show", read_show<true>},
-                                      {"hide", read_show<false>},
-                                      {"grid", read_grid},
-                                      {"plot", read_plot},
-                                      {"zoom", read_zoom},
-                                      {"fit", read_fit},
-                                      {"range", read_range},
-                                      {"log", read_log},
-                                      {"curve", read_curve},
-                                      {"link", read_on_off<command::Link>},
-                                      {"start", read_start},
-                                      {"look", read_look},
-                                      {"speed", read_number<command::Speed>},
-                                      {"loop", read_on_off<command::Loop>},
-                                      {"step", read_step},
-                                      {"undo", read_alone<command::Undo>},
-                                      {"redo", read_alone<command::Redo>},
-                                      {"pin", read_pin<true>},
-                                      {"unpin", read_pin<false>},
-                                      {"lens", read_number<command::Lens>},
-                                      {"theme", read_theme},
-                                      {"size", read_size},
-                                      {"reset", read_alone<command::Reset>},
-                                      {"done", read_alone<command::Done>},
-                                      {"export", read_file_to_write<command::Export>},
-                                      {"copy", read_copy},
-                                      {"wait", read_wait},
-                                      {"say", read_say},
-                                      {"replay", read_replay}}};
+constexpr const AnyCommand* any = nullptr;
 
 }  // namespace
+
+}  // namespace command
+
+std::string to_text(const Command& command) {
+    return std::visit([](const auto& what) { return command::text_of(what); }, static_cast<const AnyCommand&>(command));
+}
 
 Command parse_command(std::string_view text, const std::string& file, int line_number) {
     const Line line(text, file, line_number);
     if (line.count() == 0) throw line.error(1, "there is no command here");
-    if (const auto options = options_set_by(line.word(0).text); !options.empty()) return read_option(line, options);
-    std::vector<std::string> names;
-    for (const auto group : options_by_command()) names.emplace_back(group[0].command);
-    for (const Verb& verb : verbs) {
-        if (verb.name == line.word(0).text) return verb.read(line);
-        names.emplace_back(verb.name);
-    }
+    if (auto command = command::read_as_any(line, command::any)) return *std::move(command);
+    const std::vector<std::string> names = command::names_of_all(command::any);
     throw line.error(
         line.word(0).column,
         fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
         fmt::format("the commands are: {}", fmt::join(names, ", ")));
+}
+
+command::Change change_of(const Command& command) {
+    return std::visit([](const auto& what) { return command::change_of(what); },
+                      static_cast<const AnyCommand&>(command));
+}
+
+bool goes_on(const Command& last, const Command& next) {
+    if (last.index() != next.index() || change_of(next) != command::Change::together) return false;
+    return std::visit(
+        [&](const auto& what) {
+            return command::is_about_same(std::get<std::remove_cvref_t<decltype(what)>>(last), what);
+        },
+        static_cast<const AnyCommand&>(next));
 }
 
 }  // namespace achilles

@@ -1,31 +1,19 @@
-// Everything a user can do, as a value with a text form: a journal is a list of these, a line each.
+// Everything a user can do, as a value with a text form: a journal is a list of these, a line each. Each says itself, once
+// (command_fields.hpp): what it is called, how it is written, which words follow, what undo makes of it.
 //
-//     open ball_on_sine        set g 9.81         set x' 1.5         end 20        tolerance 1e-10
-//     eps 1e-6                 eps 1e-6 1e-6 1e-7 (position, velocity, time)
-//     conditions paper         reinitialization kinetic
-//     seek 3.2                 play               pause              select 25
-//     new                      text "title = \"A ball\"\n..."          show editor        hide editor
-//     save mine.toml           save mine.toml overwrite
-//     grid 3 2 (columns, rows) plot 1 t y gap     plot 2 x "x'^2 + y'^2"      link off
-//     start x 0.3 x' 1.5       look 2 0.5 8 (middle, width)   look all    speed 0.1    loop on     step -1
-//     undo   redo              pin    unpin       lens 3 (10^-3 s before the Zeno point at its left edge)
-//     zoom 1 0 5 -1 2.5        fit 1     range 1 x 0 5     log 1 y on    curve 1 2 off
-//     method dopri5            max-impacts 1000   max-steps 100000
-//     export ball.svg          export run.json overwrite (.svg, .png the plots; .json, .csv the run; .journal all)
-//     copy figure              copy run           copy explorer (the command line that makes it, to the clipboard)
-//     say "Look at the ball."  wait 2.5 (s; passes at once without a window)         replay the_ball
-//     theme dark               hide plots         size controls 0.3 (a share of the window)   size events auto
-//     reset (every value and option as the file has it)     done (what follows is another change)
+//     open ball_on_sine        set x' 1.5         eps 1e-6 1e-6 1e-7        seek 3.2        # a comment
 //
 // Values are in the file's units, angles in radians; words.hpp tells how words with spaces are written.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "session/command_fields.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -34,12 +22,13 @@ namespace command {
 
 struct Open {
     std::string system;  // a path, or the name of one of the assets
-    friend bool operator==(const Open&, const Open&) = default;
+    static constexpr auto said =
+        Said("open", "write: open SYSTEM; a path with spaces stands in double quotes", Change::alone, &Open::system);
 };
 struct Set {
     std::string name;  // a parameter, a coordinate x, or a rate x'
     double value = 0.0;
-    friend bool operator==(const Set&, const Set&) = default;
+    static constexpr auto said = Said("set", "write: set NAME VALUE", Change::together, &Set::name, &Set::value);
 };
 // A new value for an option (all_options()), or for all that its command sets: what it is called, how it is written
 // and what it may be stands there.
@@ -77,171 +66,204 @@ struct MaxImpacts : UseOption {
 };
 struct Seek {
     double time = 0.0;  // s; beyond the run: its end
-    friend bool operator==(const Seek&, const Seek&) = default;
+    static constexpr auto said = Said("seek", "write: seek NUMBER", Change::none, &Seek::time);
 };
 struct Play {
-    friend bool operator==(const Play&, const Play&) = default;
+    static constexpr auto said = Said("play", alone, Change::none);
 };
 struct Pause {
-    friend bool operator==(const Pause&, const Pause&) = default;
+    static constexpr auto said = Said("pause", alone, Change::none);
 };
 struct Select {
     int event = 0;  // its number in the list, from 1; the time moves to it. 0: none
-    friend bool operator==(const Select&, const Select&) = default;
+    static constexpr auto said =
+        Said("select", "write: select NUMBER, counting the events from 1", Change::view, &Select::event);
 };
 
 struct New {  // a system to start from
-    friend bool operator==(const New&, const New&) = default;
+    static constexpr auto said = Said("new", alone, Change::alone);
 };
 struct Text {
     std::string text;  // of the whole system file, as the editor holds it
-    friend bool operator==(const Text&, const Text&) = default;
+    static constexpr auto said = Said("text", "write: text \"the whole file\", with \\n for every new line",
+                                      Change::alone, Field(&Text::text, in_quotes));
 };
 struct Save {
     std::string file;        // what the editor holds goes there
     bool overwrite = false;  // whatever file may be there; else only the one that was opened or saved before
-    friend bool operator==(const Save&, const Save&) = default;
+    static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
+                                      Field(&Save::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> shown_things{"controls", "editor", "events", "force",
                                                    "lens",     "plots",  "trail",  "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force
     bool on = true;
-    friend bool operator==(const Show&, const Show&) = default;
-};
-
-inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots"};
-struct Size {
-    std::string panel;   // the editor in place of the controls has a width of its own
-    double share = 0.0;  // of the window's width, for events of its height; 0: as it fits
-    friend bool operator==(const Size&, const Size&) = default;
-};
-struct UseTheme {
-    bool dark = false;
-    friend bool operator==(const UseTheme&, const UseTheme&) = default;
-};
-
-struct Reset {  // every value and option as the file has it
-    friend bool operator==(const Reset&, const Reset&) = default;
-};
-struct Done {  // with this change: what follows is another one, be it of the same value
-    friend bool operator==(const Done&, const Done&) = default;
-};
-struct Start {  // several values at once: the run in between might be none
-    std::vector<std::pair<std::string, double>> values;
-    friend bool operator==(const Start&, const Start&) = default;
-};
-struct Look {
-    double x = 0.0, y = 0.0, width = 1.0;  // of the world: the middle of the picture, and how much of it is seen
-    friend bool operator==(const Look&, const Look&) = default;
-};
-struct LookAll {
-    friend bool operator==(const LookAll&, const LookAll&) = default;
-};
-constexpr double slowest = 1e-3, fastest = 10.0;
-struct Speed {
-    double value = 1.0;  // seconds of the run in one of the player's, slowest to fastest
-    friend bool operator==(const Speed&, const Speed&) = default;
-};
-struct Loop {
-    bool on = true;  // at the end the player begins again
-    friend bool operator==(const Loop&, const Loop&) = default;
-};
-struct Step {
-    int events = 1;  // to the next event, or with -1 the one before
-    friend bool operator==(const Step&, const Step&) = default;
+    static constexpr auto said = Said(
+        "show", "write: {0} editor", Change::view,
+        Field(&Show::what,
+              {.one_of = &shown_things, .known = "these can be shown: {}", .complaint = "there is no '{}' to show{}"}),
+        Field(&Show::on, {.yes = "show", .no = "hide", .is_name = true}));
 };
 
 // The plots count from 1, row by row.
 struct Grid {
     int columns = 1, rows = 1;
-    friend bool operator==(const Grid&, const Grid&) = default;
+    static constexpr auto said = Said("grid", "write: grid COLUMNS ROWS", Change::alone, &Grid::columns, &Grid::rows);
 };
 struct PlotView {
     int plot = 1;
     std::string x;  // expressions, as in a view
     std::vector<std::string> y;
-    friend bool operator==(const PlotView&, const PlotView&) = default;
+    static constexpr auto said = Said("plot", "write: plot NUMBER X Y..., expressions with spaces in double quotes",
+                                      Change::alone, &PlotView::plot, &PlotView::x, &PlotView::y);
 };
 struct Zoom {
     int plot = 1;
     double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;  // in the units that are shown
-    friend bool operator==(const Zoom&, const Zoom&) = default;
+    static constexpr auto said = Said("zoom", "write: zoom NUMBER X_LOW X_HIGH Y_LOW Y_HIGH", Change::together,
+                                      &Zoom::plot, &Zoom::x_low, &Zoom::x_high, &Zoom::y_low, &Zoom::y_high);
+};
+struct Fit {
+    int plot = 1;
+    static constexpr auto said = Said("fit", "write: fit NUMBER", Change::alone, &Fit::plot);
 };
 struct Range {  // of one axis; the other stays as it is
     int plot = 1;
     bool is_x = true;
     double low = 0.0, high = 1.0;
-    friend bool operator==(const Range&, const Range&) = default;
-};
-struct Fit {
-    int plot = 1;
-    friend bool operator==(const Fit&, const Fit&) = default;
+    static constexpr auto said =
+        Said("range", "write: range NUMBER x LOW HIGH, or: range NUMBER y LOW HIGH", Change::alone, &Range::plot,
+             Field(&Range::is_x, x_or_y), &Range::low, &Range::high);
 };
 struct AxisScale {
     int plot = 1;
     bool is_x = true, logarithmic = false;
-    friend bool operator==(const AxisScale&, const AxisScale&) = default;
+    static constexpr auto said =
+        Said("log", "write: log NUMBER x on, or: log NUMBER y off", Change::alone, &AxisScale::plot,
+             Field(&AxisScale::is_x, x_or_y), Field(&AxisScale::logarithmic, on_off));
 };
 struct ShowCurve {
     int plot = 1, curve = 1;
     bool shown = true;
-    friend bool operator==(const ShowCurve&, const ShowCurve&) = default;
+    static constexpr auto said = Said("curve", "write: curve PLOT NUMBER on, or: curve PLOT NUMBER off", Change::alone,
+                                      &ShowCurve::plot, &ShowCurve::curve, Field(&ShowCurve::shown, on_off));
 };
 struct Link {
     bool on = true;  // all plots over time show the same time
-    friend bool operator==(const Link&, const Link&) = default;
+    static constexpr auto said = Said("link", "write: link on, or: link off", Change::view, Field(&Link::on, on_off));
+};
+
+struct Start {  // several values at once: the run in between might be none
+    std::vector<std::pair<std::string, double>> values;
+    static constexpr auto said =
+        Said("start", "write: start NAME VALUE NAME VALUE ...", Change::together, &Start::values);
+};
+struct LookAll {
+    static constexpr auto said = Said("look all", alone, Change::view);
+};
+struct Look {
+    double x = 0.0, y = 0.0, width = 1.0;  // of the world: the middle of the picture, and how much of it is seen
+    static constexpr auto said =
+        Said("look", "write: look X Y WIDTH, or: look all", Change::view, &Look::x, &Look::y, &Look::width);
+};
+constexpr double slowest = 1e-3, fastest = 10.0;
+struct Speed {
+    double value = 1.0;  // seconds of the run in one of the player's, slowest to fastest
+    static constexpr auto said = Said("speed", "write: speed NUMBER", Change::view, &Speed::value);
+};
+struct Loop {
+    bool on = true;  // at the end the player begins again
+    static constexpr auto said = Said("loop", "write: loop on, or: loop off", Change::view, Field(&Loop::on, on_off));
+};
+struct Step {
+    int events = 1;  // to the next event, or with -1 the one before
+    static constexpr auto said = Said("step", "write: step 1, or: step -1", Change::none, &Step::events);
 };
 
 struct Undo {
-    friend bool operator==(const Undo&, const Undo&) = default;
+    static constexpr auto said = Said("undo", alone, Change::view);
 };
 struct Redo {
-    friend bool operator==(const Redo&, const Redo&) = default;
+    static constexpr auto said = Said("redo", alone, Change::view);
 };
 struct Pin {
     bool on = true;  // the present run stays beside those that follow
-    friend bool operator==(const Pin&, const Pin&) = default;
+    static constexpr auto said =
+        Said("pin", alone, Change::view, Field(&Pin::on, {.yes = "pin", .no = "unpin", .is_name = true}));
 };
 struct Lens {
     double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens
-    friend bool operator==(const Lens&, const Lens&) = default;
+    static constexpr auto said = Said("lens", "write: lens NUMBER", Change::view, &Lens::from);
 };
+struct UseTheme {
+    bool dark = false;
+    static constexpr auto said =
+        Said("theme", "write: theme light, or: theme dark", Change::view,
+             Field(&UseTheme::dark, {.yes = "dark", .no = "light", .complaint = "there is no theme '{}'"}));
+};
+inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots"};
+struct Size {
+    std::string panel;   // the editor in place of the controls has a width of its own
+    double share = 0.0;  // of the window's width, for events of its height; 0: as it fits
+    static constexpr auto said =
+        Said("size", "write: size controls 0.3 (a share of the window), or: size plots auto", Change::view,
+             Field(&Size::panel, {.one_of = &sized_panels, .complaint = "there is no panel '{}'{}"}),
+             Field(&Size::share, {.fits = [](double x) { return x > 0.0 && x < 1.0; },
+                                  .zero = "auto",
+                                  .complaint = "a panel cannot take {} of the window"}));
+};
+
+struct Reset {  // every value and option as the file has it
+    static constexpr auto said = Said("reset", alone, Change::alone);
+};
+struct Done {  // with this change: what follows is another one, be it of the same value
+    static constexpr auto said = Said("done", alone, Change::none);
+};
+
 struct Export {
-    std::string file;        // what goes there, its ending tells
+    std::string file;  // what goes there, its ending tells: .svg, .png the plots; .json, .csv the run; .journal all
     bool overwrite = false;  // whatever file may be there
-    friend bool operator==(const Export&, const Export&) = default;
+    static constexpr auto said = Said("export", "write: export FILE, or: export FILE overwrite", Change::view,
+                                      &Export::file, Field(&Export::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> copied_things{"explorer", "figure", "run"};
 struct Copy {
     std::string what;  // one of copied_things: the command line that makes it goes to the clipboard
-    friend bool operator==(const Copy&, const Copy&) = default;
+    static constexpr auto said =
+        Said("copy", "write: copy explorer, or: copy figure, or: copy run", Change::view,
+             Field(&Copy::what, {.one_of = &copied_things, .complaint = "'{}' has no command{}"}));
 };
 
 // What makes a journal a tour.
-struct Say {
-    std::string text;  // stands above the mechanism until something else does; empty: nothing
-    friend bool operator==(const Say&, const Say&) = default;
-};
 struct Wait {
     double seconds = 0.0;  // for somebody to look; a run that plays goes on meanwhile
-    friend bool operator==(const Wait&, const Wait&) = default;
+    static constexpr auto said = Said("wait", "write: wait SECONDS", Change::none,
+                                      Field(&Wait::seconds, {.fits = [](double x) { return x >= 0.0; },
+                                                             .complaint = "nobody can wait for the past"}));
+};
+struct Say {
+    std::string text;  // stands above the mechanism until something else does; empty: nothing
+    static constexpr auto said =
+        Said("say", "write: say \"a sentence\", or: say \"\"", Change::view, Field(&Say::text, in_quotes));
 };
 struct Replay {
     std::string journal;  // a path, or the name of one of the assets
-    friend bool operator==(const Replay&, const Replay&) = default;
+    static constexpr auto said = Said("replay", "write: replay JOURNAL; a path with spaces stands in double quotes",
+                                      Change::view, &Replay::journal);
 };
 
 }  // namespace command
 
+// In the order in which they are listed.
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::Grid,
-                 command::PlotView, command::Zoom, command::Fit, command::AxisScale, command::ShowCurve, command::Link,
-                 command::Start, command::Look, command::LookAll, command::Speed, command::Loop, command::Step,
-                 command::Undo, command::Redo, command::Pin, command::Lens, command::Size, command::UseTheme,
-                 command::Reset, command::Done, command::Export, command::Copy, command::Range, command::Say,
-                 command::Wait, command::Replay>;
+                 command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale, command::ShowCurve,
+                 command::Link, command::Start, command::LookAll, command::Look, command::Speed, command::Loop,
+                 command::Step, command::Undo, command::Redo, command::Pin, command::Lens, command::UseTheme,
+                 command::Size, command::Reset, command::Done, command::Export, command::Copy, command::Wait,
+                 command::Say, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {
@@ -258,5 +280,9 @@ std::string to_text(const Command& command);
 
 // Reads one line. Throws InputError that names file, line and column. A line must hold a command: see parse_journal.
 Command parse_command(std::string_view text, const std::string& file = "<command>", int line = 1);
+
+command::Change change_of(const Command& command);
+// Whether a command goes on with the change that the last one made: the same slider, the same plot.
+bool goes_on(const Command& last, const Command& next);
 
 }  // namespace achilles

@@ -9,11 +9,6 @@
 
 namespace achilles {
 
-// Commands that undo takes back: of the system, its run, and what is plotted, not of how the window looks.
-bool is_change(const Command& command);
-// Whether a command goes on with the change that the last one made: the same slider, the same plot.
-bool goes_on(const Command& last, const Command& next);
-
 template <class Moment>
 class History {
  public:
@@ -23,7 +18,7 @@ class History {
     // A command has been done; before it was this moment.
     void remember(const Command& command, const Moment& before) {
         constexpr std::size_t most = 200;
-        if (!is_change(command)) {
+        if (change_of(command) < command::Change::alone) {
             // Something else was done in between: the next change is one of its own. (Seeking is part of dragging.)
             if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
             return;

@@ -49,10 +49,7 @@ void Session::apply(const Command& command) {
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on, or letting go, must not wipe away what the last change of the run complained about.
-        const bool changes_nothing =
-            std::holds_alternative<command::Seek>(command) || std::holds_alternative<command::Step>(command) ||
-            std::holds_alternative<command::Play>(command) || std::holds_alternative<command::Pause>(command) ||
-            std::holds_alternative<command::Wait>(command) || std::holds_alternative<command::Done>(command);
+        const bool changes_nothing = change_of(command) == command::Change::none;
         if (!changes_nothing) error_.clear();
         if (changes_nothing) notice_ = noticed;
         history_.remember(command, before);

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <sstream>
 
 #include "journal/journal.hpp"
 
@@ -130,6 +132,8 @@ TEST(Journal, names_the_place_of_a_mistake) {
                                 {"eps 1 2 3 4", 11, "write: eps 1e-6, or: eps POSITION VELOCITY TIME"},
                                 {"open \"half", 6, "quotes"},
                                 {"play now", 6, "too much"},
+                                {"look al", 8, "write: look X Y WIDTH, or: look all"},
+                                {"\"look all\"", 1, "there is no command"},
                                 {"\x01\xff", 1, "no command"}};
     for (const Mistake& mistake : mistakes) {
         try {
@@ -142,6 +146,27 @@ TEST(Journal, names_the_place_of_a_mistake) {
             EXPECT_NE(std::string(error.what()).find(mistake.says), std::string::npos) << error.what();
         }
     }
+}
+
+// Every name, and none twice: two for what a name switches on and off, one for look and look all.
+TEST(Command, is_listed_once) {
+    std::string list;
+    try {
+        parse_command("nonsense");
+    } catch (const InputError& error) {
+        list = error.hint;
+    }
+    const std::string start = "the commands are: ";
+    ASSERT_EQ(list.rfind(start, 0), 0u) << list;
+    std::istringstream names(list.substr(start.size()));
+    std::set<std::string> all;
+    for (std::string name; std::getline(names >> std::ws, name, ',');) EXPECT_TRUE(all.insert(name).second) << name;
+    for (const Command& command : one_of_each) {
+        const std::string text = to_text(command);
+        EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
+    }
+    EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
+    EXPECT_EQ(all.size(), 46u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.
