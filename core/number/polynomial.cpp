@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number/horner.hpp"
+
 namespace achilles {
 
 double Polynomial::operator()(double theta) const {
@@ -73,35 +75,12 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
     }
 }
 
-struct ValueAndSlope {
-    double value, slope;
-};
-
-// The even and the odd powers by themselves: p = a(s) + x b(s), p' = b + 2 x (a' + x b') at s = x^2. Half as many sums
-// wait for one another.
-ValueAndSlope value_and_slope(const Terms& p, double x) {
-    const double s = x * x;
-    double a = 0.0, a_slope = 0.0, b = 0.0, b_slope = 0.0;
-    int i = p.degree;
-    if (i % 2 == 0) {
-        a = p.c[i];
-        --i;
-    }
-    for (; i > 0; i -= 2) {
-        a_slope = a_slope * s + a;
-        b_slope = b_slope * s + b;
-        b = b * s + p.c[i];
-        a = a * s + p.c[i - 1];
-    }
-    return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
-}
-
 // The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
 // After so many rounds a small step is taken to be near the root.
 double newton(const Terms& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
     for (int round = 0; round < 100; ++round) {
-        const auto [value, slope] = value_and_slope(p, x);
+        const auto [value, slope] = value_and_slope(p.c, p.degree, x);
         if (value == 0.0) return x;
         (value > 0.0 ? low : high) = x;
         const double newtons = x - value / slope;
@@ -115,7 +94,8 @@ double newton(const Terms& p, double low, double high, double x, int rounds) {
 }
 
 double polish(const Terms& p, double low, double high) {
-    const double at_low = value_and_slope(p, low).value, at_high = value_and_slope(p, high).value;
+    const double at_low = value_and_slope(p.c, p.degree, low).value,
+                 at_high = value_and_slope(p.c, p.degree, high).value;
     if (!(at_low > 0.0)) return low;
     if (!(at_high < 0.0)) return high;
     return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
@@ -141,7 +121,7 @@ class Search {
     double entry(double low, double high) const {
         for (int i = 0; i < 52; ++i) {
             const double middle = 0.5 * (low + high);
-            (value_and_slope(p_, middle).value > remainder_ ? low : high) = middle;
+            (value_and_slope(p_.c, p_.degree, middle).value > remainder_ ? low : high) = middle;
         }
         return low;
     }

@@ -42,6 +42,7 @@ class Program {
     template <class Scalar>
     friend class Evaluator;
     friend class SeriesCompiler;
+    template <class Number>
     friend class SeriesEvaluator;
     friend class LaneAccess;
     Slots slots_;
@@ -83,6 +84,7 @@ class Evaluator {
     void run_by_loop() { execute(program_->fixed_runs_, program_->runs_.size()); }
 
  private:
+    template <class Number>
     friend class SeriesEvaluator;
     friend class LaneAccess;
     void execute(std::size_t first_run, std::size_t last_run);

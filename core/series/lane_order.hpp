@@ -1,4 +1,4 @@
-// The orders of all series of a program in eight runs at once: order.hpp's recurrences with a vector for every number.
+// The orders of all series of a program in eight runs at once: recurrence.hpp with a vector for every number.
 //
 // One run's inner sums fill a vector by themselves; eight runs' need no number to change its place, load each row once
 // for all sums with one factor, and have eight times as much to do while a rule waits for the one before.
@@ -28,7 +28,7 @@ struct LanePlan {
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);
 };
 
-// Orders as machine code, for AVX-512: the same bits as make_order() in series.inc.
+// Orders as machine code, for AVX-512: the same bits as recurrence.hpp.
 class LaneOrderCode {
  public:
     // Nothing where that is not to be had.

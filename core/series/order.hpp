@@ -45,11 +45,13 @@ struct SeriesPlan {
 
 // What is read and written. `now` holds order k: the series, then the inner sums, then a place for as many numbers.
 // Row j >= 1 of `rows` starts at j plan.row(): the left factors of all sums, the right ones.
-struct SeriesTables {
-    const SeriesFactors* factors = nullptr;  // of the rules
-    double* now = nullptr;
-    double* rows = nullptr;
+template <class Number>
+struct SeriesTablesOver {
+    const std::array<Number, 3>* factors = nullptr;  // of the rules
+    Number* now = nullptr;
+    Number* rows = nullptr;
 };
+using SeriesTables = SeriesTablesOver<double>;
 
 // A motion's coefficients, made order by order until they are small. Machine code knows the layout.
 struct SeriesMotion {
@@ -62,17 +64,15 @@ struct SeriesMotion {
     double magnitude[2] = {std::bit_cast<double>(~std::uint64_t{0} >> 1), 0.0};  // a mask: all but the sign
 };
 
-// Makes order k >= 1 of all series, where order k of the inputs and the inner sums of order k stand in `now`, and then
-// the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or of j x_j y_{k+1-j}/(k+1) where it is weighted. All but
-// the two terms with row k are added up before the rules, so that the processor can do both at once. Every lane adds
-// its terms in the same order, and no product is fused into a sum, so that this and the code below give the same bits.
+// Makes order k >= 1 of all series, and the inner sums of order k + 1 (recurrence.hpp).
 void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k);
 
-// Makes the orders from k >= 2 on, after order k - 1: q_k = v_{k-1}/k, v_k = v'_{k-1}/k, and what follows from them.
-// The last is `last`, or the first at which the compared coefficient times target^k is not above 1. Returns it.
+// Makes the orders from k >= 2 on, after order k - 1. The last is `last`, or the first at which the compared coefficient
+// times target^k is not above 1. Returns it.
 int make_orders(const SeriesPlan& plan, const SeriesTables& tables, SeriesMotion& motion, int k, int last);
 
-// Both as machine code for one plan, with vectors of this width (four or eight).
+// Both as machine code for one plan, with vectors of this width (four or eight). All but the two terms with row k are
+// added up before the rules, so that the processor can do both at once; the bits are the same.
 class OrderCode {
  public:
     // Nothing where that is not to be had.

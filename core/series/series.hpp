@@ -15,7 +15,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "program/program.hpp"
@@ -36,6 +35,7 @@ class SeriesProgram {
     bool is_partial() const { return partial_; }
 
  private:
+    template <class Number>
     friend class SeriesEvaluator;
     friend class SeriesCompiler;
     friend class LaneAccess;
@@ -89,36 +89,6 @@ class SeriesProgram {
     std::size_t hidden_ = 0;                 // the first of these
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
-};
-
-// A series program with its coefficients. One per thread.
-class SeriesEvaluator {
- public:
-    static constexpr int highest_order = OrderCode::highest_order;
-
-    SeriesEvaluator() = default;
-    SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters);
-
-    // Evaluates order 0 at these values of the moving inputs.
-    void begin(const double* inputs);
-    // Order 0 of an output, after begin().
-    double start(std::size_t index) const { return zero_.registers_[program_->outputs_[index]]; }
-
-    // Evaluates order k, 1 <= k <= highest_order, from that order of the moving inputs, after all lower ones.
-    void extend(int k, const double* inputs);
-    // Order k of an output, after extend(k) until the next.
-    double output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
-    // Of a motion, see make_orders(); after order 1.
-    int extend(SeriesMotion& motion, int k, int last);
-
- private:
-    const SeriesProgram* program_ = nullptr;
-    std::size_t inputs_ = 0;              // moving ones
-    Evaluator<double> zero_;              // order 0, with room for hidden registers
-    std::vector<double> coefficients_;    // of the program, by number
-    std::vector<SeriesFactors> factors_;  // of the rules
-    std::unique_ptr<double[]> tables_block_;
-    SeriesTables tables_;
 };
 
 }  // namespace achilles

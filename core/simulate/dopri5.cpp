@@ -237,16 +237,13 @@ double Dopri5::own_remainder(const Polynomial& p) const {
     return (held_.empty() ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
-// As Taylor's.
 double Dopri5::drifting(const Polynomial& p) const {
-    const double size = held_.empty() ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
-                                      : std::abs(p.c[0]) + std::abs(p.c[1]) / span_;
-    return gap_.state_error * (1.0 + std::min(size, Gap::steepest));
+    return gap_.drift(held_.empty() ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
+                                    : std::abs(p.c[0]) + std::abs(p.c[1]) / span_);
 }
 
 double Dopri5::earlier_error(const Polynomial& p) const {
-    if (!held_.empty()) return drifting(p);
-    return gap_.error + (gap_.rate_error + 0.5 * drifting(p) * span_) * span_;
+    return held_.empty() ? gap_.error_after(span_, drifting(p)) : drifting(p);
 }
 
 double Dopri5::remainder(const Polynomial& p) const { return own_remainder(p) + earlier_error(p); }

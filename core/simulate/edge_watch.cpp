@@ -9,7 +9,7 @@ namespace {
 
 constexpr int counted = 4;  // last terms: symmetry may hide three in a row
 constexpr int lowest = 8;
-constexpr int highest = SeriesEvaluator::highest_order;
+constexpr int highest = SeriesEvaluator<double>::highest_order;
 static_assert(highest < Polynomial::capacity);
 
 // The sum of the last terms' sizes.

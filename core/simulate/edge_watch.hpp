@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "number/polynomial.hpp"
-#include "series/series.hpp"
+#include "series/evaluator.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {
@@ -25,7 +25,7 @@ class EdgeWatch {
 
     const std::vector<Edge>& edges_;
     std::size_t block_;       // q and v
-    SeriesEvaluator series_;  // of the distances
+    SeriesEvaluator<double> series_;  // of the distances
     std::vector<Polynomial> distances_;
     std::vector<double> signs_;   // of a distance's terms, after the first
     std::vector<double> motion_;  // of the last step, as the stepper tells it, and an order of zeros

@@ -12,22 +12,12 @@
 #include "number/polynomial.hpp"
 #include "run/contact_set.hpp"
 #include "run/trajectory.hpp"
+#include "series/gap.hpp"
 
 namespace achilles {
 
 // Why a step could not be made.
 enum class StepFailure { none, left_the_domain, not_a_number, step_too_small };
-
-// The gap and its rate.
-struct Gap {
-    double h = 0.0, hdot = 0.0;
-    double error = 0.0, rate_error = 0.0;  // what earlier steps of the flight may have made them wrong by
-    // What the steps before the flight may have made the state wrong by, relative to its size. The acceleration of the
-    // gap is then wrong by about as much as it and its rate are large; what is beyond `steepest` is a narrow bend,
-    // passed in an instant.
-    double state_error = 0.0;
-    static constexpr double steepest = 1e3;
-};
 
 class Stepper {
  public:

@@ -25,6 +25,7 @@
 #include "core/systems.hpp"
 #include "output/output.hpp"
 #include "program/program_code.hpp"
+#include "series/evaluator.hpp"
 #include "series/lane_access.hpp"
 #include "series/lane_order.hpp"
 #include "series/lane_stepper.hpp"
@@ -276,8 +277,8 @@ TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
 // All orders of a motion from this state, the second order by itself, and order 0.
 std::vector<double> orders_of(const Model& model, const SeriesProgram& program, const std::vector<double>& state) {
     const std::size_t n = state.size() / 2, width = 2 * n + 1;
-    SeriesEvaluator series(program, model.default_run().parameters);
-    std::vector<double> rows(width * (SeriesEvaluator::highest_order + 1));
+    SeriesEvaluator<double> series(program, model.default_run().parameters);
+    std::vector<double> rows(width * (SeriesEvaluator<double>::highest_order + 1));
     std::copy(state.begin(), state.end(), rows.begin());
     const auto begin = [&] {
         series.begin(rows.data());
@@ -295,7 +296,7 @@ std::vector<double> orders_of(const Model& model, const SeriesProgram& program, 
     motion.largest = motion.row + n;
     motion.power = 1e4;
     motion.target = 0.9;
-    const int last = series.extend(motion, 2, SeriesEvaluator::highest_order);
+    const int last = series.extend(motion, 2, SeriesEvaluator<double>::highest_order);
     rows.push_back(last);
     rows.push_back(motion.power);
     begin();

@@ -1,5 +1,5 @@
 // Taylor coefficients of every operation, against values of the function itself.
-#include "series/series.hpp"
+#include "series/evaluator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ void expect_series(const std::string& text) {
     const Expression expression = parse(text, scope, graph);
     const Program program(std::span(&expression, 1), Slots{3, 2, 3});
     const SeriesProgram series(program, 1);
-    SeriesEvaluator terms(series, std::span(&p, 1));
+    SeriesEvaluator<double> terms(series, std::span(&p, 1));
     Evaluator<double> direct(program);
     direct.input(2) = p;
     direct.fix();
@@ -194,7 +194,7 @@ TEST(Series, OutputsAreNeverInputs) {
     scope.allowed = {{"x", graph.symbol(0)}, {"v", graph.symbol(1)}};
     const std::vector<Expression> outputs{parse("x", scope, graph), parse("v", scope, graph)};
     const SeriesProgram series(Program(outputs, Slots{2, 2, 2}), 2);
-    SeriesEvaluator terms(series, {});
+    SeriesEvaluator<double> terms(series, {});
     std::vector<double> states(3 * 11);
     states[0] = states[1] = 1.0;
     terms.begin(states.data());
@@ -223,7 +223,7 @@ TEST(Series, OutsideTheDomainIsNotANumber) {
     for (const char* text : {"log(x)", "sqrt(x)", "x^(1/3)"}) {
         const Expression expression = parse(text, scope, graph);
         const SeriesProgram series(Program(std::span(&expression, 1), Slots{1, 1, 1}), 1);
-        SeriesEvaluator terms(series, {});
+        SeriesEvaluator<double> terms(series, {});
         for (const double x : {-1.0, 0.0}) {
             terms.begin(&x);
             const double rate = 1.0;

@@ -1,0 +1,7 @@
+#include "series/evaluator.hpp"
+
+namespace achilles {
+
+template class SeriesEvaluator<double>;
+
+}  // namespace achilles

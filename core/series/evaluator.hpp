@@ -1,0 +1,120 @@
+// A series program with its coefficients, over double or doubles side by side. One per thread.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "series/program_over.hpp"
+#include "series/recurrence.hpp"
+#include "series/series.hpp"
+#include "series/start.hpp"
+
+namespace achilles {
+
+template <class Number>
+class SeriesEvaluator {
+    static constexpr bool is_one = std::is_same_v<Number, double>;
+    // What makes orders faster, to the same bits; may be none.
+    using Code = std::conditional_t<is_one, OrderCode, LaneOrderCode>;
+
+ public:
+    static constexpr int highest_order = OrderCode::highest_order;
+
+    SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters) requires is_one
+        : SeriesEvaluator(&program, program.code_) {
+        fix(parameters);
+    }
+    // To be fixed before it is used.
+    SeriesEvaluator(const SeriesProgram& program, bool machine_code) requires(!is_one)
+        : SeriesEvaluator(&program, nullptr, machine_code) {
+        if constexpr (!is_one)  // clang 14 instantiates this for one too
+            if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan);
+    }
+
+    // Evaluates what depends on the parameters alone.
+    template <class Parameter>
+    void fix(std::span<const Parameter> parameters) {
+        zero_.fix(parameters);
+        program_->fix(zero_.numbers().data(), coefficients_.data(), factors_.data());
+    }
+
+    // Evaluates order 0 at these values of the moving inputs.
+    void begin(const Number* inputs) {
+        std::copy_n(inputs, inputs_, zero_.numbers().data());
+        zero_.run();
+        std::fill_n(tables_.now + program_->plan_.series, sums_.count(), Number(0.0));  // sums of order 1
+        program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());
+    }
+    // Order 0 of an output, after begin().
+    const Number& start(std::size_t index) { return zero_.numbers()[program_->outputs_[index]]; }
+
+    // Evaluates order k, 1 <= k <= highest_order, from that order of the moving inputs, after all lower ones.
+    void extend(int k, const Number* inputs) {
+        std::copy_n(inputs, inputs_, tables_.now + 1);
+        if constexpr (is_one)
+            if (k == 1 && code_) return code_->make_first(tables_);
+        make_order(program_->plan_, sums_, tables_, static_cast<std::size_t>(k));
+    }
+    // Order k of an output, after extend(k) until the next.
+    const Number& output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
+
+    // Of a motion, see make_orders(); after order 1.
+    int extend(SeriesMotion& motion, int k, int last) requires is_one {
+        if (code_) return code_->make_orders(tables_, motion, k, last);
+        return make_orders(program_->plan_, tables_, motion, k, last);
+    }
+    // Orders 1 .. last of a motion (last >= 4), into rows of q, v and what is watched. Row 1 comes first, where q and v
+    // are given; before it stands row 0.
+    void extend(Number* row, int last) requires(!is_one) {
+        const SeriesPlan& plan = program_->plan_;
+        if constexpr (!is_one)
+            if (code_) {
+                std::copy_n(row, inputs_, tables_.now + 1);
+                const auto doubles = [](auto* numbers) { return reinterpret_cast<double*>(numbers); };
+                return code_->make_orders(doubles(factors_.data()), doubles(tables_.now), doubles(row - plan.states()),
+                                          last);
+            }
+        for (int k = 1; k <= last; ++k, row += plan.states())
+            make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
+    }
+
+ private:
+    static constexpr std::size_t line = SeriesPlan::aligned * sizeof(double);
+
+    SeriesEvaluator(const SeriesProgram* program, std::shared_ptr<const Code> code, bool machine_code = true)
+        : program_(program),
+          inputs_(program->program_.slots_.parameters_begin),
+          zero_(program->program_, machine_code, program->registers_),
+          coefficients_(program->coefficients_.size()),
+          factors_(program->plan_.rules.size()),
+          sums_(program->plan_, program->inner_sums()),
+          code_(std::move(code)) {
+        const std::size_t numbers = program->plan_.numbers();
+        block_ =
+            std::make_unique_for_overwrite<Number[]>(numbers + sums_.row() * (highest_order + 1) + SeriesPlan::aligned);
+        // From the start of a cache line on.
+        const auto past = reinterpret_cast<std::uintptr_t>(block_.get()) % line;
+        Number* const now = block_.get() + (line - past) % line / sizeof(Number);
+        tables_ = {factors_.data(), now, now + numbers};
+        std::fill_n(now, numbers, Number(0.0));
+    }
+
+    const SeriesProgram* program_;
+    std::size_t inputs_;                          // moving ones
+    ProgramOver<Number> zero_;                    // order 0, with room for hidden registers
+    std::vector<Number> coefficients_;            // of the program, by number
+    std::vector<std::array<Number, 3>> factors_;  // of the rules
+    InnerSums<Number> sums_;
+    std::unique_ptr<Number[]> block_;
+    SeriesTablesOver<Number> tables_;
+    std::shared_ptr<const Code> code_;
+};
+
+extern template class SeriesEvaluator<double>;
+
+}  // namespace achilles

@@ -1,0 +1,41 @@
+// What is below the pragma is compiled for AVX-512; what is included above it is not, even where a template of it is
+// instantiated below: it may be a file's for any processor. Functions of it that take or return lanes are named.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "number/choice.hpp"
+#include "number/polynomial.hpp"
+#include "number/sine.hpp"
+#include "program/machine.hpp"
+#include "program/program.hpp"
+#include "series/lane_access.hpp"
+#include "series/lane_kinds.hpp"
+#include "series/lane_order.hpp"
+#include "series/lane_stepper.hpp"
+
+#ifdef ACHILLES_HAS_AVX512
+#pragma GCC target("avx512f")
+#include "series/lane_kind.hpp"
+
+namespace achilles {
+
+using Wide = Lanes<64>;
+template Wide scalar_pi<Wide>();
+template Wide integer_power<Wide>(const Wide&, int);
+template void Evaluator<Wide>::execute(std::size_t, std::size_t);
+template void SeriesProgram::fix(const Wide*, Wide*, std::array<Wide, 3>*) const;
+template void SeriesProgram::start(Wide*, const Wide*, std::array<Wide, 3>*) const;
+
+template struct LaneKind<64>;
+
+}  // namespace achilles
+#endif

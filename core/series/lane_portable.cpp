@@ -1,0 +1,7 @@
+#include "series/lane_kind.hpp"
+
+namespace achilles {
+
+template struct LaneKind<16>;
+
+}  // namespace achilles

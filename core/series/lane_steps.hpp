@@ -1,0 +1,271 @@
+// The stepper of lane_stepper.hpp by one kind of vectors: TaylorStep for eight runs, and what makes a step plain.
+//
+// Included by the file of each kind alone (lane_kinds.hpp).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "number/lanes.hpp"
+#include "number/polynomial.hpp"
+#include "series/lane_stepper.hpp"
+#include "series/order_policy.hpp"
+
+namespace achilles {
+
+// As in Execution: steps as short as the resolution of time, and none left.
+inline constexpr double stall = 0x1p-51, end_of_time = 1e-15;
+
+template <class Number>
+class LaneStepperOver final : public LaneStepper {
+    using Mask = Condition<Number>;
+
+ public:
+    LaneStepperOver(const LanePrograms& programs, double tolerance, bool machine_code)
+        : dof_(programs.coordinates),
+          // Most flights end long before their series.
+          flight_{{programs.flight, machine_code},
+                  {static_cast<int>(0.7 * best_order(programs.flight, tolerance, costs_of_eight_runs)), false}},
+          contact_{{programs.contact, machine_code},
+                   {best_order(programs.contact, tolerance, costs_of_eight_runs), true}},
+          surface_(programs.surface, machine_code),
+          step_(dof_, tolerance),
+          before_(2 * dof_) {}
+
+    void fix(const std::vector<Eight>& parameters) override {
+        const std::span<const Eight> all(parameters);
+        flight_.series.fix(all);
+        contact_.series.fix(all);
+        surface_.fix(all);
+    }
+
+    void stay(LaneStep& step, long most) override {
+        step.least_gap = Number(std::numeric_limits<double>::infinity());
+        Mask plain, go_on;
+        step.steps = 0;
+        do {
+            for (std::size_t i = 0; i < 2 * dof_; ++i) before_[i] = step.q_and_v[i];
+            Number span;
+            plain = stay_once(step, span);
+            for (std::size_t i = 0; i < 2 * dof_; ++i) step.q_and_v[i] = select(plain, step.q_and_v[i], before_[i]);
+            step.least_gap = select(plain, min(Number(step.end_h), step.least_gap), step.least_gap);
+            go_on = plain & (span > stall * abs(Number(step.t)));
+            step.t = select(plain, min(Number(step.t) + span, step.until), step.t);
+            step.duration = select(plain, span, step.duration);
+            go_on &= Number(step.until) - step.t > end_of_time * abs(Number(step.t));
+        } while (++step.steps < most && !any(~go_on));
+        say(step, plain, Mask{});
+    }
+
+    // Flight, where partial sums tell that the gap stays open, or only falls (first_descent()).
+    void fly(LaneStep& step) override {
+        const GapOver<Number> gap{step.h, step.hdot, step.error, step.rate_error, step.state_error};
+        Mask plain = expand(flight_, step, gap, true);
+        if (!any(plain)) return say(step, plain, plain);
+        const Number target = step_.aim(Number(step.until) - step.t);
+        const Number span = flight_.order.natural_step(step_, target);
+        const Number least = shortest(step);
+        plain &= span > least;
+        step_.event_terms(span, terms_.data());
+        const Mask from_zero = Number(step.known) > 0.5;
+        terms_[0] = select(from_zero, 0.0, terms_[0]);
+        const Number error = gap_at_end(step, span);
+        divide_root_out(from_zero);
+        auto [none, falls] = descent(error);
+        Number theta = any(falls & plain) ? root(falls) : Number(1.0);
+        if (any(plain & ~(none | falls))) look_closer(plain, error, none, falls, theta);
+        none &= plain;
+        falls &= plain;
+        const Number duration = select(falls, theta * span, span);
+        falls &= duration > least;
+        step_.evaluate(duration, step.q_and_v.data());
+        step.duration = duration;
+        land(step, none, falls);
+        step.t = select(none | falls, min(Number(step.t) + duration, step.until), step.t);
+        say(step, none, falls);
+    }
+
+ private:
+    // What one motion is expanded by.
+    struct Expansion {
+        SeriesEvaluator<Number> series;
+        FixedOrder<Number> order;
+    };
+
+    // Contact, where the force keeps its sign by more than its remainder: true there.
+    Mask stay_once(LaneStep& step, Number& span) {
+        const GapOver<Number> gap{0.0, 0.0, 0.0, 0.0, step.state_error};
+        Mask plain = expand(contact_, step, gap, false);
+        span = 0.0;
+        if (!any(plain)) return plain;
+        span = contact_.order.natural_step(step_, Number(step.until) - step.t);
+        step_.event_terms(span, terms_.data());
+        const auto term = [&](int k) -> const Number& { return terms_[static_cast<std::size_t>(k)]; };
+        plain &= step_.stays_negative(span, term) & (span > shortest(step));
+        step_.evaluate(span, step.q_and_v.data());
+        plain &= project(step);
+        for (std::size_t i = 0; i < dof_; ++i)
+            step.q_and_v[dof_ + i] = Number(step.q_and_v[dof_ + i]) - Number(step.end_hdot) * step.impulse_direction[i];
+        return plain;
+    }
+
+    // Flow::least()
+    Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
+
+    // The series at the state where the step starts. True where they are numbers.
+    Mask expand(Expansion& motion, const LaneStep& step, const GapOver<Number>& gap, bool in_flight) {
+        for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
+        const auto start = step_.expand(motion.series, motion.order, gap, in_flight, Number(step.until) - step.t);
+        return start.numbers & start.regular;
+    }
+
+    // ---- what is watched ----
+
+    std::size_t order() const { return static_cast<std::size_t>(step_.order()); }
+
+    // The gap at the end of the step by its series, and its errors there. Returns the remainder.
+    Number gap_at_end(LaneStep& step, const Number& span) {
+        Number value = 0.0, slope = 0.0, size = 0.0;
+        for (std::size_t k = 0; k <= order(); ++k) {
+            value += terms_[k];
+            slope += static_cast<double>(k) * terms_[k];
+            size += abs(terms_[k]);
+        }
+        const TermSizes<Number> sizes{size, abs(terms_[order()]) + abs(terms_[order() - 1])};
+        const auto doubt = step_.doubt(span, sizes);
+        GapOver<Number> end{value, slope / span, 0.0, 0.0, 0.0};
+        step_.add_error(span, sizes, doubt, end);
+        step.h = end.h;
+        step.hdot = end.hdot;
+        step.error = end.error;
+        step.rate_error = end.rate_error;
+        return doubt.remainder();
+    }
+
+    void divide_root_out(const Mask& from_zero) {
+        terms_[order() + 1] = 0.0;
+        for (std::size_t k = 0; k <= order(); ++k) terms_[k] = select(from_zero, terms_[k + 1], terms_[k]);
+    }
+
+    struct Descents {
+        Mask none, falls;
+    };
+    Descents descent(const Number& remainder) {
+        Number value = terms_[0] + terms_[1], least = min(value, terms_[0]), slope = terms_[1];
+        least_slope_ = largest_slope_ = slope;
+        for (std::size_t k = 2; k <= order(); ++k) {
+            value += terms_[k];
+            least = min(value, least);
+            slope += static_cast<double>(k) * terms_[k];
+            least_slope_ = min(slope, least_slope_);
+            largest_slope_ = max(slope, largest_slope_);
+        }
+        const Mask falls = largest_slope_ < 0.0;
+        return {(least > remainder) | (falls & (value > remainder)),
+                falls & (terms_[0] > remainder) & (value < -remainder)};
+    }
+
+    // Newton's method from the parabola's root, kept inside a shrinking bracket. Lanes that do not come to an end are
+    // taken out of `searched`.
+    Number root(Mask& searched) const {
+        const Number discriminant = max(terms_[1] * terms_[1] - 4.0 * terms_[0] * terms_[2], 0.0);
+        const Mask steady = least_slope_ > 3.0 * largest_slope_;
+        Number x = min(2.0 * terms_[0] / (sqrt(discriminant) - terms_[1]), 1.0), low = 0.0, high = 1.0;
+        Mask searching = searched;
+        for (int round = 0; round < 20 && any(searching); ++round) {
+            const auto [value, slope] = value_and_slope(terms_.data(), step_.order(), x);
+            low = select(value > 0.0, x, low);
+            high = select(value > 0.0, high, x);
+            const Number newtons = x - value / slope;
+            const Mask met = value == 0.0, inside = (newtons > low) & (newtons < high);
+            const Number next = select(inside, newtons, 0.5 * (low + high));
+            const Mask quick = round < 2 ? inside & steady : inside;
+            const Mask close = abs(next - x) <= select(quick, Number(0x1p-30), unit_roundoff) * x;
+            x = select(searching & ~met, next, x);
+            searching &= ~(close | met);
+        }
+        searched &= ~searching;
+        return x;
+    }
+
+    // The same for lanes of which the sums do not tell, one by one.
+    void look_closer(const Mask& plain, const Number& remainder, Mask& none, Mask& falls, Number& theta) const {
+        for (std::size_t i = 0; i < Eight::count; ++i) {
+            if (!plain[i] || none[i] || falls[i]) continue;
+            Polynomial p;
+            p.degree = step_.order();
+            for (std::size_t k = 0; k <= order(); ++k) p.c[k] = terms_[k][i];
+            const auto found = first_descent(p, 0, remainder[i]);
+            if (found.kind == Descent::Kind::none) none.set(i);
+            if (found.kind != Descent::Kind::root || found.theta == 0.0) continue;
+            falls.set(i);
+            theta.set(i, found.theta);
+        }
+    }
+
+    // ---- the surface ----
+
+    void look(LaneStep& step) {
+        for (std::size_t i = 0; i < 2 * dof_; ++i) surface_.input(i) = step.q_and_v[i];
+        surface_.run();
+        step.end_h = surface_.output(0);
+        step.end_hdot = surface_.output(1);
+        step.end_W = surface_.output(2 + 2 * dof_);
+        Number sum = 0.0;
+        for (std::size_t i = 0; i < dof_; ++i) {
+            step.impulse_direction[i] = surface_.output(2 + i);
+            step.g[i] = surface_.output(2 + dof_ + i);
+            sum += abs(surface_.output(2 + dof_ + i) * step.q_and_v[i]);
+        }
+        step.rounding = unit_roundoff * sum;
+    }
+
+    // The first two rounds of ContactKinematics::project(), which are enough where all is well: true there.
+    Mask project(LaneStep& step) {
+        look(step);
+        const Mask regular = Number(step.end_W) > 0.0;
+        const Mask far = ~(abs(Number(step.end_h)) <= 0.5 * Number(step.rounding));
+        if (!any(far)) return regular;
+        move_along_normal(step, far);
+        look(step);
+        return regular & (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
+    }
+
+    void move_along_normal(LaneStep& step, const Mask& which) const {
+        const Number h = step.end_h;
+        for (std::size_t i = 0; i < dof_; ++i)
+            step.q_and_v[i] = select(which, Number(step.q_and_v[i]) - h * step.impulse_direction[i], step.q_and_v[i]);
+    }
+
+    // Those that fall onto the surface; the others stay where they are.
+    void land(LaneStep& step, Mask& none, Mask& falls) {
+        look(step);
+        none &= (Number(step.end_W) > 0.0) & ~(step.end_h < -4.0 * Number(step.rounding));
+        falls &= Number(step.end_W) > 0.0;
+        const Mask far = falls & (abs(Number(step.end_h)) > 0.5 * Number(step.rounding));
+        if (!any(far)) return;
+        move_along_normal(step, far);
+        look(step);
+        falls &= (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
+    }
+
+    static void say(LaneStep& step, const Mask& none, const Mask& falls) {
+        for (std::size_t i = 0; i < Eight::count; ++i)
+            step.end[i] = falls[i]  ? LaneStep::End::impact
+                          : none[i] ? LaneStep::End::no_event
+                                    : LaneStep::End::not_plain;
+    }
+
+    std::size_t dof_;
+    Expansion flight_, contact_;
+    ProgramOver<Number> surface_;
+    TaylorStep<Number> step_;
+    std::vector<Number> before_;                                       // the state before a step
+    std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of what is watched
+    Number least_slope_, largest_slope_;                               // of it along the step
+};
+
+}  // namespace achilles

@@ -1,0 +1,134 @@
+// One order of all series of a program, over any number: what all machine code for it must give, to the last bit.
+//
+// Order k >= 1 of all series is made where order k of the inputs and the inner sums of order k stand in `now`, and then
+// the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or of j x_j y_{k+1-j}/(k+1) where it is weighted. No product
+// is fused into a sum.
+#pragma once
+
+#include "number/pack.hpp"
+#include "series/lane_order.hpp"
+#include "series/order.hpp"
+
+namespace achilles {
+
+// How a number's inner sums are kept and added up. Row j >= 1 of what is kept has row() places; place i holds order j
+// of a series, times j if it is weighted. Sum i multiplies two places. add_up() adds up product(j) = x_j y_{k+1-j} for
+// 0 < j <= k: the terms with row k, which must be waited for, come last.
+//
+// Of runs side by side: a number fills a vector by itself, so what several sums multiply is kept once. The terms with
+// row k - 1 come late too.
+template <class Number>
+struct InnerSums {
+    LanePlan plan;
+
+    // Of the plan's lanes, the first `inner_sums` are of use.
+    InnerSums(const SeriesPlan& series, std::size_t inner_sums) : plan(series, inner_sums) {}
+    std::size_t count() const { return plan.sums.size(); }
+    std::size_t row() const { return plan.kept.size(); }
+    LanePlan::Kept kept(std::size_t i) const { return plan.kept[i]; }
+    std::size_t left(std::size_t i) const { return plan.sums[i].left; }
+    std::size_t right(std::size_t i) const { return plan.sums[i].right; }
+
+    template <class Value, class Product>
+    [[gnu::always_inline]] static Value add_up(std::size_t k, const Product& product) {
+        Value sum = 0.0;
+        for (std::size_t j = 3; j + 1 < k; ++j) sum += product(j);
+        if (k >= 3) sum += product(2);
+        if (k >= 4) sum += product(k - 1);
+        if (k >= 2) sum += product(k);
+        sum += product(1);
+        return sum;
+    }
+};
+
+// Of one run: each sum has its own factors, side by side with those of the others, so that some sums are one vector.
+// The even and the odd terms by themselves.
+template <>
+struct InnerSums<double> {
+    const SeriesPlan& plan;
+
+    explicit InnerSums(const SeriesPlan& series, std::size_t = 0) : plan(series) {}
+    std::size_t count() const { return plan.lanes; }
+    std::size_t row() const { return plan.row(); }
+    LanePlan::Kept kept(std::size_t i) const {
+        if (i < plan.lanes) return {plan.left[i], i < plan.weighted};
+        return {plan.right[i - plan.lanes], false};
+    }
+    std::size_t left(std::size_t i) const { return i; }
+    std::size_t right(std::size_t i) const { return plan.lanes + i; }
+
+    template <class Value, class Product>
+    [[gnu::always_inline]] static Value add_up(std::size_t k, const Product& product) {
+        if (k == 1) return product(1);
+        Value even{}, odd{};
+        std::size_t j = 2;
+        for (; j + 1 < k; j += 2) {
+            even += product(j);
+            odd += product(j + 1);
+        }
+        if (j < k) even += product(j);
+        return (even + odd) + (product(1) + product(k));
+    }
+};
+
+// (f[2] w + f[1] y) + f[0] x, of the operands that there are (see SeriesRule).
+template <class Number>
+[[gnu::always_inline]] inline Number value_of(const SeriesRule& rule, const std::array<Number, 3>& factors,
+                                              const Number* now) {
+    const auto term = [&](std::size_t i, std::uint32_t operand) -> Number {
+        if (rule.known[i] == 0) return factors[i] * now[operand];
+        return rule.known[i] > 0 ? now[operand] : -now[operand];
+    };
+    Number value = rule.w != 0 ? term(2, rule.w) : Number(0.0);
+    if (rule.y != 0) value = rule.w != 0 ? value + term(1, rule.y) : term(1, rule.y);
+    if (rule.x != 0) value = rule.w != 0 || rule.y != 0 ? value + term(0, rule.x) : term(0, rule.x);
+    return value;
+}
+
+template <class Number>
+void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const SeriesTablesOver<Number>& tables,
+                std::size_t k) {
+    using Some = Pack<Number, 4>;
+    Number* const now = tables.now;
+    for (std::size_t i = 0; i < plan.rules.size(); ++i)
+        now[plan.rules[i].result] = value_of(plan.rules[i], tables.factors[i], now);
+    const std::size_t width = sums.row();
+    for (std::size_t i = 0; i < width; ++i) {
+        const auto [series, weighted] = sums.kept(i);
+        Number& place = tables.rows[width * k + i];
+        place = now[series];
+        if (weighted) place = place * static_cast<double>(k);
+    }
+    Number* const totals = now + plan.series;
+    for (std::size_t i = 0; i < sums.count(); i += Some::count) {
+        const Number* const x = tables.rows + sums.left(i);
+        const Number* const y = tables.rows + sums.right(i);
+        const auto product = [&](std::size_t j) ->
+            typename Some::Value { return Some::load(x + j * width) * Some::load(y + (k + 1 - j) * width); };
+        Some::store(sums.template add_up<typename Some::Value>(k, product), totals + i);
+    }
+    const double inverse = 1.0 / static_cast<double>(k + 1);
+    for (std::size_t i = 0; i < plan.weighted; ++i) totals[i] = totals[i] * inverse;
+}
+
+// Order k >= 1 of a motion, into `row`, of q, v and what is watched, whose order k - 1 stands before it:
+// q_k = v_{k-1}/k, v_k = v'_{k-1}/k. Order 1 of q and v is given, in the row.
+template <class Number>
+void make_motion_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const SeriesTablesOver<Number>& tables,
+                       Number* row, std::size_t k) {
+    const std::size_t n = plan.coordinates();
+    Number* const now = tables.now;
+    if (k > 1) {
+        const Number* const below = row - plan.states();
+        const Number inverse = 1.0 / static_cast<double>(k);
+        for (std::size_t i = 0; i < n; ++i) {
+            row[i] = inverse * below[n + i];
+            row[n + i] = inverse * now[plan.outputs[i]];
+        }
+    }
+    for (std::size_t i = 0; i < 2 * n; ++i) now[1 + i] = row[i];
+    make_order(plan, sums, tables, k);
+    row[2 * n] = now[plan.outputs[n]];
+}
+
+}  // namespace achilles
