@@ -1,10 +1,10 @@
-// A completed execution as an automaton (Defs. 4 and 5 of the paper): it says which step of smooth motion it needs next,
-// is told what came of it, and does what lies between: impacts, completions, releases, the end.
+// A completed execution as an automaton (Defs. 4 and 5 of the paper): it says which step of smooth motion it needs
+// next, is told what came of it, and does what lies between: impacts, completions, releases, the end.
 //
 //     while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
 //
-// It flies to an impact, and bounces or, where that is certified, is on its way to the Zeno point, in contact; from there
-// it stays in contact until the contact force vanishes, and flies.
+// It flies to an impact, and bounces or, where that is certified, is on its way to the Zeno point, in contact; from
+// there it stays in contact until the contact force vanishes, and flies.
 #pragma once
 
 #include <chrono>
@@ -24,8 +24,8 @@ std::string where(double t, const State& state);
 
 class Execution {
  public:
-    // What follows where a step cannot tell whether an event comes: the same stretch of motion from its beginning, once,
-    // as exactly as double precision allows; or the end, undecided.
+    // What follows where a step cannot tell whether an event comes: the same stretch of motion from its beginning,
+    // once, as exactly as double precision allows; or the end, undecided.
     enum class InDoubt { ask_exactly, end };
 
     // At the start of the run, which Model::check() allows: in flight, in contact, or after an impact there.
@@ -37,8 +37,8 @@ class Execution {
     // nothing is done, where these differ.
     bool restart(const Run& run);
 
-    // The step that is needed; null once the run is over: at its end time, at a bound on what it may take, cancelled, or
-    // by what accept() was told. It stands until accept(), and until then next() says the same.
+    // The step that is needed; null once the run is over: at its end time, at a bound on what it may take, cancelled,
+    // or by what accept() was told. It stands until accept(), and until then next() says the same.
     const StepRequest* next();
 
     // Takes what came of the last request: the motion stands at the result's t and state, and then

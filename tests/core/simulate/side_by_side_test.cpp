@@ -320,6 +320,18 @@ TEST(RunsSideBySide, TakeFewStepsAlone) {
     EXPECT_GT(static_cast<double>(together_steps), 1.1 * static_cast<double>(alone_steps));  // of lower order
 }
 
+// A step that lanes refuse, here one in contact to past the release, is made once, by the run's own stepper.
+TEST(RunsSideBySide, CountNoStepThatIsNotMade) {
+    const auto model = test::model_of({.potential = "b*(1 - a)", .a_rate = 1.0, .end = 2.0});
+    const auto attempts = together(model, {model->default_run()});
+    const auto& run = std::get<Trajectory>(attempts[0]);
+    const Trajectory alone = simulate(model, model->default_run());
+    ASSERT_EQ(run.phases.size(), 2u) << run.outcome.message;
+    EXPECT_EQ(run.phases[0].kind, Phase::Kind::constrained);
+    EXPECT_NEAR(run.phases[0].end, 1.0, 1e-12);
+    EXPECT_EQ(run.statistics.steps, alone.statistics.steps);
+}
+
 // Runs that differ in all that they can differ in.
 std::vector<Run> mixture(const Model& model) {
     auto runs = near_default(model, 60, 0.5, 5);
