@@ -160,8 +160,9 @@ Number TaylorStep<Number>::aim(const Number& longest) {
     using std::abs, std::sqrt;
     const Number h0 = max(gap_.h, 0.0), h1 = gap_.hdot, h2 = watched(2);
     const Number root = sqrt(h1 * h1 - 4.0 * h0 * h2);
-    const Number time = select(h1 > 0.0, (h1 + root) / (-2.0 * h2), 2.0 * h0 / (root - h1));
-    const Number fall = select((h2 < 0.0) & ((h0 > 0.0) | (h1 > 0.0)), min(time, longest), longest);
+    const Condition<Number> rises = h1 > 0.0;
+    const Number time = select(rises, h1 + root, 2.0 * h0) / select(rises, -2.0 * h2, root - h1);
+    const Number fall = select((h2 < 0.0) & ((h0 > 0.0) | rises), min(time, longest), longest);
     const Number target = min(1.05 * fall, longest), height = abs(gap_.h) + abs(gap_.hdot) * target;
     Number& unit = units_[2 * dof_];
     unit = select((height > 0.0) & (height < 1.0), 1.0 / (tolerance_ * height), unit);

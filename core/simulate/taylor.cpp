@@ -49,8 +49,11 @@ void Taylor::initialize(ContactSet held, const State& state, const Gap& gap) {
 StepFailure Taylor::expand(double longest) {
     ++evaluations_;
     current_state();
-    std::copy_n(to_.q.data(), dof_, step_.row(0));
-    std::copy_n(to_.v.data(), dof_, step_.row(0) + dof_);
+    double* const from = step_.row(0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        from[i] = to_.q.data()[i];
+        from[dof_ + i] = to_.v.data()[i];
+    }
     const auto start = step_.expand(motion_->series, motion_->order, gap_, held_.empty(), longest);
     if (!start.numbers) return StepFailure::not_a_number;
     return start.regular && step_.order() > 0 ? StepFailure::none : StepFailure::left_the_domain;
