@@ -68,6 +68,27 @@ TEST_F(Outputs, JsonHasTheKeysOfTheContract) {
     EXPECT_EQ(json["end"]["q"][0].get<double>(), trajectory.end.q[0]);  // the same double
 }
 
+TEST_F(Outputs, JsonHasTheNumbersOfEveryEvent) {
+    const auto json = nlohmann::json::parse(to_json(trajectory));
+    const auto numbers = [](const Vector& x) { return std::vector<double>(x.begin(), x.end()); };
+    ASSERT_EQ(json["events"].size(), trajectory.events.size());
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        const Event& event = trajectory.events[i];
+        const auto& written = json["events"][i];
+        const bool impact = event.kind == Event::Kind::impact;
+        EXPECT_EQ(written["t"], event.t);
+        EXPECT_EQ(written["q"], numbers(event.q));
+        EXPECT_EQ(written[impact ? "v_after" : "v"], numbers(event.v_after));
+        if (impact) {
+            EXPECT_EQ(written["v_before"], numbers(event.v_before));
+        }
+        if (event.truncation) {
+            EXPECT_EQ(written["truncation"]["v_before"], numbers(event.truncation->v_before));
+            EXPECT_EQ(written["truncation"]["v"], numbers(event.truncation->v));
+        }
+    }
+}
+
 TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
     const Trajectory sharp = simulate(model, with(Conditions::sharp));
     const auto json = nlohmann::json::parse(to_json(sharp));
