@@ -13,7 +13,7 @@ namespace achilles::test {
 namespace {
 
 // A ball on a floor, with what could get lost on the way: carriage returns, letters beyond Latin-1, marks of XML.
-const std::string drop =
+const std::string falling_ball =
     "title = \"Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \\\"so\\\"\"\r\n# ]]> 'x'\r\n"
     "[[coordinate]]\nname = \"y\"\nstart = 1.0\nunit = \"m\"\n[[parameter]]\nname = \"g\"\nvalue = 9.81\n"
     "[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"g*y\"\n[[constraint]]\ngap = \"y\"\nrestitution = 0.5\n"
@@ -37,7 +37,7 @@ class Reproduced : public testing::TestWithParam<std::string> {};
 
 TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     const std::string picture = "picture." + GetParam();
     ASSERT_EQ(folder.run(arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
@@ -47,7 +47,7 @@ TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
     EXPECT_EQ(origin.command, "achilles figure ./drop.toml --set g=3 --set 'y'\\''=0.5' --size 400x300");
     ASSERT_EQ(origin.sources.size(), 1u);
     EXPECT_EQ(origin.sources[0].name, "./drop.toml");
-    EXPECT_EQ(origin.sources[0].text, drop);
+    EXPECT_EQ(origin.sources[0].text, falling_ball);
 
     folder.put("drop.toml", "title = \"another\"\n");
     const Answer altered = folder.run("reproduce " + picture + " --out again");
@@ -64,7 +64,7 @@ TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
 
 TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     ASSERT_EQ(folder.run(arguments + "a." + GetParam()).status, 0);
     const std::string bytes = content(folder.path() / ("a." + GetParam()));
     std::string all;
@@ -95,7 +95,7 @@ TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
 
 TEST_P(Reproduced, ADifferenceIsTold) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     const std::string picture = "a." + GetParam();
     ASSERT_EQ(folder.run(arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
@@ -123,7 +123,7 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     const Folder folder;
     ASSERT_EQ(folder.run("paper --scale 0.5").status, 0);
     ASSERT_EQ(folder.run("paper --format svg --out svg").status, 0);
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     folder.put("tour.journal",
                "open ./drop.toml\r\nset g 2 # Gr\xC3\xB6\xC3\x9F"
                "e\nopen nowhere\nopen none.toml\nseek 0.4\n");
@@ -146,12 +146,12 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
 // A picture may come from anybody: what its journal saves is not saved again.
 TEST(Reproduce, AJournalThatSavesWritesNothing) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     folder.put("other.toml", "mine");
     folder.put("tour.journal",
                "open ./drop.toml\nopen drop.toml\nsave copy.toml\nsave other.toml overwrite\nopen copy.toml\n");
     ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
-    EXPECT_EQ(content(folder.path() / "other.toml"), drop);
+    EXPECT_EQ(content(folder.path() / "other.toml"), falling_ball);
     folder.put("other.toml", "mine");
     std::filesystem::remove(folder.path() / "copy.toml");
     const Answer answer = folder.run("reproduce s.png");
@@ -169,7 +169,7 @@ TEST(Reproduce, ARunThatStoppedEarlyIsThatAgain) {
 // Whatever the file holds: status 2, its name, one sentence, nothing written.
 TEST(Reproduce, RefusesWhatItCannotTrust) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
     ASSERT_EQ(folder.run(arguments + "a.svg").status, 0);
     const std::string png = content(folder.path() / "a.png"), svg = content(folder.path() / "a.svg");
@@ -228,7 +228,7 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
 TEST(Reproduce, StrangersNotesChangeNothing) {
     using std::string_literals::operator""s;
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
     const std::string png = content(folder.path() / "a.png");
     const std::size_t end = png.size() - 12;

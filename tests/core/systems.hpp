@@ -91,5 +91,6 @@ inline std::vector<Event> events_of(const Trajectory& trajectory, Event::Kind ki
         if (event.kind == kind) result.push_back(event);
     return result;
 }
+inline std::size_t count(const Trajectory& trajectory, Event::Kind kind) { return events_of(trajectory, kind).size(); }
 
 }  // namespace achilles::test

@@ -10,13 +10,13 @@
 namespace achilles {
 namespace {
 
-constexpr Color black{0, 0, 0, 255};
+constexpr Color full{0, 0, 0, 255};
 
 Image curve(Offscreen& surface, const std::vector<Point>& points, const ScreenStroke& stroke) {
     return support::picture(surface, [&](ImDrawList* list) { add_curve(list, points, stroke); });
 }
 
-// Ink in units of full pixels.
+// Ink in units of black pixels.
 double ink(const Image& image) {
     double sum = 0.0;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) sum += (255 - image.rgb[i]) / 255.0;
@@ -29,14 +29,14 @@ TEST(Curves, the_ink_is_width_times_length) {
         for (const double angle : {0.0, 0.3, 0.8}) {
             const Point end{50.3 + 300.0 * std::cos(angle), 40.7 + 300.0 * std::sin(angle)};
             const double area = width * 300.0 + width * width * std::acos(-1.0) / 4.0;
-            EXPECT_NEAR(ink(curve(surface, {{50.3, 40.7}, end}, {black, width, {}})), area, 0.03 * area)
+            EXPECT_NEAR(ink(curve(surface, {{50.3, 40.7}, end}, {full, width, {}})), area, 0.03 * area)
                 << width << " " << angle;
         }
 }
 
 TEST(Curves, a_sharp_corner_has_no_spike_and_no_hole) {
     Offscreen surface(support::options());
-    const Image image = curve(surface, {{100, 300}, {103, 100}, {106, 300}}, {black, 2.0, {}});
+    const Image image = curve(surface, {{100, 300}, {103, 100}, {106, 300}}, {full, 2.0, {}});
     EXPECT_GT(support::darkness(image, 102, 101) + support::darkness(image, 103, 101), 200);
     for (int x = 0; x < image.width; ++x) ASSERT_EQ(support::darkness(image, x, 97), 0) << x;
 }
@@ -52,7 +52,7 @@ TEST(Curves, stay_inside_the_clip_rectangle) {
     Offscreen surface(support::options());
     const Image image = support::picture(surface, [](ImDrawList* list) {
         list->PushClipRect({100, 100}, {200, 200}, true);
-        add_curve(list, {{0, 150}, {600, 150}, {600, 199}, {-1e30, 199}}, {black, 9.0, {}});
+        add_curve(list, {{0, 150}, {600, 150}, {600, 199}, {-1e30, 199}}, {full, 9.0, {}});
         list->PopClipRect();
     });
     for (int y = 0; y < image.height; ++y)
@@ -66,7 +66,7 @@ TEST(Curves, stay_inside_the_clip_rectangle) {
 TEST(Curves, break_at_points_that_are_not_finite) {
     Offscreen surface(support::options());
     const Image image =
-        curve(surface, {{50, 50}, {100, 50}, gap_point(), {200, 50}, {250, 50}, {INFINITY, 50}}, {black, 4.0, {}});
+        curve(surface, {{50, 50}, {100, 50}, gap_point(), {200, 50}, {250, 50}, {INFINITY, 50}}, {full, 4.0, {}});
     EXPECT_EQ(support::darkness(image, 75, 50), 255);
     EXPECT_EQ(support::darkness(image, 150, 50), 0);
     EXPECT_EQ(support::darkness(image, 225, 50), 255);
@@ -80,9 +80,9 @@ TEST(Curves, what_is_drawn_afterwards_is_in_its_place) {
     for (int i = 0; i < 100000; ++i) saw.push_back({50.0 + i * 0.005, i % 2 == 0 ? 50.0 : 250.0});
     const Image image = support::picture(surface, [&](ImDrawList* list) {
         list->AddRectFilled({10, 300}, {20, 310}, IM_COL32(0, 0, 0, 255));
-        add_curve(list, saw, {black, 1.0, {}});
+        add_curve(list, saw, {full, 1.0, {}});
         list->AddRectFilled({30, 300}, {40, 310}, IM_COL32(0, 0, 0, 255));
-        add_curve(list, {{50, 305}, {60, 305}}, {black, 4.0, {}});
+        add_curve(list, {{50, 305}, {60, 305}}, {full, 4.0, {}});
         list->AddRectFilled({70, 300}, {80, 310}, IM_COL32(0, 0, 0, 255));
     });
     for (const int x : {15, 35, 55, 75}) EXPECT_EQ(support::darkness(image, x, 305), 255) << x;
@@ -94,7 +94,7 @@ TEST(Curves, a_long_curve_may_be_the_last_thing_drawn) {
     Offscreen surface(support::options());
     std::vector<Point> saw;
     for (int i = 0; i < 100000; ++i) saw.push_back({50.0 + i * 0.005, i % 2 == 0 ? 50.0 : 250.0});
-    const Image image = curve(surface, saw, {black, 1.0, {}});
+    const Image image = curve(surface, saw, {full, 1.0, {}});
     EXPECT_GT(support::darkness(image, 300, 150), 250);
     EXPECT_EQ(support::darkness(image, 300, 300), 0);
 }
@@ -107,7 +107,7 @@ TEST(Curves, thinning_cannot_be_seen) {
         fine.push_back({20.0 + 560.0 * s, 200.0 - 180.0 * std::sin(25.0 * s) * (1.0 - s)});
         if (i % 50 == 0) coarse.push_back(fine.back());
     }
-    EXPECT_LT(worst_tile(curve(surface, fine, {black, 1.5, {}}), curve(surface, coarse, {black, 1.5, {}})),
+    EXPECT_LT(worst_tile(curve(surface, fine, {full, 1.5, {}}), curve(surface, coarse, {full, 1.5, {}})),
               support::worst_tile_allowed);
 }
 
@@ -118,7 +118,7 @@ TEST(Curves, the_finer_mask_draws_the_same_curve) {
     Offscreen fine(options);
     std::vector<Point> points;
     for (int i = 0; i <= 500; ++i) points.push_back({20.0 + 1.1 * i, 200.0 + 150.0 * std::sin(i * 0.05)});
-    const Image a = curve(plain, points, {black, 2.0, {}}), b = curve(fine, points, {black, 2.0, {}});
+    const Image a = curve(plain, points, {full, 2.0, {}}), b = curve(fine, points, {full, 2.0, {}});
     EXPECT_NE(a, b);
     EXPECT_LT(worst_tile(a, b), support::worst_tile_allowed);
 }
@@ -129,7 +129,7 @@ TEST(Curves, a_curve_moved_by_a_pixel_is_noticed) {
     const auto wave = [&](double shift) {
         std::vector<Point> points;
         for (int i = 0; i <= 500; ++i) points.push_back({20.0 + 1.1 * i, shift + 200.0 + 150.0 * std::sin(i * 0.05)});
-        return curve(surface, points, {black, 1.5, {}});
+        return curve(surface, points, {full, 1.5, {}});
     };
     const Image here = wave(0.0);
     EXPECT_EQ(worst_tile(here, wave(0.0)), 0.0);

@@ -49,9 +49,9 @@ TEST(Image, images_of_different_size_are_infinitely_far_apart) {
 }
 
 TEST(Image, black_and_white_are_at_distance_one) {
-    Image black{60, 60, std::vector<std::uint8_t>(3 * 60 * 60, 0)}, white = black;
+    Image dark{60, 60, std::vector<std::uint8_t>(3 * 60 * 60, 0)}, white = dark;
     white.rgb.assign(white.rgb.size(), 255);
-    EXPECT_DOUBLE_EQ(worst_tile(black, white), 1.0);
+    EXPECT_DOUBLE_EQ(worst_tile(dark, white), 1.0);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ namespace {
 
 const std::filesystem::path fonts = ACHILLES_BINARY_DIR "/assets/fonts";
 
-const Notes some_notes{{"Title", "θ & <friends>"}, {"Achilles Command", "achilles figure 'a \"b\".toml'\r\n\t]]>"}};
+const Notes quoted_notes{{"Title", "θ & <friends>"}, {"Achilles Command", "achilles figure 'a \"b\".toml'\r\n\t]]>"}};
 
-std::string sample(int panels = 4) { return svg(samples::figure(panels), 900, 600, 1.0, fonts, some_notes); }
+std::string sample(int panels = 4) { return svg(samples::figure(panels), 900, 600, 1.0, fonts, quoted_notes); }
 
 std::size_t count(const std::string& text, const std::string& part) {
     std::size_t found = 0;
@@ -138,7 +138,7 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
 }
 
 TEST(Svg, carries_notes) {
-    EXPECT_EQ(svg_notes(sample()), some_notes);
+    EXPECT_EQ(svg_notes(sample()), quoted_notes);
     EXPECT_TRUE(svg_notes("<svg/>").empty());
     EXPECT_TRUE(svg_notes("").empty());
     for (const char* text : {"a\x01", "\xff", "\xed\xa0\x80", "\xc0\x80"})
@@ -146,7 +146,7 @@ TEST(Svg, carries_notes) {
 }
 
 TEST(Svg, damaged_notes_are_refused_wherever_they_end) {
-    const std::string whole = xml_notes(some_notes);
+    const std::string whole = xml_notes(quoted_notes);
     const std::size_t first_line = whole.find('\n') + 1;
     for (std::size_t size = 0; size < whole.size(); ++size) {
         if (size < first_line)

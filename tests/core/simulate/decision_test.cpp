@@ -21,7 +21,7 @@ Run with(const Model& model, Method method, double tolerance) {
     return run;
 }
 
-std::size_t count(const Trajectory& trajectory, Event::Kind kind) { return test::events_of(trajectory, kind).size(); }
+using test::count;
 
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-13};
 

@@ -21,7 +21,7 @@ Trajectory run_of(const Plane& plane, double tolerance = 1e-10, Method method = 
     return simulate(model, run);
 }
 
-std::size_t count(const Trajectory& trajectory, Event::Kind kind) { return test::events_of(trajectory, kind).size(); }
+using test::count;
 
 // ---- the surface at rounding level ----
 

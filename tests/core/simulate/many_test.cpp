@@ -29,12 +29,10 @@ std::vector<Run> balls(const Model& model, int count) {
     return runs;
 }
 
-void append(std::string& bytes, const void* data, std::size_t size) {
-    bytes.append(static_cast<const char*>(data), size);
-}
-void append(std::string& bytes, double x) { append(bytes, &x, sizeof x); }
-void append(std::string& bytes, const Vector& x) {
-    append(bytes, x.data(), static_cast<std::size_t>(x.size()) * sizeof(double));
+void put(std::string& bytes, const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
+void put(std::string& bytes, double x) { put(bytes, &x, sizeof x); }
+void put(std::string& bytes, const Vector& x) {
+    put(bytes, x.data(), static_cast<std::size_t>(x.size()) * sizeof(double));
 }
 
 // Everything a run computes but the time it took, bit for bit.
@@ -42,21 +40,21 @@ std::string bytes_of(const Attempt& attempt) {
     if (const auto* error = std::get_if<InputError>(&attempt)) return error->what();
     const auto& trajectory = std::get<Trajectory>(attempt);
     std::string bytes = trajectory.outcome.message;
-    append(bytes, trajectory.coefficients.data(), trajectory.coefficients.size() * sizeof(double));
-    for (const Piece& piece : trajectory.pieces) append(bytes, piece.end);
+    put(bytes, trajectory.coefficients.data(), trajectory.coefficients.size() * sizeof(double));
+    for (const Piece& piece : trajectory.pieces) put(bytes, piece.end);
     for (const Event& event : trajectory.events) {
-        append(bytes, event.t);
-        append(bytes, event.q);
-        append(bytes, event.v_after);
+        put(bytes, event.t);
+        put(bytes, event.q);
+        put(bytes, event.v_after);
         if (!event.certificate) continue;
-        append(bytes, event.certificate->zeno_low);
-        append(bytes, event.certificate->position_bound);
-        append(bytes, event.certificate->velocity_bound);
+        put(bytes, event.certificate->zeno_low);
+        put(bytes, event.certificate->position_bound);
+        put(bytes, event.certificate->velocity_bound);
     }
-    append(bytes, trajectory.end.q);
-    append(bytes, trajectory.end.v);
-    append(bytes, trajectory.statistics.least_gap);
-    append(bytes, static_cast<double>(trajectory.statistics.evaluations));
+    put(bytes, trajectory.end.q);
+    put(bytes, trajectory.end.v);
+    put(bytes, trajectory.statistics.least_gap);
+    put(bytes, static_cast<double>(trajectory.statistics.evaluations));
     return bytes;
 }
 
@@ -130,12 +128,12 @@ TEST(ManyRuns, EndTheSameWhenOnlyTheEndIsKept) {
         if (const auto* error = std::get_if<InputError>(&attempt)) return std::string(error->what());
         const auto& trajectory = std::get<Trajectory>(attempt);
         std::string bytes = trajectory.outcome.message;
-        append(bytes, trajectory.end_time);
-        append(bytes, trajectory.end.q);
-        append(bytes, trajectory.end.v);
-        append(bytes, trajectory.statistics.least_gap);
-        append(bytes, static_cast<double>(trajectory.statistics.steps + 1000 * trajectory.statistics.impacts));
-        for (const Phase& phase : trajectory.phases) append(bytes, phase.start + phase.impacts);
+        put(bytes, trajectory.end_time);
+        put(bytes, trajectory.end.q);
+        put(bytes, trajectory.end.v);
+        put(bytes, trajectory.statistics.least_gap);
+        put(bytes, static_cast<double>(trajectory.statistics.steps + 1000 * trajectory.statistics.impacts));
+        for (const Phase& phase : trajectory.phases) put(bytes, phase.start + phase.impacts);
         return bytes;
     };
     EXPECT_EQ(simulate_many(model, runs, end_of, 1, Keep::end), simulate_many(model, runs, end_of, 1));
