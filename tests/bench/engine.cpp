@@ -66,38 +66,20 @@
 //   one program for the guess of a cut instead of three; sines by pairs of terms -5 percent
 // What gave nothing: rows summed in another order, no vzeroupper between orders, more or fewer runs under way (12 to
 // 48), 256-bit vectors instead of 128 without machine code.
+#include "bench/engine.hpp"
+
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <functional>
-#include <limits>
-#include <nlohmann/json.hpp>
-#include <random>
-#include <string>
 
-#include "bench/by_hand.hpp"
-#include "bench/certificates.hpp"
 #include "bench/measure.hpp"
-#include "certify/execution.hpp"
-#include "model/read_system.hpp"
-#include "simulate/many.hpp"
+#include "simulate/simulate.hpp"
 
 namespace achilles::bench {
-namespace {
 
 Values values_of(const State& state) { return {state.q[0], state.q[1], state.v[0], state.v[1]}; }
-
-struct Setting {
-    double tolerance = 0.0, cut = 0.0;
-};
-
-struct Contestant {
-    std::string name, cut_name;
-    std::vector<double> cuts;
-    std::function<Values(const Setting&)> run;
-    std::function<std::function<void()>(const Setting&)> certificates;  // work to be timed; none for the programs
-};
 
 double error_of(const Values& end, const Values& truth) {
     double error = 0.0;
@@ -108,8 +90,6 @@ double error_of(const Values& end, const Values& truth) {
     return error;
 }
 
-// ---- the contestants ----
-
 Run run_with(const Model& model, Method method, const Setting& setting) {
     Run run = model.default_run();
     run.options.method = method;
@@ -119,34 +99,6 @@ Run run_with(const Model& model, Method method, const Setting& setting) {
     return run;
 }
 
-Contestant engine(const std::shared_ptr<const Model>& model, Method method, Keep keep) {
-    return {"engine " + std::string(to_text(method)) + (keep == Keep::end ? ", end" : ""),
-            "eps",
-            {1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14},
-            [=](const Setting& setting) {
-                const Trajectory trajectory = simulate(model, run_with(*model, method, setting), nullptr, keep);
-                const bool ended = trajectory.outcome.kind == Outcome::Kind::end_time;
-                Values end = values_of(trajectory.end);
-                if (!ended) end.fill(std::numeric_limits<double>::quiet_NaN());
-                return end;
-            },
-            [=](const Setting& setting) -> std::function<void()> {
-                const Run run = run_with(*model, method, setting);
-                return [=, asked = collisions(simulate(model, run))] { ask_again(*model, run, asked); };
-            }};
-}
-
-Contestant by_hand(const std::string& name, std::shared_ptr<Program> program, const Values& start) {
-    return {name,
-            "cut",
-            {1e-2, 1e-3, 1e-4, 1e-5},
-            [=](const Setting& setting) {
-                return program->run(start, {setting.tolerance, setting.cut, 20.0}).end;
-            },
-            {}};
-}
-
-// The methods there are: one that gives another's bytes is not there yet.
 std::vector<Method> methods(const std::shared_ptr<const Model>& model) {
     const auto end = [&](Method method) {
         return values_of(simulate(model, run_with(*model, method, {1e-9, 1e-9})).end);
@@ -155,51 +107,6 @@ std::vector<Method> methods(const std::shared_ptr<const Model>& model) {
     return {Method::dopri5, Method::taylor};
 }
 
-// ---- work and precision ----
-
-struct Tried {
-    Setting setting;
-    double error = 0.0, seconds = 0.0;
-};
-
-std::vector<Tried> try_all(const Contestant& contestant, const Values& truth) {
-    std::vector<Tried> all;
-    for (const double cut : contestant.cuts) {
-        for (int half_decades = 10; half_decades <= 31; ++half_decades) {
-            const Setting setting{std::pow(10.0, -0.5 * half_decades), cut};
-            const double error = error_of(contestant.run(setting), truth);
-            double fastest = std::numeric_limits<double>::infinity();
-            for (int repetition = 0; repetition < 3; ++repetition)
-                fastest = std::min(fastest, seconds([&] { contestant.run(setting); }));
-            all.push_back({setting, error, fastest});
-        }
-    }
-    return all;
-}
-
-// The fastest that meets the error, as do its neighbours of smaller tolerance.
-const Tried* fastest(const std::vector<Tried>& all, double error) {
-    const Tried* best = nullptr;
-    for (const Tried& tried : all) {
-        const bool holds = std::all_of(all.begin(), all.end(), [&](const Tried& other) {
-            const bool neighbour = other.setting.cut == tried.setting.cut &&
-                                   other.setting.tolerance <= 1.01 * tried.setting.tolerance &&
-                                   other.setting.tolerance >= 0.099 * tried.setting.tolerance;
-            return !neighbour || other.error <= error;
-        });
-        if (holds && (best == nullptr || tried.seconds < best->seconds)) best = &tried;
-    }
-    return best;
-}
-
-struct Entry {
-    const Contestant* contestant = nullptr;
-    const Tried* tried = nullptr;
-    std::function<void()> certificates;
-    std::vector<double> whole, certifying, net;
-};
-
-// The processor that a ratio belongs to: it is another one on another.
 std::string processor_name() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
@@ -207,7 +114,6 @@ std::string processor_name() {
     return "unknown processor";
 }
 
-// The median of the rounds' ratios.
 std::string ratio(const std::vector<double>& reference, const std::vector<double>& times) {
     if (reference.empty()) return "     -";
     std::vector<double> ratios;
@@ -215,187 +121,6 @@ std::string ratio(const std::vector<double>& reference, const std::vector<double
     return fmt::format("{:6.2f}", median(ratios));
 }
 
-void print(const Entry& entry, const std::vector<double>& reference) {
-    const std::string processor = processor_name();
-    fmt::print("  {:<18} tolerance {:7.1e}  {:>3} {:5.0e}  error {:7.1e}  {:8.1f} us", entry.contestant->name,
-               entry.tried->setting.tolerance, entry.contestant->cut_name, entry.tried->setting.cut, entry.tried->error,
-               1e6 * median(entry.whole));
-    fmt::print("  {}", ratio(reference, entry.whole));
-    if (entry.certificates)
-        fmt::print("   without certificates {:.1f} us {}, these {:.0f} % of that", 1e6 * median(entry.net),
-                   ratio(reference, entry.net), 100.0 * median(entry.certifying) / median(entry.net));
-    fmt::print("   ({})\n", processor);
-}
-
-void compare(const std::vector<Contestant>& contestants, const std::vector<std::vector<Tried>>& tried, double error,
-             int rounds) {
-    std::vector<Entry> entries;
-    fmt::print(" error <= {:g}\n", error);
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const Tried* best = fastest(tried[i], error);
-        if (best == nullptr) {
-            fmt::print("  {:<18} does not reach it\n", contestants[i].name);
-            continue;
-        }
-        const auto& certificates = contestants[i].certificates;
-        entries.push_back({&contestants[i], best, certificates ? certificates(best->setting) : nullptr, {}, {}, {}});
-    }
-    for (int round = 0; round < rounds; ++round) {
-        for (Entry& entry : entries) {
-            const double whole = seconds([&] { entry.contestant->run(entry.tried->setting); });
-            const double certifying = entry.certificates ? seconds(entry.certificates) : 0.0;
-            entry.whole.push_back(whole);
-            entry.certifying.push_back(certifying);
-            entry.net.push_back(whole - certifying);
-        }
-    }
-    std::vector<double> reference;
-    for (const Entry& entry : entries)
-        if (entry.contestant->name == "Boost.Odeint") reference = entry.whole;
-    for (const Entry& entry : entries) print(entry, reference);
-    std::fflush(stdout);
-}
-
-template <class Problem>
-void work_and_precision(const std::string& asset, const std::string& key, int rounds) {
-    const std::string root = ACHILLES_SOURCE_DIR;
-    const auto model = std::make_shared<const Model>(read_system(root + "/assets/systems/" + asset + ".toml"));
-    std::ifstream file(root + "/tests/reference/fig4.json");
-    const auto state = nlohmann::json::parse(file)["problems"][key]["end_state"];
-    Values truth;
-    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = std::stod(state[i].get<std::string>());
-
-    const Run run = model->default_run();
-    const Values start = values_of({run.q, run.v});
-    std::vector<Contestant> contestants;
-    for (const Method method : methods(model)) contestants.push_back(engine(model, method, Keep::everything));
-    contestants.push_back(engine(model, Method::taylor, Keep::end));
-    contestants.push_back(by_hand("Boost.Odeint", by_odeint<Problem>(), start));
-    contestants.push_back(by_hand("ARKODE", by_arkode<Problem>(), start));
-    std::vector<std::vector<Tried>> tried;
-    for (const Contestant& contestant : contestants) tried.push_back(try_all(contestant, truth));
-    fmt::print("{} to t = 20, medians of {} rounds\n", asset, rounds);
-    for (const double error : {1e-6, 1e-9, 1e-12, 1e-13}) compare(contestants, tried, error, rounds);
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const auto best = std::min_element(tried[i].begin(), tried[i].end(),
-                                           [](const Tried& a, const Tried& b) { return a.error < b.error; });
-        fmt::print(" least error of {:<18} {:.1e}\n", contestants[i].name, best->error);
-    }
-}
-
-// ---- ensemble ----
-
-std::vector<Values> starts(int count) {
-    std::mt19937_64 random(4);
-    const auto uniform = [&](double most) {
-        return most * (2.0 * static_cast<double>(random() >> 11) * 0x1p-53 - 1.0);
-    };
-    std::vector<Values> result;
-    for (int i = 0; i < count; ++i) result.push_back({uniform(3.0), 2.0, uniform(2.0), 0.0});
-    return result;
-}
-
-struct Ensemble {
-    std::string name;
-    // Fills in the ends; returns what of the time the certificates took, s.
-    std::function<double(std::vector<Values>& ends)> run;
-    std::vector<double> whole, net;
-    std::vector<Values> ends;
-};
-
-// One by one, or eight at a time. The runs say themselves how long their certificates took.
-Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, const std::vector<Values>& from,
-                     Setting setting, bool side_by_side) {
-    const auto run_of = [=, &from](std::size_t i) {
-        Run run = run_with(*model, method, setting);
-        run.q << from[i][0], from[i][1];
-        run.v << from[i][2], from[i][3];
-        return run;
-    };
-    const auto all = [=](std::vector<Values>& ends) {
-        double certifying = 0.0;
-        const auto take = [&](std::size_t i, Attempt&& attempt) {
-            const auto& trajectory = std::get<Trajectory>(attempt);
-            certifying += trajectory.statistics.certificate_seconds;
-            ends[i] = values_of(trajectory.end);
-            if (trajectory.outcome.kind != Outcome::Kind::end_time)
-                ends[i].fill(std::numeric_limits<double>::quiet_NaN());
-        };
-        if (side_by_side) {
-            simulate_ends(model, ends.size(), run_of, take, 1);
-        } else {
-            simulate_many(model, ends.size(), run_of, take, 1, Keep::end);
-        }
-        return certifying;
-    };
-    return {fmt::format("engine {}{}", to_text(method), side_by_side ? ", by eight" : ""), all, {}, {}, {}};
-}
-
-Ensemble ensemble_of(const std::string& name, std::shared_ptr<Program> program, const std::vector<Values>& from,
-                     const Settings& settings) {
-    const auto all = [=, &from](std::vector<Values>& ends) {
-        for (std::size_t i = 0; i < from.size(); ++i) ends[i] = program->run(from[i], settings).end;
-        return 0.0;
-    };
-    return {name, all, {}, {}, {}};
-}
-
-// Ends that are no motion of a ball: under the floor, or not a number, or an outcome other than the end time.
-long count_lost(const std::vector<Values>& ends) {
-    return std::count_if(ends.begin(), ends.end(), [](const Values& y) { return !(Ball::gap(y) >= -1e-6); });
-}
-
-// Where the first balls really end, in 34 digits.
-std::vector<Values> truths(const Model& model, const std::vector<Values>& from, std::size_t most) {
-    test::TrueRuns runs(model, model.default_run());
-    std::vector<Values> ends;
-    for (std::size_t i = 0; i < std::min(most, from.size()); ++i) {
-        const auto& start = from[i];
-        const test::Point end = runs.run({{start[0], start[1]}, {start[2], start[3]}}, 20.0).end;
-        ends.push_back({static_cast<double>(end.q[0]), static_cast<double>(end.q[1]), static_cast<double>(end.v[0]),
-                        static_cast<double>(end.v[1])});
-    }
-    return ends;
-}
-
-void ensemble(int count, int rounds) {
-    const auto model =
-        std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml"));
-    const std::vector<Values> from = starts(count);
-    const std::vector<Values> truth = truths(*model, from, 200);
-    std::vector<Ensemble> all;
-    for (const Method method : methods(model)) all.push_back(ensemble_of(model, method, from, {1e-9, 1e-9}, false));
-    all.push_back(ensemble_of(model, Method::taylor, from, {1e-9, 1e-9}, true));
-    all.push_back(ensemble_of("Boost.Odeint", by_odeint<Ball>(), from, {1e-9, 1e-3, 20.0}));
-    all.push_back(ensemble_of("ARKODE", by_arkode<Ball>(), from, {1e-9, 1e-3, 20.0}));
-    for (int round = 0; round < rounds; ++round) {
-        for (Ensemble& one : all) {
-            one.ends.resize(from.size());
-            double certifying = 0.0;
-            const double whole = seconds([&] { certifying = one.run(one.ends); });
-            one.whole.push_back(whole);
-            one.net.push_back(whole - certifying);
-        }
-    }
-    const auto& reference = all[all.size() - 2].whole;
-    fmt::print("{} balls, x in [-3, 3], x' in [-2, 2], tolerance 1e-9, one core, medians of {} rounds\n", count,
-               rounds);
-    for (const Ensemble& one : all) {
-        std::vector<double> errors;
-        for (std::size_t i = 0; i < truth.size(); ++i) errors.push_back(error_of(one.ends[i], truth[i]));
-        for (double& error : errors) error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
-        std::sort(errors.begin(), errors.end());
-        fmt::print("  {:<24} {:8.0f} runs/s  {}   error: median {:.1e}, 95 percent below {:.1e}; lost {}", one.name,
-                   count / median(one.whole), ratio(reference, one.whole), errors[errors.size() / 2],
-                   errors[errors.size() * 95 / 100], count_lost(one.ends));
-        if (median(one.net) < median(one.whole))
-            fmt::print("   without certificates {:.0f} runs/s {}", count / median(one.net), ratio(reference, one.net));
-        fmt::print("   ({})\n", processor_name());
-        std::fflush(stdout);
-    }
-}
-
-}  // namespace
 }  // namespace achilles::bench
 
 int main(int count, char** arguments) {
@@ -405,7 +130,6 @@ int main(int count, char** arguments) {
         return 2;
     }
     using namespace achilles::bench;
-    work_and_precision<Ball>("ball_on_sine", "ball", rounds);
-    work_and_precision<Pendulum>("double_pendulum", "double_pendulum", rounds);
-    ensemble(balls, 1 + rounds / 20);
+    measure_work_and_precision(rounds);
+    measure_ensemble(balls, 1 + rounds / 20);
 }
