@@ -80,7 +80,7 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
 // What limits a run is told; of the steps only where somebody has said so.
 TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", falling_ball);
     for (const bool limited : {false, true}) {
         const std::string picture = "a." + GetParam();
         ASSERT_EQ(folder.run(arguments + picture + (limited ? " --max-steps 100000" : "")).status, 0);
