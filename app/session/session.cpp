@@ -20,8 +20,8 @@ Session::System::System(const std::string& name_as_opened, const SystemDescripti
       mechanism(*model),
       file_run(model->default_run()) {}
 
-Session::Motion::Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
-                        Watch* watch)
+Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, const Plots& plotted,
+                              const Theme& theme, Watch* watch)
     : trajectory(simulate(of->model, run, watch)),
       system(std::move(of)),
       sampler(trajectory),
@@ -87,13 +87,13 @@ void Session::perform(const command::UseTheme& command) {
 }
 
 void Session::perform(const command::Pin& command) {
-    pinned_ = command.on ? motion_ : nullptr;
+    pinned_ = command.on ? simulated_ : nullptr;
     pinned_revision_ = -1;
     compose_pinned();
 }
 
 void Session::compose_pinned() {
-    const bool same = pinned_ && pinned_->system == motion_->system;
+    const bool same = pinned_ && pinned_->system == simulated_->system;
     if (!same) pinned_plots_.clear();
     if (!same || pinned_revision_ == plots_.revision()) return;
     pinned_revision_ = plots_.revision();
@@ -101,7 +101,7 @@ void Session::compose_pinned() {
 }
 
 std::optional<Sample> Session::pinned_now() const {
-    if (!pinned_ || pinned_->system != motion_->system) return std::nullopt;
+    if (!pinned_ || pinned_->system != simulated_->system) return std::nullopt;
     return pinned_->sampler.at(std::min(time_, pinned_->trajectory.end_time));
 }
 
@@ -171,14 +171,14 @@ void Session::read_document() {
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
     system_ = system;
     plots_ = plots;
-    motion_.reset();
+    simulated_.reset();
     rerun(run);
-    if (motion_ != nullptr) return;
+    if (simulated_ != nullptr) return;
     std::stop_source at_once;
     at_once.request_stop();
     Watch watch;
     watch.stop = at_once.get_token();
-    motion_ = std::make_shared<Motion>(system_, run, plots_, theme_, &watch);
+    simulated_ = std::make_shared<Simulated>(system_, run, plots_, theme_, &watch);
     move_to(0.0);
 }
 
@@ -244,7 +244,7 @@ void Session::rerun(const Run& run) {
     watch_ = watch;
     worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
-        return std::make_shared<Motion>(system, run, plots, theme, watch.get());
+        return std::make_shared<Simulated>(system, run, plots, theme, watch.get());
     });
     receive(patience_);
 }
@@ -253,7 +253,7 @@ void Session::receive(Patience patience) {
     if (watch_ == nullptr) return;
     const auto motion = worker_.take(patience);
     if (!motion) return;
-    motion_ = *motion;
+    simulated_ = *motion;
     watch_.reset();
     compose_plots();  // they may have been changed meanwhile
     compose_pinned();
@@ -269,11 +269,11 @@ void Session::place(const Command& command) {
 
 void Session::move_to(double time) {
     time_ = std::clamp(time, 0.0, trajectory().end_time);
-    now_ = motion_->sampler.at(time_);
+    now_ = simulated_->sampler.at(time_);
 }
 
 std::vector<double> Session::values(std::size_t plot, const Sample& sample) const {
-    return values_at(motion_->trajectory, sample, *plots_.list()[plot].prepared);
+    return values_at(simulated_->trajectory, sample, *plots_.list()[plot].prepared);
 }
 
 // The next event after the present, or the last before it; beyond them the end and the start.
@@ -305,10 +305,10 @@ void Session::perform(const Other& command) {
 }
 
 void Session::compose_plots() {
-    if (motion_->revision == plots_.revision() && motion_->dark == theme_.dark) return;
-    motion_->revision = plots_.revision();
-    motion_->dark = theme_.dark;
-    motion_->plots = plots_.compose(motion_->trajectory, motion_->samples, theme_);
+    if (simulated_->revision == plots_.revision() && simulated_->dark == theme_.dark) return;
+    simulated_->revision = plots_.revision();
+    simulated_->dark = theme_.dark;
+    simulated_->plots = plots_.compose(simulated_->trajectory, simulated_->samples, theme_);
     compose_pinned();
 }
 

@@ -71,7 +71,7 @@ class Session {
     const Run& run() const { return asked_; }
     // Of a parameter, a coordinate's start x or its rate x'; nothing if there is no such name.
     std::optional<double> value(const std::string& name) const;
-    const Trajectory& trajectory() const { return motion_->trajectory; }
+    const Trajectory& trajectory() const { return simulated_->trajectory; }
     const Mechanism& mechanism() const { return system_->mechanism; }
     // A run that was pinned, to compare with; null where there is none. Its plots are of what is plotted now, and empty
     // where it is of another system.
@@ -85,17 +85,17 @@ class Session {
     bool can_redo() const { return history_.can_redo(); }
 
     // Its body along the run that is shown, a point a sample.
-    const Trail& trail() const { return motion_->trail; }
-    std::span<const Sample> samples() const { return motion_->samples; }
+    const Trail& trail() const { return simulated_->trail; }
+    std::span<const Sample> samples() const { return simulated_->samples; }
     // The world the mechanism needs during the whole run.
-    const Drawing& limits() const { return motion_->limits; }
+    const Drawing& limits() const { return simulated_->limits; }
     // What is plotted, and the plots, composed.
     const Plots& plotted() const { return plots_; }
-    const std::vector<Panel>& plots() const { return motion_->plots; }
+    const std::vector<Panel>& plots() const { return simulated_->plots; }
     // What a plot shows of an instant, in its units: x, then every y.
     std::vector<double> values(std::size_t plot, const Sample& sample) const;
     // The state at a time of the run that is shown.
-    Sample at(double time) const { return motion_->sampler.at(time); }
+    Sample at(double time) const { return simulated_->sampler.at(time); }
 
     double time() const { return time_; }
     const Sample& now() const { return now_; }  // the state at that time
@@ -121,9 +121,9 @@ class Session {
         Run file_run;
     };
     // One run and what is shown of it.
-    struct Motion {
-        Motion(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
-               Watch* watch);
+    struct Simulated {
+        Simulated(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
+                  Watch* watch);
         Trajectory trajectory;
         std::shared_ptr<const System> system;
         Sampler sampler;
@@ -187,7 +187,8 @@ class Session {
     Plots plots_;
     Scene scene_;
     Run asked_;
-    std::shared_ptr<Motion> motion_;  // of this system; of another run than the one asked for while that is under way
+    std::shared_ptr<Simulated>
+        simulated_;  // of this system; of another run than the one asked for while that is under way
     std::shared_ptr<const Watch> watch_;  // of the run under way
     std::optional<Command> placed_;       // what placed the present meanwhile
     Sample now_;
@@ -198,10 +199,10 @@ class Session {
     std::string copied_;
     int copies_ = 0, replaying_ = 0;
     History<Moment> history_;
-    std::shared_ptr<Motion> pinned_;
+    std::shared_ptr<Simulated> pinned_;
     std::vector<Panel> pinned_plots_;
     int pinned_revision_ = -1;
-    Worker<std::shared_ptr<Motion>> worker_;
+    Worker<std::shared_ptr<Simulated>> worker_;
 };
 
 // Lets so much time pass for a session that plays, at its speed. At the end it stops or begins again.

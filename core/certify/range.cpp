@@ -13,8 +13,9 @@ Interval Range::evaluate(const std::vector<Interval>& box) {
     return value_.output(0);
 }
 
-// Encloses the least value (or the greatest). The slopes hold over the whole box, so a variable in which the expression
-// is monotone may be put at its end; what is left is a box with fewer variables.
+// A range over the face of the box on which the least (or greatest) value lies; only its lower (upper) end is used.
+// Variables in which the expression is monotone are put at the end that gives it; over the rest, plain evaluation and the
+// mean-value form are intersected.
 Interval Range::bound(const std::vector<Interval>& box, bool upper) {
     rest_ = middle_ = box;
     Interval spread(0.0);

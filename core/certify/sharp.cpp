@@ -111,7 +111,8 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
 }
 
-// Cuts the interval with the one of third order. Relies on hddot_ having looked at X.
+// Narrows the enclosure of the time to the Zeno point by the one of third order in w (zeno_time.hpp). Needs
+// time_over_box() first: it uses the slopes of hddot over the box X, and encloses it at the collision, at sigma = 0.
 void SharpConditions::sharpen(Time& time, const Trend& trend) {
     for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = box_.q0[i];
@@ -121,6 +122,7 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
     const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
+    // Of `earliest` only the lower end counts, of `latest` only the upper one.
     if (third.lo() > time.wait.earliest.lo()) time.wait.earliest = third;
     if (third.hi() < time.wait.latest.hi()) time.wait.latest = third;
 }

@@ -182,8 +182,8 @@ class Search {
 
 Descent first_descent(const Polynomial& polynomial, int known, double remainder) {
     const Terms p{polynomial.c.data() + known, polynomial.degree - known};
-    // Powers of theta fall from one to the next, so a polynomial is a mean of the partial sums of its coefficients
-    // (Abel), and lies between the least and the largest of these. So does its slope.
+    // On [0, 1] the powers of theta decrease, so a polynomial is a mean of the partial sums of its coefficients (Abel),
+    // and lies between the least and the largest of these. The slope is bounded by its own partial sums.
     double value = p.c[0], least = value, slope = p.c[1], least_slope = slope, largest_slope = slope;
     for (int k = 1; k <= p.degree; ++k) {
         const double c = p.c[k];
@@ -195,10 +195,12 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
         largest_slope = std::max(largest_slope, slope);
     }
     if (least > remainder || (largest_slope < 0.0 && value > remainder)) return {};
-    // It only falls: most flights are nearly parabolas.
+    // It falls all along, from above the remainder to below it: one root, by Newton's method from the parabola's. Where
+    // the slope hardly changes, a small first step of it is trusted at once, else from the third on.
     if (p.c[0] > remainder && largest_slope < 0.0 && value < -remainder) {
         const bool steady = least_slope > 3.0 * largest_slope;  // the slope changes by a factor of three at most
-        const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * p.c[2]));
+        const double curvature = p.degree > 1 ? p.c[2] : 0.0;
+        const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * curvature));
         return {Descent::Kind::root,
                 newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
     }

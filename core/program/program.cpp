@@ -11,8 +11,8 @@ namespace achilles {
 
 namespace {
 
-// The same instructions in an order in which runs of one operation are long: always the operation of which most are
-// ready, until none of it is. Operands stand before their users.
+// Puts instructions, given by ascending ids, in an order in which equal operations stand in long runs: always takes the
+// operation of which most are ready, until none of it is left. Operands stand before their users.
 std::vector<std::uint32_t> in_runs(const std::vector<std::uint32_t>& ids, const Graph& graph) {
     const std::uint32_t most = ids.empty() ? 0 : ids.back() + 1;
     std::vector<bool> pending(most, false);
@@ -24,6 +24,7 @@ std::vector<std::uint32_t> in_runs(const std::vector<std::uint32_t>& ids, const 
         const Graph::Node& node = graph.node(id);
         if (!is_leaf(node.operation)) {
             for (const std::uint32_t operand : {node.a, is_binary(node.operation) ? node.b : node.a}) {
+                // Not an instruction of this list, or the first operand again.
                 if (!pending[operand] || (operand == node.a && missing[id] > 0)) continue;
                 ++missing[id];
                 users[operand].push_back(id);

@@ -64,7 +64,7 @@ class SeriesEvaluator {
     const Number& output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
 
     // Of a motion, see make_orders(); after order 1.
-    int extend(SeriesMotion& motion, int k, int last) requires is_one {
+    int extend(MotionOrders& motion, int k, int last) requires is_one {
         if (code_) return code_->make_orders(tables_, motion, k, last);
         return make_orders(program_->plan_, tables_, motion, k, last);
     }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "number/eight.hpp"
+#include "program/terms.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -19,7 +20,7 @@ namespace achilles {
 struct LanePrograms {
     std::size_t coordinates;
     const SeriesProgram &flight, &contact;
-    const Program& surface;
+    const ProgramOf<ContactTerms>& contact_terms;
 };
 
 // Of eight runs: what a step starts from, and after it what it came to.

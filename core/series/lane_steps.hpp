@@ -31,7 +31,7 @@ class LaneStepperOver final : public LaneStepper {
                   {static_cast<int>(0.7 * best_order(programs.flight, tolerance, costs_of_eight_runs)), false}},
           contact_{{programs.contact, machine_code},
                    {best_order(programs.contact, tolerance, costs_of_eight_runs), true}},
-          surface_(programs.surface, machine_code),
+          contact_terms_(ProgramOver<Number>(programs.contact_terms, machine_code), programs.coordinates),
           step_(dof_, tolerance),
           before_(2 * dof_) {}
 
@@ -39,7 +39,7 @@ class LaneStepperOver final : public LaneStepper {
         const std::span<const Eight> all(parameters);
         flight_.series.fix(all);
         contact_.series.fix(all);
-        surface_.fix(all);
+        contact_terms_.fix(all);
     }
 
     void stay(LaneStep& step, long most) override {
@@ -209,16 +209,16 @@ class LaneStepperOver final : public LaneStepper {
     // ---- the surface ----
 
     void look(LaneStep& step) {
-        for (std::size_t i = 0; i < 2 * dof_; ++i) surface_.input(i) = step.q_and_v[i];
-        surface_.run();
-        step.end_h = surface_.output(0);
-        step.end_hdot = surface_.output(1);
-        step.end_W = surface_.output(2 + 2 * dof_);
+        for (std::size_t i = 0; i < 2 * dof_; ++i) contact_terms_.input(i) = step.q_and_v[i];
+        contact_terms_.run();
+        step.end_h = contact_terms_.h();
+        step.end_hdot = contact_terms_.hdot();
+        step.end_W = contact_terms_.W();
         Number sum = 0.0;
         for (std::size_t i = 0; i < dof_; ++i) {
-            step.impulse_direction[i] = surface_.output(2 + i);
-            step.g[i] = surface_.output(2 + dof_ + i);
-            sum += abs(surface_.output(2 + dof_ + i) * step.q_and_v[i]);
+            step.impulse_direction[i] = contact_terms_.impulse_direction(i);
+            step.g[i] = contact_terms_.gradient(i);
+            sum += abs(contact_terms_.gradient(i) * step.q_and_v[i]);
         }
         step.rounding = unit_roundoff * sum;
     }
@@ -261,7 +261,7 @@ class LaneStepperOver final : public LaneStepper {
 
     std::size_t dof_;
     Expansion flight_, contact_;
-    ProgramOver<Number> surface_;
+    ContactTerms<ProgramOver<Number>> contact_terms_;
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step
     std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of what is watched

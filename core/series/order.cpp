@@ -10,7 +10,7 @@ void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k) {
     make_order(plan, InnerSums<double>(plan), tables, static_cast<std::size_t>(k));
 }
 
-int make_orders(const SeriesPlan& plan, const SeriesTables& tables, SeriesMotion& motion, int k, int last) {
+int make_orders(const SeriesPlan& plan, const SeriesTables& tables, MotionOrders& motion, int k, int last) {
     for (;; ++k) {
         motion.row += plan.states();
         make_motion_order(plan, InnerSums<double>(plan), tables, motion.row, static_cast<std::size_t>(k));

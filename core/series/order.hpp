@@ -54,7 +54,7 @@ struct SeriesTablesOver {
 using SeriesTables = SeriesTablesOver<double>;
 
 // A motion's coefficients, made order by order until they are small. Machine code knows the layout.
-struct SeriesMotion {
+struct MotionOrders {
     double* row = nullptr;            // of the order made last: q, v, what is watched; order k + 1 goes behind it
     const double* largest = nullptr;  // in that row: the one that is compared
     double power = 1.0;               // its unit times target^k
@@ -69,7 +69,7 @@ void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k);
 
 // Makes the orders from k >= 2 on, after order k - 1. The last is `last`, or the first at which the compared coefficient
 // times target^k is not above 1. Returns it.
-int make_orders(const SeriesPlan& plan, const SeriesTables& tables, SeriesMotion& motion, int k, int last);
+int make_orders(const SeriesPlan& plan, const SeriesTables& tables, MotionOrders& motion, int k, int last);
 
 // Both as machine code for one plan, with vectors of this width (four or eight). All but the two terms with row k are
 // added up before the rules, so that the processor can do both at once; the bits are the same.
@@ -83,7 +83,7 @@ class OrderCode {
         first_(tables.now, tables.factors, tables.rows + row_, tables.rows + row_, weights(1), nullptr);
     }
     // The plan is that of a motion.
-    int make_orders(const SeriesTables& tables, SeriesMotion& motion, int k, int last) const {
+    int make_orders(const SeriesTables& tables, MotionOrders& motion, int k, int last) const {
         double* const row = tables.rows + static_cast<std::size_t>(k) * row_;
         const double* const before = motion.row;
         motion.last = tables.rows + static_cast<std::size_t>(last) * row_;
@@ -94,7 +94,7 @@ class OrderCode {
  private:
     friend class OrderWriter;
     using Function = void(double* now, const SeriesFactors* factors, const double* first, double* row,
-                          const double* weights, SeriesMotion* motion);
+                          const double* weights, MotionOrders* motion);
     static constexpr std::ptrdiff_t weights_per_order = 18;
     const double* weights(int k) const { return weights_.data() + k * weights_per_order; }
 

@@ -32,8 +32,8 @@ struct Part {
     }
 };
 
-// Where a member of SeriesMotion stands.
-#define ACHILLES_PLACE(member) (static_cast<Index>(offsetof(SeriesMotion, member) / sizeof(double)))
+// Where a member of MotionOrders stands.
+#define ACHILLES_PLACE(member) (static_cast<Index>(offsetof(MotionOrders, member) / sizeof(double)))
 
 }  // namespace
 

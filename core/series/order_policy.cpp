@@ -33,7 +33,8 @@ int best_order(const SeriesProgram& program, double tolerance, const OrderCosts&
 AdaptiveOrder::AdaptiveOrder(const SeriesProgram& program, double tolerance)
     : most_(best_order(program, tolerance, costs_of_one_run)) {}
 
-// TaylorStep::size(), and which component it is of. NaN or infinity if one of them is.
+// The largest coefficient of order k in units of its tolerance, and its component. The sum serves only to let NaN or
+// infinity of any component through, which comparisons would miss.
 AdaptiveOrder::Magnitude AdaptiveOrder::magnitude(const TaylorStep<double>& step, int k) {
     const double *const c = step.row(k), *const units = step.units();
     double largest = 0.0, sum = 0.0;
@@ -57,8 +58,9 @@ int AdaptiveOrder::leave_out_infinite(const TaylorStep<double>& step, int order)
     return finite >= lowest ? finite : 0;
 }
 
-// The first orders of a flight, which tell how long it may be. None of them is the last, so they are not looked at.
-int AdaptiveOrder::begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, SeriesMotion& motion,
+// The first orders of a flight, from which its length is guessed. No order below `lowest` may end the series, so that the
+// test of smallness is switched off: some component (the first v) is compared with a power that is never small.
+int AdaptiveOrder::begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, MotionOrders& motion,
                                 double longest) {
     constexpr double never_small = 1e300;
     motion.largest = step.row(1) + step.width() / 2;
@@ -75,19 +77,19 @@ int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& ser
     series.extend(1, first);
     first[step.width() - 1] = series.output(step.width() / 2);
     step.give_rate();
-    SeriesMotion motion;
+    MotionOrders motion;
     motion.row = first;
     int order = 1;
     power_ = target_ = longest;
     if (step.in_flight()) order = begin_flight(step, series, motion, longest);
-    for (bool small = false;;) {  // the last term was
+    for (bool small = false;;) {  // small: whether the order just before was
         const auto [m, largest] = magnitude(step, order);
         if (!(m < infinity)) return leave_out_infinite(step, order);
         const bool now = m * power_ <= 1.0;
         reached_ = small && now;
         if (order >= most_ || (order >= lowest && reached_ && (m > 0.0 || three_before_vanish(step, order))))
             return order;
-        // One large component is enough to go on, if it is not the end.
+        // While the component that is largest now stays large, orders are made without looking at the others.
         const int before = order;
         motion.largest = step.row(order) + largest;
         motion.power = step.units()[largest] * power_;
@@ -98,8 +100,8 @@ int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& ser
     }
 }
 
-// By symmetry the last two terms may be much smaller than the first ones left out; the two before them tell: half of
-// the step is within their reach. In a series that was cut early these are large by right.
+// The last two terms may be at most 1 at the step's end. Symmetry may make them too small, so the two before must be at
+// most 1 at half the step; not where a short series was ended early, whose earlier terms are large.
 double AdaptiveOrder::natural_step(const TaylorStep<double>& step) const {
     const int order = step.order();
     if (reached_ && order < guarded) return target_;

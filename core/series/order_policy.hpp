@@ -39,7 +39,7 @@ class AdaptiveOrder {
         std::size_t component;  // that it is of
     };
     static Magnitude magnitude(const TaylorStep<double>& step, int k);
-    int begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, SeriesMotion& motion, double longest);
+    int begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, MotionOrders& motion, double longest);
     int leave_out_infinite(const TaylorStep<double>& step, int order);
 
     int most_;

@@ -82,13 +82,14 @@ void Execution::bounce(const Contact& contact, double e) {
     next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
-// Far from what follows: the last step was neither short nor low.
+// Cheap and sufficient: the last step was so long, and what it fell so much, that too_short_to_resolve() need not look.
 bool Execution::is_well_resolved(double speed) const {
     const double q = next_.state.q.cwiseAbs().maxCoeff();
     return last_step_ > 1e-6 * (1.0 + next_.t) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
 
-// theory.md 6.3: the next flight is lower than the rounding of h, or shorter than that of t.
+// theory.md 6.3: the next flight, to leading order, is lower than four roundings of h or shorter than four of t. The first
+// line looks at the last step alone: with a very small e it may let one such flight through, which then ends here.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;

@@ -28,7 +28,8 @@ EdgeWatch::EdgeWatch(const Model& model, const Run& run)
       distances_(edges_.size()),
       signs_(edges_.size()) {}
 
-// What hides has a distance of its own: how much its u may still rise, or |u| fall. Small |u| hide nothing.
+// A function that hides has a distance, too (model/edges.hpp): `growth` less what u has risen, or less twice what |u| has
+// fallen. This is the factor of the series of u in that distance; 0 where |u| is too small to hide anything.
 double EdgeWatch::sign_of(const Edge& edge, double start) const {
     if (edge.kind == Edge::Kind::edge) return 1.0;
     if (edge.kind == Edge::Kind::exponential) return -1.0;
@@ -77,7 +78,8 @@ double EdgeWatch::safe_part(Polynomial& distance) const {
     double power = known;
     for (int k = 1; known < 1.0 && k <= distance.degree; ++k, power *= known)
         distance.c[static_cast<std::size_t>(k)] *= power;
-    // Above an eighth, whatever is left out. It starts well above.
+    // Less an eighth of the start, and less the last terms as an estimate of those left out: where this is positive the
+    // distance is above an eighth of what it was. At the start it is.
     distance.c[0] -= 0.125 * start + tail(distance);
     const Descent descent = first_descent(distance, 0, 0.0);
     if (descent.kind == Descent::Kind::none) return known;

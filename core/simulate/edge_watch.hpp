@@ -24,7 +24,7 @@ class EdgeWatch {
     double sign_of(const Edge& edge, double start) const;
 
     const std::vector<Edge>& edges_;
-    std::size_t block_;       // q and v
+    std::size_t block_;               // q and v
     SeriesEvaluator<double> series_;  // of the distances
     std::vector<Polynomial> distances_;
     std::vector<double> signs_;   // of a distance's terms, after the first

@@ -88,8 +88,8 @@ StepResult::End EventStepper::land_here() {
     return End::impact;
 }
 
-// h(q) came down where the series of the gap, as good as the tolerance, did not: where it did, by bisection of the
-// step.
+// The step's end lies under the surface by h(q), though the series of the gap, exact to the tolerance, stays above. Finds
+// by bisection where h(q) crosses zero, making the step again to each middle, and lands there.
 StepResult::End EventStepper::land_under() {
     const double duration = flow_->duration();
     double above = 0.0, under = 1.0;
@@ -98,7 +98,7 @@ StepResult::End EventStepper::land_under() {
         if (!end_step_after(middle * duration)) break;
         (kinematics_->at(flow_->end()).h > 0.0 ? above : under) = middle;
     }
-    if (!end_step_after(under * duration)) return doubt_gap(0.0);
+    if (!end_step_after(under * duration)) return doubt_gap(0.0);  // nothing of the step is kept
     return end_flight();
 }
 

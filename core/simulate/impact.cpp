@@ -84,8 +84,8 @@ double ContactKinematics::hdot_error(const State& state) {
     return rad(enclosure.hdot());
 }
 
-// A gap may be known against zero far better than against the coordinates, as (2 + sin x) y is near y = 0: its rounding
-// is then that of the last correction. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
+// Newton's method along n. Near the surface h may be exact far below the rounding of q, as (2 + sin x) y is near y = 0:
+// then the last correction alone sets its rounding. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
 // where dh vanishes on the surface it falls by a constant factor instead.
 std::optional<Contact> ContactKinematics::project(State& state, bool keep_velocity) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
@@ -95,8 +95,8 @@ std::optional<Contact> ContactKinematics::project(State& state, bool keep_veloci
     for (int round = 0;; ++round) {
         look(state, contact);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) break;
-        // The bound costs more than a second look, which takes what was not at rounding level at first to a few
-        // roundings of q: closer it will not come.
+        // The bound costs more than another round, so it is not asked in the first one unless h is tiny at once. One
+        // round leaves a few roundings of q as a rule, and no further one does better: that is near enough.
         const double roundings = std::abs(contact.h) / rounding_of_q(contact, state);
         const bool far = round == 0 && roundings > 0.5;
         const bool near = round > 0 && (roundings <= 4.0 || std::abs(contact.h) <= 0x1p-40 * before);

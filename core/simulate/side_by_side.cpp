@@ -88,8 +88,8 @@ std::size_t SideBySide::set_of(const std::vector<double>& parameters) {
     return sets_;
 }
 
-// Into line with what it needs next. What is not plain, and what lanes have just refused, its own stepper answers: one
-// step in contact, else the rest of the stretch, which is short.
+// Puts the run into a line for lanes, or lets its own stepper answer until a line will do. A step in contact that lanes
+// refused is made alone once, except on the way to a Zeno point; else the rest of the stretch is (Member::alone).
 void SideBySide::go_on(Member& member, bool refused) {
     Execution& run = member.execution;
     while ((member.request = run.next()) != nullptr) {
@@ -99,7 +99,7 @@ void SideBySide::go_on(Member& member, bool refused) {
         StepRequest own = *member.request;
         if (!member.alone) own.begins = true;  // for this stepper: the step before was not its own
         member.alone = !refused || flying || run.completing();
-        refused = false;
+        refused = false;  // it was said of the first request
         run.accept(member.stepper.step(own));
     }
     finish(member);

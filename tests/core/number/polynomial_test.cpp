@@ -36,6 +36,21 @@ double root_of(const Polynomial& polynomial, int known) {
     return descent.theta;
 }
 
+// What stands above the degree is anything.
+TEST(Polynomials, WhatStandsAboveTheDegreeHasNoMeaning) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> number(0.05, 0.95);
+    for (int i = 0; i < 1000; ++i) {
+        Polynomial line = from_roots({number(random)}, -number(random));
+        line.c[2] = 0.0;
+        const double root = root_of(line, 0);
+        for (const double above : {1e300, -1e300, 0.3, -7.0}) {
+            line.c[2] = above;
+            EXPECT_EQ(root_of(line, 0), root) << line.c[0] << " " << line.c[1] << " " << above;
+        }
+    }
+}
+
 TEST(Polynomials, TheFirstDescentIsFoundToTheLastBit) {
     EXPECT_NEAR(root_of(from_roots({0.3}, -1.0), 0), 0.3, 1e-15);
     EXPECT_NEAR(root_of(from_roots({0.3, 0.7, 2.0}, -1.0), 0), 0.3, 1e-15);

@@ -291,7 +291,7 @@ std::vector<double> orders_of(const Model& model, const SeriesProgram& program, 
         rows[width + 2 * n] = series.output(n);
     };
     begin();
-    SeriesMotion motion;
+    MotionOrders motion;
     motion.row = rows.data() + width;
     motion.largest = motion.row + n;
     motion.power = 1e4;

@@ -126,7 +126,7 @@ struct RandomSeries {
     // Orders k >= 2 from there on, until they are small or the last; the last made.
     int extend(const OrderCode* code, int k, double target) {
         const SeriesTables tables{factors.data(), now.data(), rows.data()};
-        SeriesMotion motion;
+        MotionOrders motion;
         motion.row = states.data() + 3 * (k - 1);
         motion.largest = motion.row;
         motion.power = 1e9;
@@ -201,7 +201,7 @@ TEST(Series, OutputsAreNeverInputs) {
     states[3] = 1.0;
     states[4] = terms.start(0);
     terms.extend(1, states.data() + 3);
-    SeriesMotion motion;
+    MotionOrders motion;
     motion.row = states.data() + 3;
     motion.largest = motion.row;
     motion.power = 1e9;
