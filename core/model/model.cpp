@@ -56,7 +56,7 @@ void Model::compile() {
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
     for (const Edge& edge : edges_) distances.push_back(edge.event_function);
-    if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), distances.size());
+    if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), 0, distances.size());
 }
 
 const Motion& Model::motion(ContactSet held) const {

@@ -38,6 +38,7 @@ class Model {
     const SystemDescription& description() const { return description_; }
     const Layout& layout() const { return layout_; }
     int dof() const { return static_cast<int>(layout_.dof); }
+    static constexpr std::size_t contacts() { return 1; }  // a description has one gap
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
@@ -88,7 +89,8 @@ class Model {
                                            std::span<const double> parameters) const {
         const auto known = evaluators.find(held);
         if (known != evaluators.end()) return known->second;
-        return evaluators.emplace(held, evaluator(motion(held).program, parameters)).first->second;
+        const Program& program = motion(held).program;
+        return evaluators.try_emplace(held, evaluator(program, parameters), layout_.dof, contacts()).first->second;
     }
 
     // The run that the description asks for.

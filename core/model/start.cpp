@@ -116,7 +116,7 @@ void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
 
 // The equations of motion have values. Where they have none, a derivative of V, h or T is to blame.
 void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const {
-    bool finite = std::isfinite(start.hddot());
+    bool finite = std::isfinite(start.hddot(0));
     for (std::size_t i = 0; i < layout_.dof; ++i) finite = finite && std::isfinite(start.acceleration(i));
     if (finite) return;
     Graph graph(*graph_);  // a copy: a model is shared between threads and never changes

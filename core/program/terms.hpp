@@ -67,18 +67,25 @@ class ContactTerms : public Terms<Base> {
     decltype(auto) W() const { return this->output(2 + 2 * this->dof_); }
 };
 
-// The acceleration of a motion, the pivots of M, hddot of the free motion; in contact the rate of hddot, too.
+// The acceleration of a motion, the pivots of M, hddot of the free motion at every contact, and of those that are held,
+// one after the other, the rate of hddot.
 template <class Base>
 class MotionTerms : public Terms<Base> {
  public:
-    using Terms<Base>::Terms;
+    MotionTerms() = default;
+    MotionTerms(Base base, std::size_t dof, std::size_t contacts = 1)
+        : Terms<Base>(std::move(base), dof), contacts_(contacts) {}
     static Expressions list(const Expressions& acceleration, const Expressions& pivots, const Expressions& further) {
         return joined({acceleration, pivots, further});
     }
     decltype(auto) acceleration(std::size_t i) const { return this->output(i); }
     decltype(auto) pivot(std::size_t i) const { return this->output(this->dof_ + i); }
-    decltype(auto) hddot() const { return this->output(2 * this->dof_); }
-    decltype(auto) jerk() const { return this->output(2 * this->dof_ + 1); }
+    decltype(auto) hddot(std::size_t contact) const { return this->output(2 * this->dof_ + contact); }
+    // Of contact i among those that are held.
+    decltype(auto) jerk(std::size_t i) const { return this->output(2 * this->dof_ + contacts_ + i); }
+
+ private:
+    std::size_t contacts_ = 1;
 };
 
 // What must be defined where a run starts: the free motion, T and V.

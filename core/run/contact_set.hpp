@@ -1,6 +1,7 @@
 // The contacts that a motion holds.
 #pragma once
 
+#include <bit>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@ class ContactSet {
     static constexpr ContactSet of(std::size_t contact) { return ContactSet(1u << contact); }
 
     constexpr bool empty() const { return bits_ == 0; }
+    constexpr int count() const { return std::popcount(bits_); }
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
 
     friend constexpr auto operator<=>(const ContactSet&, const ContactSet&) = default;

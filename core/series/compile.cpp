@@ -380,8 +380,9 @@ class SeriesCompiler {
     std::vector<Pending> sums_;
 };
 
-SeriesProgram::SeriesProgram(const Program& program, std::size_t wanted) : program_(program) {
-    SeriesCompiler(*this).compile(wanted);
+SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_t events) : program_(program) {
+    plan_.events = static_cast<std::uint32_t>(events);
+    SeriesCompiler(*this).compile(dof + events);
     if (const auto best = best_width()) code_ = OrderCode::of(plan_, *best);
 }
 

@@ -68,7 +68,7 @@ class SeriesEvaluator {
         if (code_) return code_->make_orders(tables_, motion, k, last);
         return make_orders(program_->plan_, tables_, motion, k, last);
     }
-    // Orders 1 .. last of a motion (last >= 4), into rows of q, v and what is watched. Row 1 comes first, where q and v
+    // Orders 1 .. last of a motion (last >= 4), into rows of q, v and the event functions. Row 1 comes first, where q and v
     // are given; before it stands row 0.
     void extend(Number* row, int last) requires(!is_one) {
         const SeriesPlan& plan = program_->plan_;

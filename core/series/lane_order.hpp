@@ -36,7 +36,7 @@ class LaneOrderCode {
 
     // Orders 1 .. last, last >= 4, where order 1 of q and v and sums of zero stand in `now`. All numbers are eight side
     // by side: `now` holds an order of the series and the inner sums (SeriesPlan::numbers()), then the rows of what is
-    // kept from row 0 on; row k of `motion` is order k of q, v and what is watched; `factors` are three for each rule.
+    // kept from row 0 on; row k of `motion` is order k of q, v and the event functions; `factors` are three for each rule.
     void make_orders(const double* factors, double* now, double* motion, int last) const {
         const auto* const weights = weights_.data();
         function_(now, factors, now + first_row_, weights->data(), weights[last - 1].data(), motion + states_);

@@ -67,7 +67,8 @@ class LaneOrderWriter {
         inputs(k == 1);
         for (std::size_t i = 0; i < plan_.rules.size(); ++i)
             write_rule(code_, plan_.rules[i], factors, lane(3 * i), !all_held_);
-        code_.vmovupd(at(motion, lane(plan_.states() - 1)), code_.held_or(zmm(0), plan_.outputs.back()));
+        for (std::size_t i = 0; i < plan_.events; ++i)
+            code_.vmovupd(at(motion, lane(2 * plan_.coordinates() + i)), code_.held_or(zmm(0), plan_.event(i)));
         keep();
         add_up(k);
         code_.lea(row, at(row, stride()));

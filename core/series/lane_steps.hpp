@@ -22,6 +22,7 @@ inline constexpr double stall = 0x1p-51, end_of_time = 1e-15;
 template <class Number>
 class LaneStepperOver final : public LaneStepper {
     using Mask = Condition<Number>;
+    static constexpr std::size_t contact = 0;  // the only one
 
  public:
     LaneStepperOver(const LanePrograms& programs, double tolerance, bool machine_code)
@@ -32,7 +33,7 @@ class LaneStepperOver final : public LaneStepper {
           contact_{{programs.contact, machine_code},
                    {best_order(programs.contact, tolerance, costs_of_eight_runs), true}},
           contact_terms_(ProgramOver<Number>(programs.contact_terms, machine_code), programs.coordinates),
-          step_(dof_, tolerance),
+          step_(dof_, 1, tolerance),
           before_(2 * dof_) {}
 
     void fix(const std::vector<Eight>& parameters) override {
@@ -61,15 +62,15 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     // Flight, where partial sums tell that the gap stays open, or only falls (first_descent()).
-    void fly(LaneStep& step) override {
+    [[gnu::flatten]] void fly(LaneStep& step) override {
         const GapOver<Number> gap{step.h, step.hdot, step.error, step.rate_error, step.state_error};
-        Mask plain = expand(flight_, step, gap, true);
+        Mask plain = expand(flight_, step, {}, gap);
         if (!any(plain)) return say(step, plain, plain);
         const Number target = step_.aim(Number(step.until) - step.t);
         const Number span = flight_.order.natural_step(step_, target);
         const Number least = shortest(step);
         plain &= span > least;
-        step_.event_terms(span, terms_.data());
+        step_.event_terms(contact, span, terms_.data());
         const Mask from_zero = Number(step.known) > 0.5;
         terms_[0] = select(from_zero, 0.0, terms_[0]);
         const Number error = gap_at_end(step, span);
@@ -96,15 +97,15 @@ class LaneStepperOver final : public LaneStepper {
     };
 
     // Contact, where the force keeps its sign by more than its remainder: true there.
-    Mask stay_once(LaneStep& step, Number& span) {
+    [[gnu::flatten]] Mask stay_once(LaneStep& step, Number& span) {
         const GapOver<Number> gap{0.0, 0.0, 0.0, 0.0, step.state_error};
-        Mask plain = expand(contact_, step, gap, false);
+        Mask plain = expand(contact_, step, ContactSet::of(contact), gap);
         span = 0.0;
         if (!any(plain)) return plain;
         span = contact_.order.natural_step(step_, Number(step.until) - step.t);
-        step_.event_terms(span, terms_.data());
+        step_.event_terms(contact, span, terms_.data());
         const auto term = [&](int k) -> const Number& { return terms_[static_cast<std::size_t>(k)]; };
-        plain &= step_.stays_negative(span, term) & (span > shortest(step));
+        plain &= step_.stays_negative(contact, span, term) & (span > shortest(step));
         step_.evaluate(span, step.q_and_v.data());
         plain &= project(step);
         for (std::size_t i = 0; i < dof_; ++i)
@@ -116,13 +117,14 @@ class LaneStepperOver final : public LaneStepper {
     Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
 
     // The series at the state where the step starts. True where they are numbers.
-    Mask expand(Expansion& motion, const LaneStep& step, const GapOver<Number>& gap, bool in_flight) {
+    Mask expand(Expansion& motion, const LaneStep& step, ContactSet held, const GapOver<Number>& gap) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
-        const auto start = step_.expand(motion.series, motion.order, gap, in_flight, Number(step.until) - step.t);
+        const auto start =
+            step_.expand(motion.series, motion.order, held, std::span(&gap, 1), Number(step.until) - step.t);
         return start.numbers & start.regular;
     }
 
-    // ---- what is watched ----
+    // ---- the event function ----
 
     std::size_t order() const { return static_cast<std::size_t>(step_.order()); }
 
@@ -135,9 +137,9 @@ class LaneStepperOver final : public LaneStepper {
             size += abs(terms_[k]);
         }
         const TermSizes<Number> sizes{size, abs(terms_[order()]) + abs(terms_[order() - 1])};
-        const auto doubt = step_.doubt(span, sizes);
+        const auto doubt = step_.doubt(contact, span, sizes);
         GapOver<Number> end{value, slope / span, 0.0, 0.0, 0.0};
-        step_.add_error(span, sizes, doubt, end);
+        step_.add_error(contact, span, sizes, doubt, end);
         step.h = end.h;
         step.hdot = end.hdot;
         step.error = end.error;
@@ -264,7 +266,7 @@ class LaneStepperOver final : public LaneStepper {
     ContactTerms<ProgramOver<Number>> contact_terms_;
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step
-    std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of what is watched
+    std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of the event function
     Number least_slope_, largest_slope_;                               // of it along the step
 };
 

@@ -33,12 +33,14 @@ struct SeriesPlan {
     std::uint32_t lanes = 0;
     std::uint32_t weighted = 0;              // of these, the first are weighted
     std::vector<std::uint32_t> left, right;  // of each lane: the series that it multiplies
-    // Of a motion: the inputs are q and v, series 1 .. 2 n, and the outputs v' (n) and what is watched, none of which
-    // is an input.
+    // Of a motion: the inputs are q and v, series 1 .. 2 n, and the outputs v' (n) and the event functions, none of
+    // which is an input.
     std::vector<std::uint32_t> outputs;
+    std::uint32_t events = 0;  // of the outputs, the last
 
-    std::size_t coordinates() const { return outputs.size() - 1; }
-    std::size_t states() const { return 2 * coordinates() + 1; }
+    std::size_t coordinates() const { return outputs.size() - events; }
+    std::uint32_t event(std::size_t i) const { return outputs[coordinates() + i]; }
+    std::size_t states() const { return 2 * coordinates() + events; }
     std::size_t numbers() const { return series + 2 * static_cast<std::size_t>(lanes); }
     std::size_t row() const { return 2 * static_cast<std::size_t>(lanes); }
 };
@@ -55,7 +57,7 @@ using SeriesTables = SeriesTablesOver<double>;
 
 // A motion's coefficients, made order by order until they are small. Machine code knows the layout.
 struct MotionOrders {
-    double* row = nullptr;            // of the order made last: q, v, what is watched; order k + 1 goes behind it
+    double* row = nullptr;            // of the order made last: q, v, event functions; order k + 1 goes behind it
     const double* largest = nullptr;  // in that row: the one that is compared
     double power = 1.0;               // its unit times target^k
     double target = 1.0;              // s, where the terms are compared

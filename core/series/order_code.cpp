@@ -142,6 +142,7 @@ class OrderWriter {
         constexpr Xbyak::Reg64 below = left_row;
         constexpr Xmm inverse(0);
         const auto n = static_cast<std::uint32_t>(plan_.coordinates());
+        const auto states = static_cast<Index>(plan_.states());
         code_.mov(below, at(motion, ACHILLES_PLACE(row)));
         code_.vmovsd(inverse, at(weights, 1 - OrderCode::weights_per_order));  // 1/k
         for (std::uint32_t i = 0; i < 2 * n; ++i) {
@@ -152,7 +153,7 @@ class OrderWriter {
                 code_.apply(Assembler::vmul, result, inverse, plan_.outputs[i - n]);
             }
             code_.store(result, 1 + i);
-            code_.vmovsd(at(below, 2 * n + 1 + i), result);
+            code_.vmovsd(at(below, states + i), result);
         }
     }
 
@@ -164,7 +165,8 @@ class OrderWriter {
         code_.mov(state, at(motion, ACHILLES_PLACE(row)));
         code_.lea(state, at(state, width));
         code_.mov(at(motion, ACHILLES_PLACE(row)), state);
-        code_.vmovsd(at(state, width - 1), code_.held_or(Xmm(0), plan_.outputs.back()));
+        for (std::uint32_t i = 0; i < plan_.events; ++i)
+            code_.vmovsd(at(state, width - plan_.events + i), code_.held_or(Xmm(0), plan_.event(i)));
         code_.mov(largest, at(motion, ACHILLES_PLACE(largest)));
         code_.lea(largest, at(largest, width));
         code_.mov(at(motion, ACHILLES_PLACE(largest)), largest);

@@ -63,7 +63,7 @@ int AdaptiveOrder::leave_out_infinite(const TaylorStep<double>& step, int order)
 int AdaptiveOrder::begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, MotionOrders& motion,
                                 double longest) {
     constexpr double never_small = 1e300;
-    motion.largest = step.row(1) + step.width() / 2;
+    motion.largest = step.row(1) + step.dof();
     motion.power = never_small;
     const int order = series.extend(motion, 2, lowest - 1);
     target_ = step.aim(longest);
@@ -75,13 +75,13 @@ int AdaptiveOrder::begin_flight(TaylorStep<double>& step, SeriesEvaluator<double
 int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& series, double longest) {
     double* const first = step.row(1);
     series.extend(1, first);
-    first[step.width() - 1] = series.output(step.width() / 2);
-    step.give_rate();
+    for (std::size_t i = 0; i < step.contacts(); ++i) first[2 * step.dof() + i] = series.output(step.dof() + i);
+    step.give_rates();
     MotionOrders motion;
     motion.row = first;
     int order = 1;
     power_ = target_ = longest;
-    if (step.in_flight()) order = begin_flight(step, series, motion, longest);
+    if (step.any_open()) order = begin_flight(step, series, motion, longest);
     for (bool small = false;;) {  // small: whether the order just before was
         const auto [m, largest] = magnitude(step, order);
         if (!(m < infinity)) return leave_out_infinite(step, order);

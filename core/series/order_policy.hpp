@@ -58,7 +58,7 @@ class FixedOrder {
 
     int expand(TaylorStep<Number>& step, SeriesEvaluator<Number>& series, const Number&) const {
         series.extend(step.row(1), order_);
-        step.give_rate();
+        step.give_rates();
         return order_;
     }
     // To where the last two terms reach 1, and half of the step is within the reach of the two before.

@@ -111,7 +111,7 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
     for (std::size_t i = 0; i < plan.weighted; ++i) totals[i] = totals[i] * inverse;
 }
 
-// Order k >= 1 of a motion, into `row`, of q, v and what is watched, whose order k - 1 stands before it:
+// Order k >= 1 of a motion, into `row`, of q, v and the event functions, whose order k - 1 stands before it:
 // q_k = v_{k-1}/k, v_k = v'_{k-1}/k. Order 1 of q and v is given, in the row.
 template <class Number>
 void make_motion_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const SeriesTablesOver<Number>& tables,
@@ -128,7 +128,7 @@ void make_motion_order(const SeriesPlan& plan, const InnerSums<Number>& sums, co
     }
     for (std::size_t i = 0; i < 2 * n; ++i) now[1 + i] = row[i];
     make_order(plan, sums, tables, k);
-    row[2 * n] = now[plan.outputs[n]];
+    for (std::size_t i = 0; i < plan.events; ++i) row[2 * n + i] = now[plan.event(i)];
 }
 
 }  // namespace achilles

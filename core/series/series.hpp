@@ -26,9 +26,11 @@ namespace achilles {
 class SeriesProgram {
  public:
     SeriesProgram() = default;
-    // Of the outputs, the first `wanted` are wanted as series, the others at order 0.
-    SeriesProgram(const Program& program, std::size_t wanted);
+    // Of the outputs, the first are wanted as series: the accelerations of so many coordinates, then so many event
+    // functions; the others at order 0.
+    SeriesProgram(const Program& program, std::size_t dof, std::size_t events);
 
+    std::size_t events() const { return plan_.events; }
     std::size_t inner_sums() const { return inner_sums_; }
     std::size_t rules() const { return plan_.rules.size(); }
     // Whether a function in it has an edge, past which it is no number: a root, a logarithm.

@@ -1,8 +1,8 @@
 // One step of the Taylor method over any number: a double for a run, doubles side by side for an ensemble.
 //
-// With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. What an event
-// is looked for in, the gap in flight and hddot in contact, is an output of the same program, so its series comes with
-// it: it is called the watched quantity here.
+// With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. What events
+// are looked for in is an output of the same program, so its series comes with it: every contact has an event function,
+// its gap where it is open and hddot where it is held.
 //
 // Order and step: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last terms
 // reach 1. Which order that is, and how far the last terms are trusted, is the order policy's (order_policy.hpp).
@@ -11,11 +11,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "number/choice.hpp"
 #include "number/horner.hpp"
 #include "number/pack.hpp"
+#include "run/contact_set.hpp"
 #include "series/evaluator.hpp"
 #include "series/gap.hpp"
 
@@ -32,7 +34,7 @@ inline constexpr auto reciprocals = [] {
     return table;
 }();
 
-// Of the watched quantity's terms at the end of a step: the sum of their sizes, and that of the last two.
+// Of an event function's terms at the end of a step: the sum of their sizes, and that of the last two.
 template <class Number>
 struct TermSizes {
     Number all, last;
@@ -44,23 +46,30 @@ class TaylorStep {
     using Series = SeriesEvaluator<Number>;
     static constexpr int highest_order = Series::highest_order;
 
-    TaylorStep(std::size_t dof, double tolerance)
+    // `contacts`: how many event functions the motions have.
+    TaylorStep(std::size_t dof, std::size_t contacts, double tolerance)
         : dof_(dof),
           tolerance_(tolerance),
-          rows_((highest_order + 1) * width(), Number(0.0)),
-          units_(width(), Number(0.0)),
-          gap_{0.0, 0.0, 0.0, 0.0, 0.0} {}
+          rows_((highest_order + 1) * (2 * dof + contacts), Number(0.0)),
+          units_(2 * dof + contacts, Number(0.0)),
+          gaps_(contacts, GapOver<Number>{0.0, 0.0, 0.0, 0.0, 0.0}) {}
 
-    // Row k: order k of q, v and the watched quantity.
-    std::size_t width() const { return 2 * dof_ + 1; }
+    std::size_t dof() const { return dof_; }
+    std::size_t contacts() const { return gaps_.size(); }
+    // Row k: order k of q, v and the event functions.
+    std::size_t width() const { return 2 * dof_ + contacts(); }
     Number* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width(); }
     const Number* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width(); }
-    const Number& watched(int k) const { return row(k)[2 * dof_]; }
+    const Number& event(std::size_t contact, int k) const { return row(k)[2 * dof_ + contact]; }
     // 1/(tolerance of each component).
     const Number* units() const { return units_.data(); }
     int order() const { return order_; }
-    bool in_flight() const { return in_flight_; }
-    const GapOver<Number>& gap() const { return gap_; }
+    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
+    bool any_open() const {
+        for (std::size_t i = 0; i < contacts(); ++i)
+            if (is_open(i)) return true;
+        return false;
+    }
 
     // ---- expansion ----
 
@@ -69,22 +78,23 @@ class TaylorStep {
         Condition<Number> numbers, regular;
     };
     // The series at the state whose q and v stand in row 0, to the order that the policy finds is needed for `longest`
-    // (s). Of the gap only its state_error counts in contact.
+    // (s), along the motion that holds these contacts. Of a held contact's gap only the state_error counts.
     template <class OrderPolicy>
-    Start expand(Series& series, OrderPolicy& policy, const GapOver<Number>& gap, bool in_flight,
+    Start expand(Series& series, OrderPolicy& policy, ContactSet held, std::span<const GapOver<Number>> gaps,
                  const Number& longest) {
-        gap_ = gap;
-        in_flight_ = in_flight;
+        for (std::size_t i = 0; i < contacts(); ++i) gaps_[i] = gaps[i];
+        held_ = held;
         const Start start = begin(series);
         if (any(start.numbers & start.regular)) order_ = policy.expand(*this, series, longest);
         return start;
     }
-    // For a policy: after order 1 has been made, the gap moves at the rate that is known.
-    void give_rate() {
-        if (in_flight_) row(1)[2 * dof_] = gap_.hdot;
+    // For a policy: after order 1 has been made, open gaps move at the rates that are known.
+    void give_rates() {
+        for (std::size_t i = 0; i < contacts(); ++i)
+            if (is_open(i)) row(1)[2 * dof_ + i] = gaps_[i].hdot;
     }
-    // For a policy, in flight, after order 2: as long as the flight's parabola and a little more, or `longest`. What is
-    // watched must be known well against the height of such a flight.
+    // For a policy, after order 2: as long as the parabola of the open gap that closes first and a little more, or
+    // `longest`. Every gap must be known well against the height of such a flight.
     Number aim(const Number& longest);
 
     // ---- the step's length ----
@@ -96,37 +106,39 @@ class TaylorStep {
         return allowed - rough_log2(m) * reciprocals[static_cast<std::size_t>(k)];
     }
 
-    // ---- what is reached, and what is watched ----
+    // ---- what is reached, and the event functions ----
 
     // q and v after a time.
     template <class Place>
     void evaluate(const Number& span, Place* q_and_v) const;
-    // The watched quantity as a polynomial in theta = t/span: order() + 1 terms.
-    void event_terms(const Number& span, Number* terms) const;
+    // A contact's event function as a polynomial in theta = t/span: order() + 1 terms.
+    void event_terms(std::size_t contact, const Number& span, Number* terms) const;
 
-    // What is left out of the watched quantity, what the steps before have made it wrong by where the step ends, and
+    // What is left out of an event function, what the steps before have made it wrong by where the step ends, and
     // how fast the error of the state moves it.
     struct Doubt {
         Number own, earlier, drifting;
         Number remainder() const { return own + earlier; }
     };
-    Doubt doubt(const Number& span, const TermSizes<Number>& sizes) const;
-    // Adds to the gap at the end of the step what later steps must take it to be wrong by.
-    void add_error(const Number& span, const TermSizes<Number>& sizes, const Doubt& doubt, GapOver<Number>& end) const;
-    // Whether the watched quantity stays below zero by more than its remainder, as Abel's sums tell: first_descent()
+    Doubt doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const;
+    // Adds to a gap at the end of the step what later steps must take it to be wrong by.
+    void add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes, const Doubt& doubt,
+                   GapOver<Number>& end) const;
+    // Whether an event function stays below zero by more than its remainder, as Abel's sums tell: first_descent()
     // would find the same. term(k) is asked for in ascending order.
     template <class Term>
-    Condition<Number> stays_negative(const Number& span, const Term& term) const;
+    Condition<Number> stays_negative(std::size_t contact, const Number& span, const Term& term) const;
 
  private:
     Start begin(Series& series);
     void set_unit(std::size_t i, const Number& size) { units_[i] = 1.0 / (tolerance_ * size); }
+    const Number& unit(std::size_t contact) const { return units_[2 * dof_ + contact]; }
 
     std::size_t dof_;
     double tolerance_;
     std::vector<Number> rows_, units_;
-    GapOver<Number> gap_;  // where the step starts
-    bool in_flight_ = true;
+    std::vector<GapOver<Number>> gaps_;  // where the step starts
+    ContactSet held_;
     int order_ = 0;  // of the last expansion
 };
 
@@ -134,18 +146,19 @@ class TaylorStep {
 template <class Number>
 auto TaylorStep<Number>::begin(Series& series) -> Start {
     using std::abs;
-    const std::size_t w = 2 * dof_;
-    Number* const c = row(0);
+    Number *const c = row(0), *const events = c + 2 * dof_;
     Start start{Condition<Number>(true), Condition<Number>(true)};
-    for (std::size_t i = 0; i < w; ++i) {
+    for (std::size_t i = 0; i < 2 * dof_; ++i) {
         start.numbers = start.numbers & (abs(c[i]) < largest_state);
         set_unit(i, 1.0 + abs(c[i]));
     }
     if (!any(start.numbers)) return start;
     series.begin(c);
-    for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + 1 + i) > 0.0);
-    c[w] = in_flight_ ? gap_.h : series.start(dof_);
-    set_unit(w, 1.0 + abs(c[w]));
+    for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + contacts() + i) > 0.0);
+    for (std::size_t i = 0; i < contacts(); ++i) {
+        events[i] = is_open(i) ? gaps_[i].h : series.start(dof_ + i);
+        set_unit(2 * dof_ + i, 1.0 + abs(events[i]));
+    }
     Number* const first = row(1);
     for (std::size_t i = 0; i < dof_; ++i) {
         first[i] = c[dof_ + i];
@@ -158,14 +171,22 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
 template <class Number>
 Number TaylorStep<Number>::aim(const Number& longest) {
     using std::abs, std::sqrt;
-    const Number h0 = max(gap_.h, 0.0), h1 = gap_.hdot, h2 = watched(2);
-    const Number root = sqrt(h1 * h1 - 4.0 * h0 * h2);
-    const Condition<Number> rises = h1 > 0.0;
-    const Number time = select(rises, h1 + root, 2.0 * h0) / select(rises, -2.0 * h2, root - h1);
-    const Number fall = select((h2 < 0.0) & ((h0 > 0.0) | rises), min(time, longest), longest);
-    const Number target = min(1.05 * fall, longest), height = abs(gap_.h) + abs(gap_.hdot) * target;
-    Number& unit = units_[2 * dof_];
-    unit = select((height > 0.0) & (height < 1.0), 1.0 / (tolerance_ * height), unit);
+    Number target = longest;
+    for (std::size_t i = 0; i < contacts(); ++i) {
+        if (!is_open(i)) continue;
+        const Number h0 = max(gaps_[i].h, 0.0), h1 = gaps_[i].hdot, h2 = event(i, 2);
+        const Number root = sqrt(h1 * h1 - 4.0 * h0 * h2);
+        const Condition<Number> rises = h1 > 0.0;
+        const Number time = select(rises, h1 + root, 2.0 * h0) / select(rises, -2.0 * h2, root - h1);
+        const Number fall = select((h2 < 0.0) & ((h0 > 0.0) | rises), min(time, longest), longest);
+        target = min(1.05 * fall, target);
+    }
+    for (std::size_t i = 0; i < contacts(); ++i) {
+        if (!is_open(i)) continue;
+        const Number height = abs(gaps_[i].h) + abs(gaps_[i].hdot) * target;
+        Number& unit = units_[2 * dof_ + i];
+        unit = select((height > 0.0) & (height < 1.0), 1.0 / (tolerance_ * height), unit);
+    }
     return target;
 }
 
@@ -179,7 +200,9 @@ Number TaylorStep<Number>::size(int k) const {
         even = max(abs(c[i]) * units_[i], even);
         odd = max(abs(c[i + 1]) * units_[i + 1], odd);
     }
-    return max(max(even, odd), abs(c[2 * dof_]) * units_[2 * dof_]);
+    Number largest = max(even, odd);
+    for (std::size_t i = 2 * dof_; i < width(); ++i) largest = max(largest, abs(c[i]) * units_[i]);
+    return largest;
 }
 
 // Two components at a time; q and v stand side by side, so there is no odd one.
@@ -193,12 +216,12 @@ void TaylorStep<Number>::evaluate(const Number& span, Place* q_and_v) const {
 }
 
 template <class Number>
-void TaylorStep<Number>::event_terms(const Number& span, Number* terms) const {
+void TaylorStep<Number>::event_terms(std::size_t contact, const Number& span, Number* terms) const {
     Number even = 1.0, odd = span;
     const Number square = span * span;
     for (int k = 0; k <= order_; k += 2, even *= square, odd *= square) {
-        terms[k] = watched(k) * even;
-        if (k < order_) terms[k + 1] = watched(k + 1) * odd;
+        terms[k] = event(contact, k) * even;
+        if (k < order_) terms[k + 1] = event(contact, k + 1) * odd;
     }
 }
 
@@ -206,12 +229,14 @@ void TaylorStep<Number>::event_terms(const Number& span, Number* terms) const {
 // than the last two together, with the rounding of all, and about the tolerance, which is in units of the flight's
 // height. A dip within that, and within what the steps before have made, can be neither claimed nor denied.
 template <class Number>
-auto TaylorStep<Number>::doubt(const Number& span, const TermSizes<Number>& sizes) const -> Doubt {
+auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const -> Doubt {
     using std::abs;
-    const Number own = max(sizes.last + 4.0 * unit_roundoff * sizes.all, 2.0 / units_[2 * dof_]);
-    const Number drifting =
-        gap_.drift(in_flight_ ? 2.0 * abs(watched(2)) + 6.0 * abs(watched(3)) : abs(watched(0)) + abs(watched(1)));
-    return {own, in_flight_ ? gap_.error_after(span, drifting) : drifting, drifting};
+    const GapOver<Number>& gap = gaps_[contact];
+    const bool open = is_open(contact);
+    const auto term = [&](int k) { return abs(event(contact, k)); };
+    const Number own = max(sizes.last + 4.0 * unit_roundoff * sizes.all, 2.0 / unit(contact));
+    const Number drifting = gap.drift(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1));
+    return {own, open ? gap.error_after(span, drifting) : drifting, drifting};
 }
 
 // The end is better known than the remainder says of the whole step. But what is left out is wrong in the rate too, as
@@ -219,17 +244,17 @@ auto TaylorStep<Number>::doubt(const Number& span, const TermSizes<Number>& size
 // is left out. The weights are measured with bench_floor's dips: right or undecided, and at a tolerance of 1e-14 right,
 // but for 2 of 3300.
 template <class Number>
-void TaylorStep<Number>::add_error(const Number& span, const TermSizes<Number>& sizes, const Doubt& doubt,
-                                   GapOver<Number>& end) const {
+void TaylorStep<Number>::add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes,
+                                   const Doubt& doubt, GapOver<Number>& end) const {
     const Number left_out = 0.16 * max(sizes.last - 1024.0 * unit_roundoff * sizes.all, 0.0);
     end.error = doubt.earlier + 0.125 * doubt.own + left_out;
     end.rate_error = doubt.drifting * span + static_cast<double>(order_ + 1) * left_out / span;
-    end.state_error = gap_.state_error;
+    end.state_error = gaps_[contact].state_error;
 }
 
 template <class Number>
 template <class Term>
-Condition<Number> TaylorStep<Number>::stays_negative(const Number& span, const Term& term) const {
+Condition<Number> TaylorStep<Number>::stays_negative(std::size_t contact, const Number& span, const Term& term) const {
     using std::abs;
     Number last = term(0), before = 0.0, sum = last, highest = sum, size = abs(sum);
     for (int k = 1; k <= order_; ++k) {
@@ -239,7 +264,7 @@ Condition<Number> TaylorStep<Number>::stays_negative(const Number& span, const T
         highest = max(sum, highest);
         size += abs(last);
     }
-    return highest < -doubt(span, {size, abs(last) + abs(before)}).remainder();
+    return highest < -doubt(contact, span, {size, abs(last) + abs(before)}).remainder();
 }
 
 }  // namespace achilles

@@ -9,7 +9,7 @@ namespace achilles {
 // What the flow's last step came to.
 StepResult::End EventStepper::find_release() {
     const bool asked_before = request_->start.asked_again;
-    Descent descent = flow_->stays_negative() ? Descent{} : force_descent();
+    Descent descent = flow_->stays_negative(contact) ? Descent{} : force_descent();
     if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
     bool asked_again = false;
     switch (descent.kind) {
@@ -51,7 +51,7 @@ StepResult::End EventStepper::doubt_force(double theta) {
 // rounding.
 Descent EventStepper::force_descent() {
     const int multiplicity = request_->start.multiplicity;
-    Polynomial force = flow_->event_function();
+    Polynomial force = flow_->event_function(contact);
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow_->is_expansion()) {
         State end = flow_->end();
@@ -63,7 +63,7 @@ Descent EventStepper::force_descent() {
     } else if (!(force.c[0] > 0.0)) {
         return {Descent::Kind::root, 0.0};
     }
-    return first_descent(force, multiplicity, flow_->remainder(force));
+    return first_descent(force, multiplicity, flow_->remainder(contact, force));
 }
 
 // The same as locate_impact, for hddot = 0 along the constrained motion.

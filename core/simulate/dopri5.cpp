@@ -1,7 +1,7 @@
 // Dormand and Prince's Runge-Kutta method of order 5 with its dense output of order 4, from Boost.Odeint.
 //
-// The quantity whose zero ends the stretch is integrated along with the motion, under the same error control: in flight
-// the gap (h, hdot with (h, hdot)' = (hdot, hddot)), in contact hddot (with rate h'''). So a step is never longer than
+// The event functions are integrated along with the motion, under the same error control: of an open contact the gap
+// (h, hdot with (h, hdot)' = (hdot, hddot)), of a held one hddot (with rate h'''). So a step is never longer than
 // that quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers
 // (theory.md 9.3).
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace achilles {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-using Values = std::vector<double>;  // q, v, then what is watched: h, hdot in flight; hddot, 0 in contact
+using Values = std::vector<double>;  // q, v, then of each contact h, hdot where it is open, hddot, 0 where it is held
 using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
 
 bool is_finite(const Values& values) {
@@ -36,17 +36,18 @@ class Dopri5 : public Stepper {
           tolerance_(run.options.tolerance),
           dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
           model_(&model),
-          parameters_(run.parameters) {}
+          parameters_(run.parameters),
+          gaps_(model.contacts()) {}
 
-    void initialize(ContactSet held, const State& state, const Gap& gap) override;
+    void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override { return to_; }
-    Polynomial event_function() const override { return component(2 * dof_); }
+    Polynomial event_function(std::size_t contact) const override { return component(event(contact)); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
-    double remainder(const Polynomial& p) const override;
-    void add_error(const Polynomial& p, Gap& end) const override;
+    double remainder(std::size_t contact, const Polynomial& p) const override;
+    void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return false; }
     long evaluations() const override { return evaluations_; }
 
@@ -60,9 +61,12 @@ class Dopri5 : public Stepper {
     StepFailure advance(double dt, double least);
     StepFailure accept();
     StepFailure failure_here() const;
-    double own_remainder(const Polynomial& p) const;
-    double drifting(const Polynomial& p) const;
-    double earlier_error(const Polynomial& p) const;
+    double own_remainder(std::size_t contact, const Polynomial& p) const;
+    double drifting(std::size_t contact, const Polynomial& p) const;
+    double earlier_error(std::size_t contact, const Polynomial& p) const;
+    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
+    std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // where its event function stands
+    std::size_t width() const { return event(gaps_.size()); }
     Values values_of(const State& state) const;
     Polynomial component(std::size_t i) const {
         return interpolate({nodes_[0][i], nodes_[1][i], nodes_[2][i], nodes_[3][i], nodes_[4][i]});
@@ -79,13 +83,13 @@ class Dopri5 : public Stepper {
     double span_ = 0.0;
     double natural_ = 0.0;     // the step the error control would take next; 0: not known
     State from_, to_;          // the last step's ends
-    Gap gap_;                  // in flight, at `from`
+    std::vector<Gap> gaps_;    // at `from`
     bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
     std::array<Values, 5> nodes_;
     long evaluations_ = 0;
 };
 
-// y' = (v, f, hdot, hddot) or (v, f_c, h''', 0). Where M is not positive definite the derivative is NaN, and with it
+// y' = (v, f, hdot, hddot) in flight, (v, f_c, h''', 0) in contact. Where M is not positive definite the derivative is NaN, and with it
 // the step.
 void Dopri5::derivative(const Values& y, Values& dydt) {
     ++evaluations_;
@@ -98,12 +102,15 @@ void Dopri5::derivative(const Values& y, Values& dydt) {
         dydt[i] = y[dof_ + i];
         dydt[dof_ + i] = regular ? motion.acceleration(i) : std::numeric_limits<double>::quiet_NaN();
     }
-    dydt[2 * dof_] = held_.empty() ? y[2 * dof_ + 1] : motion.jerk();
-    dydt[2 * dof_ + 1] = held_.empty() ? motion.hddot() : 0.0;
+    for (std::size_t contact = 0, held = 0; contact < gaps_.size(); ++contact) {
+        const std::size_t i = event(contact);
+        dydt[i] = is_open(contact) ? y[i + 1] : motion.jerk(held++);
+        dydt[i + 1] = is_open(contact) ? motion.hddot(contact) : 0.0;
+    }
 }
 
 Values Dopri5::values_of(const State& state) const {
-    Values y(2 * dof_ + 2, 0.0);
+    Values y(width(), 0.0);
     for (std::size_t i = 0; i < dof_; ++i) {
         y[i] = state.q[static_cast<Eigen::Index>(i)];
         y[dof_ + i] = state.v[static_cast<Eigen::Index>(i)];
@@ -111,18 +118,18 @@ Values Dopri5::values_of(const State& state) const {
     return y;
 }
 
-void Dopri5::initialize(ContactSet held, const State& state, const Gap& gap) {
+void Dopri5::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || held != held_) motion_ = &model_->lazily(motions_, held, parameters_);
     held_ = held;
     to_ = state;
-    gap_ = gap;
+    gaps_.assign(gaps.begin(), gaps.end());
     continuing_ = false;
     if (natural_ == 0.0) guess_first_step();
 }
 
 // The first stretch of a run: a guess from the first derivative, which the error control corrects at once.
 void Dopri5::guess_first_step() {
-    Values dydt(2 * dof_ + 2);
+    Values dydt(width());
     const Values y = values_of(to_);
     derivative(y, dydt);
     double size = 1e-3, rate = 1e-3;
@@ -135,13 +142,14 @@ void Dopri5::guess_first_step() {
 
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
-    if (held_.empty()) {
-        y[2 * dof_] = gap_.h;
-        y[2 * dof_ + 1] = gap_.hdot;
-    } else {  // hddot of the state itself
+    if (!held_.empty()) {  // hddot of the state itself
         for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
         motion_->run();
-        y[2 * dof_] = motion_->hddot();
+    }
+    for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
+        const std::size_t i = event(contact);
+        y[i] = is_open(contact) ? gaps_[contact].h : motion_->hddot(contact);
+        if (is_open(contact)) y[i + 1] = gaps_[contact].hdot;
     }
     dense_.initialize(y, 0.0, dt);
 }
@@ -158,7 +166,7 @@ StepFailure Dopri5::accept() {
     const double begin = dense_.previous_time();
     span_ = dense_.current_time() - begin;
     for (std::size_t k = 0; k < 5; ++k) {
-        nodes_[k].resize(2 * dof_ + 2);
+        nodes_[k].resize(width());
         if (k == 0) nodes_[k] = dense_.previous_state();
         if (k == 4) nodes_[k] = dense_.current_state();
         if (k > 0 && k < 4) dense_.calc_state(begin + 0.25 * static_cast<double>(k) * span_, nodes_[k]);
@@ -191,8 +199,10 @@ StepFailure Dopri5::advance(double dt, double least) {
 StepFailure Dopri5::do_step(double longest, double first, double least) {
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
-    if (continuing_)
-        gap_ = {nodes_[4][2 * dof_], nodes_[4][2 * dof_ + 1], gap_.error, gap_.rate_error, gap_.state_error};
+    for (std::size_t contact = 0; continuing_ && contact < gaps_.size(); ++contact) {
+        gaps_[contact].h = nodes_[4][event(contact)];
+        gaps_[contact].hdot = nodes_[4][event(contact) + 1];
+    }
     from_ = to_;
     StepFailure failure = StepFailure::not_a_number;
     if (continuing_ && !by_order) {
@@ -230,31 +240,36 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 
 // The local error that the error control allows, and as much for the dense output between the ends, which is of one
 // order less. In a flight that is short against such a step, less than the highest term that was kept.
-double Dopri5::own_remainder(const Polynomial& p) const {
+double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
     const double allowed = 4.0 * tolerance_ * (1.0 + size);
-    return (held_.empty() ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
+    return (is_open(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
-double Dopri5::drifting(const Polynomial& p) const {
-    return gap_.drift(held_.empty() ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
+double Dopri5::drifting(std::size_t contact, const Polynomial& p) const {
+    return gaps_[contact].drift(is_open(contact)
+                                    ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                     : std::abs(p.c[0]) + std::abs(p.c[1]) / span_);
 }
 
-double Dopri5::earlier_error(const Polynomial& p) const {
-    return held_.empty() ? gap_.error_after(span_, drifting(p)) : drifting(p);
+double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
+    const double drift = drifting(contact, p);
+    return is_open(contact) ? gaps_[contact].error_after(span_, drift) : drift;
 }
 
-double Dopri5::remainder(const Polynomial& p) const { return own_remainder(p) + earlier_error(p); }
+double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
+    return own_remainder(contact, p) + earlier_error(contact, p);
+}
 
 // A step leaves the gap and its rate wrong by no more than that.
-void Dopri5::add_error(const Polynomial& p, Gap& end) const {
-    const double own = own_remainder(p);
-    end.error = earlier_error(p) + own;
-    end.state_error = gap_.state_error;
-    end.rate_error =
-        gap_.rate_error + drifting(p) * span_ + std::min(4.0 * tolerance_ * (1.0 + std::abs(end.hdot)), own / span_);
+void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
+    const Gap& gap = gaps_[contact];
+    const double own = own_remainder(contact, p);
+    end.error = earlier_error(contact, p) + own;
+    end.state_error = gap.state_error;
+    end.rate_error = gap.rate_error + drifting(contact, p) * span_ +
+                     std::min(4.0 * tolerance_ * (1.0 + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace

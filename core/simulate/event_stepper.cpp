@@ -14,7 +14,8 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
     const bool flying = request.held.empty();
-    if (request.begins) flow_->start(request.held, request.t, request.state, request.start.gap, request.first_step);
+    if (request.begins)
+        flow_->start(request.held, request.t, request.state, std::span(&request.start.gap, 1), request.first_step);
     result_.flow = flow_;
     result_.steps = 0;
     result_.t = request.t;

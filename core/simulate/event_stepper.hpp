@@ -21,6 +21,7 @@ class EventStepper {
 
  private:
     using End = StepResult::End;
+    static constexpr std::size_t contact = 0;  // that is watched: the only one
 
     // In flight (flight.cpp).
     End find_impact();

@@ -11,12 +11,12 @@ namespace achilles {
 // better (the difference is above its rounding), the polynomial is made to end there.
 Polynomial EventStepper::gap_along() {
     const int multiplicity = request_->start.multiplicity;
-    Polynomial h = flow_->event_function();
+    Polynomial h = flow_->event_function(contact);
     for (int j = 0; j < multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
     if (flow_->is_expansion()) return h;
-    const Contact contact = kinematics_->at(flow_->end());
-    const double value = contact.h - h(1.0), slope = contact.hdot * flow_->duration() - h.slope(1.0);
-    if (!kinematics_->within_gap_error(value, 4.0, contact, flow_->end())) {
+    const Contact end = kinematics_->at(flow_->end());
+    const double value = end.h - h(1.0), slope = end.hdot * flow_->duration() - h.slope(1.0);
+    if (!kinematics_->within_gap_error(value, 4.0, end, flow_->end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
         const int m = std::max(2, multiplicity);
         const double b = slope - m * value;
@@ -31,10 +31,10 @@ StepResult::End EventStepper::find_impact() {
     const int multiplicity = request_->start.multiplicity;
     const bool asked_before = request_->start.asked_again;
     Polynomial h = gap_along();
-    Descent descent = first_descent(h, multiplicity, flow_->remainder(h));
+    Descent descent = first_descent(h, multiplicity, flow_->remainder(contact, h));
     if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) {  // a short step knows its start better
         h = gap_along();
-        descent = first_descent(h, multiplicity, flow_->remainder(h));
+        descent = first_descent(h, multiplicity, flow_->remainder(contact, h));
     }
     bool asked_again = false;
     switch (descent.kind) {
@@ -57,22 +57,22 @@ StepResult::End EventStepper::find_impact() {
         case Descent::Kind::undecided:
             return doubt_gap(descent.theta);
     }
-    const Contact contact = kinematics_->at(flow_->end());
+    const Contact end = kinematics_->at(flow_->end());
     Gap gap{h(1.0), h.slope(1.0) / flow_->duration()};
-    if (!kinematics_->within_gap_error(contact.h - gap.h, 4.0, contact, flow_->end())) {
-        if (contact.h < 0.0) return land_under();
-        gap = {contact.h, contact.hdot};
+    if (!kinematics_->within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
+        if (end.h < 0.0) return land_under();
+        gap = {end.h, end.hdot};
     }
-    flow_->add_error(h, gap);
-    flow_->move_gap(gap);
+    flow_->add_error(contact, h, gap);
+    flow_->move_gap(contact, gap);
     result_.start = {gap, 0, asked_again};
-    end_step(contact.h);
+    end_step(end.h);
     return End::no_event;
 }
 
 // Whether the gap closes cannot be told from theta on: the step ends there.
 StepResult::End EventStepper::doubt_gap(double theta) {
-    result_.remainder = flow_->remainder(flow_->event_function());
+    result_.remainder = flow_->remainder(contact, flow_->event_function(contact));
     if (end_step_at(theta)) end_step(kinematics_->at(flow_->end()).h);
     return End::doubt;
 }

@@ -11,14 +11,14 @@ Flow::Flow(const Model& model, const Run& run)
       model_(&model),
       parameters_(run.parameters) {}
 
-void Flow::start(ContactSet held, double t, const State& state, const Gap& gap, double first_step) {
+void Flow::start(ContactSet held, double t, const State& state, std::span<const Gap> gaps, double first_step) {
     held_ = held;
     t_ = end_ = t;
     span_ = 0.0;
     first_ = first_step;
     to_ = state;
     fetched_ = true;
-    gap_ = gap;
+    gaps_.assign(gaps.begin(), gaps.end());
     moved_ = true;
 }
 
@@ -30,7 +30,7 @@ StepFailure Flow::step(double until) {
     span_ = 0.0;
     const double longest = until - t_;
     const State& start = end();
-    if (moved_) stepper_->initialize(held_, start, gap_);
+    if (moved_) stepper_->initialize(held_, start, gaps_);
     moved_ = false;
     StepFailure failure = stepper_->do_step(longest, first_, least());
     first_ = 0.0;
@@ -62,8 +62,8 @@ State& Flow::edit_end() {
     return to_;
 }
 
-void Flow::move_gap(const Gap& gap) {
-    gap_ = gap;
+void Flow::move_gap(std::size_t contact, const Gap& gap) {
+    gaps_[contact] = gap;
     moved_ = true;
 }
 

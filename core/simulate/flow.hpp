@@ -17,8 +17,8 @@ class Flow {
     Flow(const Model& model, const Run& run);
 
     // Starts a stretch at (t, state) that holds these contacts. In flight the first step is at most `first_step` (s); 0
-    // leaves it to the stepper. In contact only the gap's state_error counts.
-    void start(ContactSet held, double t, const State& state, const Gap& gap, double first_step);
+    // leaves it to the stepper. One gap for each contact; of a held one's only the state_error counts.
+    void start(ContactSet held, double t, const State& state, std::span<const Gap> gaps, double first_step);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
     // domain inside a step the step is shortened, until it is too short to be a step: that is the failure. So it is
     // where one comes to an edge inside (model/edges.hpp).
@@ -27,8 +27,8 @@ class Flow {
     StepFailure redo_step(double duration);
     // The end of the last step, to be moved (onto the surface, say); the next step starts from there.
     State& edit_end();
-    // In flight: the gap at the end of the last step, where the next one starts.
-    void move_gap(const Gap& gap);
+    // An open contact's gap at the end of the last step, where the next one starts.
+    void move_gap(std::size_t contact, const Gap& gap);
     // Moves the end of the last step along the motion by a time so short that a second-order Taylor step is exact.
     void shift_end(double dt);
 
@@ -41,12 +41,12 @@ class Flow {
         fetched_ = true;
         return to_;
     }
-    // Along the last step, as a polynomial in theta: h in flight, hddot of the free motion in contact.
-    Polynomial event_function() const { return stepper_->event_function(); }
-    bool stays_negative() const { return stepper_->stays_negative(); }
+    // Of a contact along the last step: h where it is open, hddot of the free motion where it is held (Stepper).
+    Polynomial event_function(std::size_t contact) const { return stepper_->event_function(contact); }
+    bool stays_negative(std::size_t contact) const { return stepper_->stays_negative(contact); }
     bool is_expansion() const { return stepper_->is_expansion(); }
-    double remainder(const Polynomial& event_function) const { return stepper_->remainder(event_function); }
-    void add_error(const Polynomial& event_function, Gap& end) const { stepper_->add_error(event_function, end); }
+    double remainder(std::size_t contact, const Polynomial& p) const { return stepper_->remainder(contact, p); }
+    void add_error(std::size_t contact, const Polynomial& p, Gap& end) const { stepper_->add_error(contact, p, end); }
     // The last step as a piece of dense output; coefficients are appended. Its ends are those of the step exactly.
     Piece piece(std::vector<double>& coefficients) const;
 
@@ -63,7 +63,7 @@ class Flow {
     double t_ = 0.0, span_ = 0.0, end_ = 0.0;  // end: t + span, as it is rounded
     double first_ = 0.0;                       // bound on the next step; 0: none
     mutable State to_;                         // the end of the last step,
-    Gap gap_;                                  // in flight, at `to`
+    std::vector<Gap> gaps_;                    // at `to`
     ContactSet held_;
     mutable bool fetched_ = true;  // the end has been asked for
     bool moved_ = false;           // it is not where the stepper left it

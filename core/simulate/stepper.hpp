@@ -1,11 +1,12 @@
 // One step of a smooth motion after the other, with dense output: what an integrator must offer to the flow.
 //
 // The calls bear the names that Boost.Odeint gives to those of a dense-output stepper. Time runs from 0 in every step,
-// so that the shortest flight late in a run has all its digits. Besides (q, v), every step carries the quantity that is
-// watched for a zero: the gap in flight, hddot of the free motion in contact.
+// so that the shortest flight late in a run has all its digits. Besides (q, v), every step carries the event function of
+// each contact: the gap where it is open, hddot of the free motion where it is held.
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "model/model.hpp"
@@ -23,9 +24,9 @@ class Stepper {
  public:
     virtual ~Stepper() = default;
 
-    // Stands at a state, ready to step on from there while these contacts are held. Of `gap` only its state_error
-    // counts in contact.
-    virtual void initialize(ContactSet held, const State& state, const Gap& gap) = 0;
+    // Stands at a state, ready to step on from there while these contacts are held. One gap for each contact; of a held
+    // one's only the state_error counts.
+    virtual void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) = 0;
     // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
     // to be sensible after an impact. `least` is the shortest that time can resolve.
     virtual StepFailure do_step(double longest, double first, double least) = 0;
@@ -36,20 +37,19 @@ class Stepper {
     virtual double current_time() const = 0;
     virtual const State& current_state() = 0;
 
-    // Along the last step, polynomials in theta = t/current_time: what is watched, and (q, v) as blocks of ascending
-    // powers, appended to `coefficients`; their degree is returned.
-    virtual Polynomial event_function() const = 0;
+    // Along the last step, polynomials in theta = t/current_time: a contact's event function, and (q, v) as blocks of
+    // ascending powers, appended to `coefficients`; their degree is returned.
+    virtual Polynomial event_function(std::size_t contact) const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
-    // Whether event_function() is known to stay below zero along the last step, by more than its remainder. False says
-    // nothing.
-    virtual bool stays_negative() const { return false; }
-    // Bound, as good as the method knows one, on how far event_function() is from the motion that starts at the same state.
-    virtual double remainder(const Polynomial& event_function) const = 0;
-    // Adds to the gap at the end of the last step what later steps must take it to be wrong by.
-    virtual void add_error(const Polynomial& event_function, Gap& end) const = 0;
-    // True if a step is an expansion about its start: any part of it is as good as the whole, event_function() is that of the
-    // state's own value, and no first guess is needed. False if it is integrated to its end: event_function() then drifts from
-    // its value at (q, v) within the tolerance, and between the ends it is interpolated.
+    // Whether it is known to stay below zero along the last step, by more than its remainder. False says nothing.
+    virtual bool stays_negative(std::size_t) const { return false; }
+    // Bound, as good as the method knows one, on how far it is from the motion that starts at the same state.
+    virtual double remainder(std::size_t contact, const Polynomial& event_function) const = 0;
+    // Adds to a contact's gap at the end of the last step what later steps must take it to be wrong by.
+    virtual void add_error(std::size_t contact, const Polynomial& event_function, Gap& end) const = 0;
+    // True if a step is an expansion about its start: any part of it is as good as the whole, event functions are those
+    // of the state's own values, and no first guess is needed. False if it is integrated to its end: an event function
+    // then drifts from its value at (q, v) within the tolerance, and between the ends it is interpolated.
     virtual bool is_expansion() const = 0;
 
     virtual long evaluations() const = 0;

@@ -28,9 +28,9 @@ Taylor::Taylor(const Model& model, const Run& run)
       tolerance_(std::max(run.options.tolerance, unit_roundoff)),
       model_(&model),
       parameters_(run.parameters),
-      step_(dof_, tolerance_) {}
+      step_(dof_, model.contacts(), tolerance_) {}
 
-void Taylor::initialize(ContactSet held, const State& state, const Gap& gap) {
+void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || held != held_) {
         auto known = motions_.find(held);
         if (known == motions_.end()) {
@@ -40,7 +40,7 @@ void Taylor::initialize(ContactSet held, const State& state, const Gap& gap) {
         motion_ = &known->second;
         held_ = held;
     }
-    gap_ = gap;
+    gaps_.assign(gaps.begin(), gaps.end());
     to_ = state;
     evaluated_ = true;
 }
@@ -54,7 +54,7 @@ StepFailure Taylor::expand(double longest) {
         from[i] = to_.q.data()[i];
         from[dof_ + i] = to_.v.data()[i];
     }
-    const auto start = step_.expand(motion_->series, motion_->order, gap_, held_.empty(), longest);
+    const auto start = step_.expand(motion_->series, motion_->order, held_, std::span<const Gap>(gaps_), longest);
     if (!start.numbers) return StepFailure::not_a_number;
     return start.regular && step_.order() > 0 ? StepFailure::none : StepFailure::left_the_domain;
 }
@@ -124,13 +124,13 @@ StepFailure Taylor::redo_step(double duration, double least) {
     return StepFailure::none;
 }
 
-Polynomial Taylor::event_function() const {
+Polynomial Taylor::event_function(std::size_t contact) const {
     Polynomial p;
     p.degree = step_.order();
     if (span_ > longest_near) {
-        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, 2 * dof_, span_);
+        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, 2 * dof_ + contact, span_);
     } else {
-        step_.event_terms(span_, p.c.data());
+        step_.event_terms(contact, span_, p.c.data());
     }
     return p;
 }
@@ -150,19 +150,21 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
     return static_cast<std::uint32_t>(degree);
 }
 
-double Taylor::remainder(const Polynomial& p) const { return step_.doubt(span_, sizes_of(p)).remainder(); }
+double Taylor::remainder(std::size_t contact, const Polynomial& p) const {
+    return step_.doubt(contact, span_, sizes_of(p)).remainder();
+}
 
-void Taylor::add_error(const Polynomial& p, Gap& end) const {
+void Taylor::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
     const TermSizes<double> sizes = sizes_of(p);
-    step_.add_error(span_, sizes, step_.doubt(span_, sizes), end);
+    step_.add_error(contact, span_, sizes, step_.doubt(contact, span_, sizes), end);
 }
 
 // Without the polynomial.
-bool Taylor::stays_negative() const {
+bool Taylor::stays_negative(std::size_t contact) const {
     double power = 1.0;
-    return step_.stays_negative(span_, [&](int k) {
+    return step_.stays_negative(contact, span_, [&](int k) {
         if (k > 0) power *= span_;
-        return step_.watched(k) * power;
+        return step_.event(contact, k) * power;
     });
 }
 

@@ -15,16 +15,16 @@ class Taylor : public Stepper {
  public:
     Taylor(const Model& model, const Run& run);
 
-    void initialize(ContactSet held, const State& state, const Gap& gap) override;
+    void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override;
-    Polynomial event_function() const override;
+    Polynomial event_function(std::size_t contact) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
-    bool stays_negative() const override;
-    double remainder(const Polynomial& p) const override;
-    void add_error(const Polynomial& p, Gap& end) const override;
+    bool stays_negative(std::size_t contact) const override;
+    double remainder(std::size_t contact, const Polynomial& p) const override;
+    void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
     bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
 
@@ -48,7 +48,7 @@ class Taylor : public Stepper {
     Expansion* motion_ = nullptr;              // of them, that of held_
     ContactSet held_;
     TaylorStep<double> step_;
-    Gap gap_;
+    std::vector<Gap> gaps_;
     State to_;
     bool evaluated_ = true;  // to_ is the step's end, not its start
     double span_ = 0.0;

@@ -49,7 +49,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     auto flight = model.evaluator(model.motion({}).program, trajectory.run.parameters);
     set_state(flight, State{zeno.q, zeno.v_after});
     flight.run();
-    const double a = -flight.hddot();
+    const double a = -flight.hddot(0);
     if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;
     lens.spacing_ = -std::log10(lens.e_);
     lens.height_ = lens.e_ * lens.e_ / (2.0 * a);

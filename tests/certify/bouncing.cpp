@@ -196,12 +196,12 @@ Real TrueMotion::normal_acceleration(const Point& point) {
         acceleration_.input(dof_ + i) = point.v[i];
     }
     acceleration_.run();
-    return acceleration_.hddot();
+    return acceleration_.hddot(0);
 }
 
 Real TrueMotion::jerk(const Point& point) {
     normal_acceleration(point);
-    return acceleration_.jerk();
+    return acceleration_.jerk(0);
 }
 
 Point TrueMotion::drift(const Point& slid, const Real& time) {

@@ -23,6 +23,7 @@
 
 #include "core/machine_code.hpp"
 #include "core/systems.hpp"
+#include "number/lanes.hpp"
 #include "output/output.hpp"
 #include "program/program_code.hpp"
 #include "series/evaluator.hpp"
@@ -317,6 +318,63 @@ TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
                                        orders_of(*without, without->motion(held).series, state), system);
             }
             EXPECT_GT(numbers, 30 * 3 * with->dof()) << system;
+        }
+    }
+}
+
+// A motion with two event functions, the gap and hddot: both are followed, by one run's code and by that of eight.
+TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
+    constexpr int last = 12;
+    for (const std::string& system : test::all_systems()) {
+        const auto model = test::load(system);
+        const Equations& e = model->equations();
+        const Program program(joined({e.f, {e.gap, e.hddot}, e.pivots}), model->layout().slots());
+        const auto dof = static_cast<std::size_t>(model->dof()), width = 2 * dof + 2;
+        const SeriesProgram series(program, dof, 2);
+        EXPECT_TRUE(OrderCode::of(LaneAccess::plan_of(series), *widest_of_processor())) << system;
+        std::mt19937_64 random(3);
+        const std::vector<double> state = any_state(*model, random), parameters = model->default_run().parameters;
+        // Row k: q, v, h and hddot, of order k.
+        const auto rows_of = [&](auto evaluator) {
+            using Number = std::remove_cvref_t<decltype(evaluator.start(0))>;
+            std::vector<Number> rows(width * (last + 2), Number(0.0));
+            std::copy(state.begin(), state.end(), rows.begin());
+            evaluator.begin(rows.data());
+            for (std::size_t i = 0; i < 2; ++i) rows[2 * dof + i] = evaluator.start(dof + i);
+            for (std::size_t i = 0; i < dof; ++i) {
+                rows[width + i] = rows[dof + i];
+                rows[width + dof + i] = evaluator.start(i);
+            }
+            if constexpr (std::is_same_v<Number, double>) {
+                evaluator.extend(1, rows.data() + width);
+                for (std::size_t i = 0; i < 2; ++i) rows[width + 2 * dof + i] = evaluator.output(dof + i);
+                MotionOrders motion;
+                motion.row = rows.data() + width;
+                motion.largest = motion.row;
+                for (int k = 2; k <= last; ++k) evaluator.extend(motion, k, k);
+            } else {
+                evaluator.extend(rows.data() + width, last);
+            }
+            return rows;
+        };
+        const auto one = rows_of(SeriesEvaluator<double>(series, parameters));
+        for (std::size_t k = 0; k + 2 <= last; ++k) {
+            const auto factor = static_cast<double>((k + 1) * (k + 2));
+            const double hddot = one[width * k + 2 * dof + 1], of_gap = factor * one[width * (k + 2) + 2 * dof];
+            EXPECT_NEAR(hddot, of_gap, 1e-10 * (1.0 + std::abs(hddot))) << system << ", order " << k;
+        }
+        if (!has_eight()) continue;
+        std::vector<Lanes<16>> fixed(parameters.begin(), parameters.end());
+        const auto eight_by = [&](bool machine_code) {
+            SeriesEvaluator<Lanes<16>> evaluator(series, machine_code);
+            evaluator.fix(std::span<const Lanes<16>>(fixed));
+            return rows_of(std::move(evaluator));
+        };
+        const auto by_code = eight_by(true), by_loops = eight_by(false);
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            for (std::size_t lane = 0; lane < Eight::count; ++lane)
+                EXPECT_EQ(by_code[i][lane], by_loops[i][lane]) << system << ", row " << i / width;
+            EXPECT_NEAR(by_code[i][5], one[i], 1e-9 * (1.0 + std::abs(one[i]))) << system << ", row " << i / width;
         }
     }
 }

@@ -27,7 +27,7 @@ void expect_series(const std::string& text) {
     scope.allowed = {{"x", graph.symbol(0)}, {"y", graph.symbol(1)}, {"p", graph.symbol(2)}};
     const Expression expression = parse(text, scope, graph);
     const Program program(std::span(&expression, 1), Slots{3, 2, 3});
-    const SeriesProgram series(program, 1);
+    const SeriesProgram series(program, 0, 1);
     SeriesEvaluator<double> terms(series, std::span(&p, 1));
     Evaluator<double> direct(program);
     direct.input(2) = p;
@@ -97,7 +97,8 @@ TEST(Series, SumTheirTermsToTheFunction) {
         expect_series(text);
 }
 
-// A random plan for any number of lanes: one coordinate moves, every rule takes an inner sum or none.
+// A random plan for any number of lanes: one coordinate moves, with 1 to 3 event functions; every rule takes an inner
+// sum or none.
 struct RandomSeries {
     explicit RandomSeries(std::uint32_t lanes) : factors(lanes), random(lanes) {
         const auto any = [&](std::size_t below) { return static_cast<std::uint32_t>(random() % below); };
@@ -115,19 +116,20 @@ struct RandomSeries {
             plan.left.push_back(1 + any(2 + lanes));
             plan.right.push_back(1 + any(2 + lanes));
         }
-        plan.outputs = {3 + any(lanes), 3 + any(lanes)};
+        plan.events = 1 + lanes / 4 % 3;
+        for (std::uint32_t i = 0; i <= plan.events; ++i) plan.outputs.push_back(3 + any(lanes));
         now.assign(plan.numbers(), 0.0);
         rows.assign(plan.row() * (orders + 1), 0.0);
-        states = {0.3, 0.7, 0.2, 0.7, -0.4, 0.5};
-        states.resize(3 * (orders + 1));
-        now[1] = states[3];
-        now[2] = states[4];
+        states.assign(plan.states() * (orders + 1), 0.2);
+        states[0] = 0.3;
+        states[1] = now[1] = states[plan.states()] = 0.7;
+        now[2] = states[plan.states() + 1] = -0.4;
     }
     // Orders k >= 2 from there on, until they are small or the last; the last made.
     int extend(const OrderCode* code, int k, double target) {
         const SeriesTables tables{factors.data(), now.data(), rows.data()};
         MotionOrders motion;
-        motion.row = states.data() + 3 * (k - 1);
+        motion.row = states.data() + plan.states() * static_cast<std::size_t>(k - 1);
         motion.largest = motion.row;
         motion.power = 1e9;
         motion.target = target;
@@ -193,7 +195,7 @@ TEST(Series, OutputsAreNeverInputs) {
     Scope scope;
     scope.allowed = {{"x", graph.symbol(0)}, {"v", graph.symbol(1)}};
     const std::vector<Expression> outputs{parse("x", scope, graph), parse("v", scope, graph)};
-    const SeriesProgram series(Program(outputs, Slots{2, 2, 2}), 2);
+    const SeriesProgram series(Program(outputs, Slots{2, 2, 2}), 1, 1);
     SeriesEvaluator<double> terms(series, {});
     std::vector<double> states(3 * 11);
     states[0] = states[1] = 1.0;
@@ -222,7 +224,7 @@ TEST(Series, OutsideTheDomainIsNotANumber) {
     scope.allowed = {{"x", graph.symbol(0)}};
     for (const char* text : {"log(x)", "sqrt(x)", "x^(1/3)"}) {
         const Expression expression = parse(text, scope, graph);
-        const SeriesProgram series(Program(std::span(&expression, 1), Slots{1, 1, 1}), 1);
+        const SeriesProgram series(Program(std::span(&expression, 1), Slots{1, 1, 1}), 0, 1);
         SeriesEvaluator<double> terms(series, {});
         for (const double x : {-1.0, 0.0}) {
             terms.begin(&x);
