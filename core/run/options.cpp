@@ -240,6 +240,7 @@ void raise_to_least(Options& options) {
 std::vector<std::string> faults(const Options& options) {
     std::vector<std::string> told;
     for (const Option& o : all_options()) {
+        if (!o.words.empty()) continue;  // Options can keep no other word
         const OptionValue value = o.get(options);
         if (allows(o, value)) continue;
         told.push_back(std::holds_alternative<double>(value)

@@ -26,6 +26,8 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t co
     : step_(model->lane_programs().coordinates),
       end_{Vector(model->dof()), Vector(model->dof())},
       model_(model),
+      has_lanes_(model->edges().empty() && !model->motion({}).series.is_partial() &&
+                 !model->motion(ContactSet::of(0)).series.is_partial()),
       count_(count),
       next_(next),
       run_of_(run_of),
@@ -55,10 +57,7 @@ void SideBySide::begin(std::size_t index) {
     }
     if (refusal) return take_(index, std::move(*refusal));
     raise_to_least(run.options);
-    const bool in_lanes = run.options.method == Method::taylor && model_->edges().empty() &&
-                          !model_->motion({}).series.is_partial() &&
-                          !model_->motion(ContactSet::of(0)).series.is_partial();
-    if (!in_lanes) return take_(index, simulate(model_, run, nullptr, Keep::end));
+    if (!has_lanes_ || run.options.method != Method::taylor) return take_(index, simulate(model_, run, nullptr, Keep::end));
     go_on(member_for(index, run), false);
 }
 
@@ -96,7 +95,8 @@ void SideBySide::go_on(Member& member, bool refused) {
         const bool flying = member.request->held.empty();
         if (member.request->begins) member.alone = false;
         if (member.request->plain && !member.alone && !refused) return (flying ? flying_ : staying_).push_back(&member);
-        StepRequest own = *member.request;
+        StepRequest& own = member.own;
+        own = *member.request;
         if (!member.alone) own.begins = true;  // for this stepper: the step before was not its own
         member.alone = !refused || flying || run.completing();
         refused = false;  // it was said of the first request

@@ -32,6 +32,7 @@ class SideBySide {
         Execution execution;
         EventStepper stepper;
         const StepRequest* request = nullptr;  // that waits in line
+        StepRequest own;                       // as its own stepper is asked
         bool alone = false;                    // the rest of this stretch is left to its own stepper
     };
     using Line = std::vector<Member*>;
@@ -58,6 +59,7 @@ class SideBySide {
     StepResult result_;
     Line members_;  // of the step that is made: a lane each
     const std::shared_ptr<const Model>& model_;
+    bool has_lanes_;  // the model can be stepped in lanes
     std::size_t count_;
     std::atomic<std::size_t>& next_;
     const std::function<Run(std::size_t)>& run_of_;
