@@ -63,8 +63,8 @@ class LaneStepperOver final : public LaneStepper {
 
     // Flight, where partial sums tell that the gap stays open, or only falls (first_descent()).
     [[gnu::flatten]] void fly(LaneStep& step) override {
-        const GapOver<Number> gap{step.h, step.hdot, step.error, step.rate_error, step.state_error};
-        Mask plain = expand(flight_, step, {}, gap);
+        step_.gap(contact) = {step.h, step.hdot, step.error, step.rate_error, step.state_error};
+        Mask plain = expand(flight_, step, {});
         if (!any(plain)) return say(step, plain, plain);
         const Number target = step_.aim(Number(step.until) - step.t);
         const Number span = flight_.order.natural_step(step_, target);
@@ -98,8 +98,8 @@ class LaneStepperOver final : public LaneStepper {
 
     // Contact, where the force keeps its sign by more than its remainder: true there.
     [[gnu::flatten]] Mask stay_once(LaneStep& step, Number& span) {
-        const GapOver<Number> gap{0.0, 0.0, 0.0, 0.0, step.state_error};
-        Mask plain = expand(contact_, step, ContactSet::of(contact), gap);
+        step_.gap(contact) = {0.0, 0.0, 0.0, 0.0, step.state_error};
+        Mask plain = expand(contact_, step, ContactSet::of(contact));
         span = 0.0;
         if (!any(plain)) return plain;
         span = contact_.order.natural_step(step_, Number(step.until) - step.t);
@@ -117,10 +117,9 @@ class LaneStepperOver final : public LaneStepper {
     Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
 
     // The series at the state where the step starts. True where they are numbers.
-    Mask expand(Expansion& motion, const LaneStep& step, ContactSet held, const GapOver<Number>& gap) {
+    Mask expand(Expansion& motion, const LaneStep& step, ContactSet held) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
-        const auto start =
-            step_.expand(motion.series, motion.order, held, std::span(&gap, 1), Number(step.until) - step.t);
+        const auto start = step_.expand(motion.series, motion.order, held, Number(step.until) - step.t);
         return start.numbers & start.regular;
     }
 

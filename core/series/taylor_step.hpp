@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "number/choice.hpp"
@@ -49,15 +48,17 @@ class TaylorStep {
     // `contacts`: how many event functions the motions have.
     TaylorStep(std::size_t dof, std::size_t contacts, double tolerance)
         : dof_(dof),
+          contacts_(contacts),
+          width_(2 * dof + contacts),
           tolerance_(tolerance),
-          rows_((highest_order + 1) * (2 * dof + contacts), Number(0.0)),
-          units_(2 * dof + contacts, Number(0.0)),
+          rows_((highest_order + 1) * width_, Number(0.0)),
+          units_(width_, Number(0.0)),
           gaps_(contacts, GapOver<Number>{0.0, 0.0, 0.0, 0.0, 0.0}) {}
 
     std::size_t dof() const { return dof_; }
-    std::size_t contacts() const { return gaps_.size(); }
+    std::size_t contacts() const { return contacts_; }
     // Row k: order k of q, v and the event functions.
-    std::size_t width() const { return 2 * dof_ + contacts(); }
+    std::size_t width() const { return width_; }
     Number* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width(); }
     const Number* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width(); }
     const Number& event(std::size_t contact, int k) const { return row(k)[2 * dof_ + contact]; }
@@ -77,12 +78,12 @@ class TaylorStep {
     struct Start {
         Condition<Number> numbers, regular;
     };
+    // Of the state where the step starts, to be set before it is expanded; of a held contact only the state_error counts.
+    GapOver<Number>& gap(std::size_t contact) { return gaps_[contact]; }
     // The series at the state whose q and v stand in row 0, to the order that the policy finds is needed for `longest`
-    // (s), along the motion that holds these contacts. Of a held contact's gap only the state_error counts.
+    // (s), along the motion that holds these contacts.
     template <class OrderPolicy>
-    Start expand(Series& series, OrderPolicy& policy, ContactSet held, std::span<const GapOver<Number>> gaps,
-                 const Number& longest) {
-        for (std::size_t i = 0; i < contacts(); ++i) gaps_[i] = gaps[i];
+    Start expand(Series& series, OrderPolicy& policy, ContactSet held, const Number& longest) {
         held_ = held;
         const Start start = begin(series);
         if (any(start.numbers & start.regular)) order_ = policy.expand(*this, series, longest);
@@ -134,7 +135,7 @@ class TaylorStep {
     void set_unit(std::size_t i, const Number& size) { units_[i] = 1.0 / (tolerance_ * size); }
     const Number& unit(std::size_t contact) const { return units_[2 * dof_ + contact]; }
 
-    std::size_t dof_;
+    std::size_t dof_, contacts_, width_;
     double tolerance_;
     std::vector<Number> rows_, units_;
     std::vector<GapOver<Number>> gaps_;  // where the step starts

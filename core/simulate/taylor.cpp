@@ -40,7 +40,7 @@ void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap
         motion_ = &known->second;
         held_ = held;
     }
-    gaps_.assign(gaps.begin(), gaps.end());
+    for (std::size_t i = 0; i < gaps.size(); ++i) step_.gap(i) = gaps[i];
     to_ = state;
     evaluated_ = true;
 }
@@ -54,7 +54,7 @@ StepFailure Taylor::expand(double longest) {
         from[i] = to_.q.data()[i];
         from[dof_ + i] = to_.v.data()[i];
     }
-    const auto start = step_.expand(motion_->series, motion_->order, held_, std::span<const Gap>(gaps_), longest);
+    const auto start = step_.expand(motion_->series, motion_->order, held_, longest);
     if (!start.numbers) return StepFailure::not_a_number;
     return start.regular && step_.order() > 0 ? StepFailure::none : StepFailure::left_the_domain;
 }

@@ -48,7 +48,6 @@ class Taylor : public Stepper {
     Expansion* motion_ = nullptr;              // of them, that of held_
     ContactSet held_;
     TaylorStep<double> step_;
-    std::vector<Gap> gaps_;
     State to_;
     bool evaluated_ = true;  // to_ is the step's end, not its start
     double span_ = 0.0;
