@@ -2,7 +2,6 @@
 #pragma once
 
 #include <bit>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -18,7 +17,8 @@ class ContactSet {
     constexpr int count() const { return std::popcount(bits_); }
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
 
-    friend constexpr auto operator<=>(const ContactSet&, const ContactSet&) = default;
+    friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
+    friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }
 
  private:
     constexpr explicit ContactSet(std::uint32_t bits) : bits_(bits) {}

@@ -15,7 +15,7 @@ struct MemoryContext {
 };
 
 // All throw std::runtime_error that names the library if it is missing, or what else is.
-MemoryContext os_mesa_context();  // by libOSMesa (offscreen.cpp)
+MemoryContext os_mesa_context();  // by libOSMesa (osmesa.cpp)
 MemoryContext egl_context();      // by libEGL without a surface (egl.cpp)
 
 }  // namespace achilles

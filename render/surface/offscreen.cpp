@@ -1,12 +1,5 @@
 #include "surface/offscreen.hpp"
 
-// OSMesa's header includes the old <GL/gl.h>, which would hide half of the new one if it came first.
-#include "surface/gl.hpp"
-
-#include <GL/osmesa.h>
-#include <dlfcn.h>
-
-#include <array>
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
@@ -19,36 +12,6 @@
 namespace achilles {
 
 namespace {
-
-// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand, and
-// a machine without it gets a sentence.
-struct OsMesa {
-    decltype(&OSMesaCreateContextAttribs) create;
-    decltype(&OSMesaDestroyContext) destroy;
-    decltype(&OSMesaMakeCurrent) make_current;
-    decltype(&OSMesaGetProcAddress) address;
-};
-
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library, name));
-    if (function == nullptr) throw std::runtime_error(std::string("libOSMesa.so.8 lacks ") + name);
-}
-
-const OsMesa& os_mesa() {
-    static const OsMesa loaded = [] {
-        // Never closed: its compiler keeps threads and exit handlers.
-        void* library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) throw std::runtime_error("libOSMesa.so.8 is missing");
-        OsMesa mesa{};
-        find(library, "OSMesaCreateContextAttribs", mesa.create);
-        find(library, "OSMesaDestroyContext", mesa.destroy);
-        find(library, "OSMesaMakeCurrent", mesa.make_current);
-        find(library, "OSMesaGetProcAddress", mesa.address);
-        return mesa;
-    }();
-    return loaded;
-}
 
 // OSMesa, or EGL where Debian no longer has it; both draw the same bytes. ACHILLES_OFFSCREEN=osmesa or egl insists.
 MemoryContext memory_context() {
@@ -82,32 +45,6 @@ void check_size(int width, int height) {
 }
 
 }  // namespace
-
-MemoryContext os_mesa_context() {
-    constexpr std::array attributes{OSMESA_FORMAT,
-                                    static_cast<int>(OSMESA_RGBA),
-                                    OSMESA_PROFILE,
-                                    OSMESA_CORE_PROFILE,
-                                    OSMESA_CONTEXT_MAJOR_VERSION,
-                                    3,
-                                    OSMESA_CONTEXT_MINOR_VERSION,
-                                    3,
-                                    0};
-    const OsMesa& library = os_mesa();
-    const OSMesaContext made = library.create(attributes.data(), nullptr);
-    if (made == nullptr) throw std::runtime_error("libOSMesa.so.8 cannot make an OpenGL 3.3 context");
-    MemoryContext context;
-    context.owned =
-        std::shared_ptr<void>(made, [&library](void* ended) { library.destroy(static_cast<OSMesaContext>(ended)); });
-    // OSMesa wants a picture of its own; we draw into a texture.
-    const auto buffer = std::make_shared<std::array<unsigned char, 4>>();
-    context.make_current = [&library, made, buffer] {
-        library.make_current(made, buffer->data(), GL_UNSIGNED_BYTE, 1, 1);
-    };
-    context.release = [&library] { library.make_current(nullptr, nullptr, 0, 0, 0); };
-    context.address = [&library](const char* name) { return reinterpret_cast<void*>(library.address(name)); };
-    return context;
-}
 
 struct Offscreen::Implementation {
     explicit Implementation(const SurfaceOptions& surface) : options(surface), interface(surface) {

@@ -1,5 +1,5 @@
 // Frames without a display: Mesa's software renderer in memory, by OSMesa or, where that is missing, by EGL. Only
-// offscreen.cpp includes OSMesa, only egl.cpp EGL.
+// osmesa.cpp knows OSMesa, only egl.cpp EGL.
 #pragma once
 
 #include <memory>

@@ -1,0 +1,76 @@
+// Offscreen drawing by OSMesa.
+#include "surface/osmesa.hpp"
+
+#include <dlfcn.h>
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+#include "surface/memory_context.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr const char* library_name = "libOSMesa.so.8";
+
+// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand, and
+// a machine without it gets a sentence.
+struct OsMesa {
+    decltype(&osmesa::OSMesaCreateContextAttribs) create;
+    decltype(&osmesa::OSMesaDestroyContext) destroy;
+    decltype(&osmesa::OSMesaMakeCurrent) make_current;
+    decltype(&osmesa::OSMesaGetProcAddress) address;
+};
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+    function = reinterpret_cast<Function>(dlsym(library, name));
+    if (function == nullptr) throw std::runtime_error(std::string(library_name) + " lacks " + name);
+}
+
+const OsMesa& os_mesa() {
+    static const OsMesa loaded = [] {
+        // Never closed: its compiler keeps threads and exit handlers.
+        void* library = dlopen(library_name, RTLD_NOW | RTLD_LOCAL);
+        if (library == nullptr) throw std::runtime_error(std::string(library_name) + " is missing");
+        OsMesa mesa{};
+        find(library, "OSMesaCreateContextAttribs", mesa.create);
+        find(library, "OSMesaDestroyContext", mesa.destroy);
+        find(library, "OSMesaMakeCurrent", mesa.make_current);
+        find(library, "OSMesaGetProcAddress", mesa.address);
+        return mesa;
+    }();
+    return loaded;
+}
+
+}  // namespace
+
+MemoryContext os_mesa_context() {
+    constexpr std::array attributes{osmesa::format,
+                                    osmesa::rgba,
+                                    osmesa::profile,
+                                    osmesa::core_profile,
+                                    osmesa::major_version,
+                                    3,
+                                    osmesa::minor_version,
+                                    3,
+                                    0};
+    const OsMesa& library = os_mesa();
+    const osmesa::Context made = library.create(attributes.data(), nullptr);
+    if (made == nullptr) throw std::runtime_error(std::string(library_name) + " cannot make an OpenGL 3.3 context");
+    MemoryContext context;
+    context.owned =
+        std::shared_ptr<void>(made, [&library](void* ended) { library.destroy(static_cast<osmesa::Context>(ended)); });
+    // OSMesa wants a picture of its own; we draw into a texture.
+    const auto buffer = std::make_shared<std::array<unsigned char, 4>>();
+    context.make_current = [&library, made, buffer] {
+        library.make_current(made, buffer->data(), GL_UNSIGNED_BYTE, 1, 1);
+    };
+    context.release = [&library] { library.make_current(nullptr, nullptr, 0, 0, 0); };
+    context.address = [&library](const char* name) { return reinterpret_cast<void*>(library.address(name)); };
+    return context;
+}
+
+}  // namespace achilles
