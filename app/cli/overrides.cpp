@@ -40,8 +40,9 @@ Run asked_run(const SystemDescription& description, const std::vector<std::strin
     return run;
 }
 
-void warn(const Options& options) {
-    for (const std::string& warning : warnings(options)) fmt::print(stderr, "achilles: warning: {}\n", warning);
+void warn(const SystemDescription& description, const Run& run) {
+    for (const auto& told : {warnings(run.options), outside_ranges(description, run)})
+        for (const std::string& warning : told) fmt::print(stderr, "achilles: warning: {}\n", warning);
 }
 
 }  // namespace achilles

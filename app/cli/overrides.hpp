@@ -30,7 +30,7 @@ void apply(const OptionOverrides& overrides, Options& options);
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides);
 
-// Tells on standard error what a person should know of the options of a run: core's warnings().
-void warn(const Options& options);
+// Tells on standard error what a person should know of a run, once: core's warnings() and outside_ranges().
+void warn(const SystemDescription& description, const Run& run);
 
 }  // namespace achilles

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
+
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 
 namespace achilles {
 
@@ -48,12 +50,11 @@ void Line::expect_arguments(std::size_t least, std::size_t most, const std::stri
 }
 
 double Line::number(std::size_t i) const {
-    const std::string& text = words_[i].text;
-    double value = 0.0;
-    const auto [rest, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || rest != text.data() + text.size() || !std::isfinite(value))
-        throw error(words_[i].column, fmt::format("'{}' is not a finite number", text));
-    return value;
+    try {
+        return read_number(words_[i].text).value;
+    } catch (const ParseError& problem) {
+        throw error(words_[i].column, problem.what());
+    }
 }
 
 int Line::whole_number(std::size_t i) const {

@@ -46,6 +46,7 @@ struct PlotMenu {
 struct TypedValue {
     std::string id;  // of the slider; empty: none
     std::string text, as_it_was;
+    std::string wrong;  // why the text was not taken; empty: it was not entered yet
     bool is_new = false;
     std::pair<std::string, double> before;  // the slider that was pressed last, and its value then
 };

@@ -5,11 +5,13 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
 
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "surface/interface.hpp"
 
@@ -41,7 +43,10 @@ std::string explanation(const Slider& slider) {
     text += number(slider.low * slider.factor) + " to " + shown(slider, slider.high);
     if (is_logarithmic(slider)) text += ", logarithmic";
     if (slider.value != slider.original) text += "\nthe file has " + shown(slider, slider.original);
-    return text + "\ndouble click: type a value; right click: as the file has it";
+    return text +
+           (slider.factor == 1.0 ? "\ndouble click: type a value, 1/3 too; "
+                                 : "\ndouble click: type degrees, or pi/6; ") +
+           "right click: as the file has it";
 }
 
 // A thin track behind a slider whose own frame is invisible, with a mark where the file's value is.
@@ -82,6 +87,7 @@ void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.id = slider.id;
     typed.text = fmt::format("{}", slider.factor == 1.0 ? slider.value : rounded(slider.value * slider.factor, 12));
     typed.as_it_was = typed.text;
+    typed.wrong.clear();
     typed.is_new = true;
 }
 
@@ -101,24 +107,50 @@ bool clicked(Slider& slider, double before, TypedValue& typed) {
     return slider.value != now;
 }
 
-// The field in place of the slider. What is no number changes nothing.
-bool typed_over(Slider& slider, PanelState& state, float width) {
+// Where degrees are shown a bare number is in degrees; what says its unit, or has pi in it, says what it is. Throws
+// ParseError.
+double meant(const Slider& slider, const std::string& text) {
+    const bool is_angle = slider.factor != 1.0;
+    const GivenNumber given = read_number(text, is_angle ? "rad" : slider.unit);
+    return given.has_unit || given.has_pi ? given.value : given.value / slider.factor;
+}
+
+// The field in place of the slider; red where the last text was none to take.
+void show_field(const Slider& slider, PanelState& state, float width) {
     TypedValue& typed = state.typed;
     if (typed.is_new) ImGui::SetKeyboardFocusHere();
     typed.is_new = false;
+    const bool is_wrong = !typed.wrong.empty();
+    const Theme& theme = current_theme();
+    ImGui::PushStyleColor(ImGuiCol_FrameBg, is_wrong ? packed(theme.error_card) : ImGui::GetColorU32(ImGuiCol_FrameBg));
+    ImGui::PushStyleColor(ImGuiCol_Text, is_wrong ? packed(theme.error) : ImGui::GetColorU32(ImGuiCol_Text));
     ImGui::SetNextItemWidth(width);
     ImGui::InputText(("##type " + slider.id).c_str(), &typed.text, ImGuiInputTextFlags_AutoSelectAll);
+    ImGui::PopStyleColor(2);
     remember(state, slider.id);
-    if (!ImGui::IsItemDeactivated()) return false;
-    typed.id.clear();
-    if (typed.text == typed.as_it_was) return false;
-    const std::size_t first = typed.text.find_first_not_of(" +");
-    double value = 0.0;
-    const char* const end = typed.text.data() + typed.text.size();
-    if (first == std::string::npos || std::from_chars(typed.text.data() + first, end, value).ec != std::errc() ||
-        !std::isfinite(value))
+}
+
+// A text that is no number changes nothing: it stays, with the reason below it, until it is one or is given up.
+bool typed_over(Slider& slider, PanelState& state, float width) {
+    TypedValue& typed = state.typed;
+    show_field(slider, state, width);
+    const bool is_entered = ImGui::IsItemDeactivated(), is_active = ImGui::IsItemActive();
+    if (ImGui::IsItemEdited()) typed.wrong.clear();
+    const bool gives_up = !is_active && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    if (gives_up || (is_entered && typed.text == typed.as_it_was)) {
+        typed.id.clear();
         return false;
-    value /= slider.factor;
+    }
+    double value = slider.value;
+    if (is_entered) {
+        try {
+            value = meant(slider, typed.text);
+            typed.id.clear();
+        } catch (const ParseError& problem) {
+            typed.wrong = problem.what();
+        }
+    }
+    if (!typed.wrong.empty()) paragraph(typed.wrong, ImGui::GetContentRegionAvail().x, current_theme().error);
     return value != std::exchange(slider.value, value);
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "journal/words.hpp"
 
 namespace achilles {
@@ -43,7 +45,7 @@ std::string filled(std::string_view text, const Values&... values) {
 // ---- a value in a line ----
 
 using Words = std::vector<std::string>;
-using Values = std::vector<std::pair<std::string, double>>;
+using Values = std::vector<std::pair<std::string, Given>>;
 
 // Where reading stands: at which word, and what is said where the line is wrong.
 struct Reading {
@@ -79,6 +81,19 @@ void read(double& value, const How& how, Reading& from) {
     if (!is_zero && how.fits && !how.fits(value)) throw from.error(filled(how.complaint, value));
     ++from.at;
 }
+// In one word or, with its unit, in two.
+void read(Given& value, const How&, Reading& from) {
+    const Reading begin = from;
+    std::string text = from.word();
+    ++from.at;
+    if (!from.at_end() && (from.word() == "deg" || from.word() == "rad")) text += " " + from.line.word(from.at++).text;
+    try {
+        const GivenNumber number = read_number(text, "rad");
+        value = {number.value, number.has_unit ? text : ""};
+    } catch (const ParseError& problem) {
+        throw begin.error(problem.what());
+    }
+}
 void read(Words& words, const How& how, Reading& from) {
     while (!from.at_end()) read(words.emplace_back(), how, from);
 }
@@ -103,6 +118,9 @@ std::string written(int value, const How&) { return fmt::format(" {}", value); }
 std::string written(double value, const How& how) {
     return value == 0.0 && !how.zero.empty() ? fmt::format(" {}", how.zero) : fmt::format(" {}", value);
 }
+std::string written(const Given& given, const How& how) {
+    return given.text.empty() ? written(given.value, how) : written(given.text, How{});
+}
 std::string written(const Words& words, const How& how) {
     std::string text;
     for (const std::string& word : words) text += written(word, how);
@@ -119,7 +137,8 @@ template <class Value>
 std::pair<std::size_t, std::size_t> count(const How& how) {
     if (how.is_name) return {0, 0};
     if (std::same_as<Value, Words>) return {1, 10};
-    if (std::same_as<Value, Values>) return {2, 64};
+    if (std::same_as<Value, Given>) return {1, 2};
+    if (std::same_as<Value, Values>) return {2, 96};
     return {std::same_as<Value, bool> && how.no.empty() ? 0 : 1, 1};
 }
 
@@ -154,6 +173,7 @@ std::optional<Command> read_as(const Line& line) {
     });
     line.expect_arguments(least, most, from.usage);
     for_each_field<Kind>([&](const auto& field) { read(kind.*field.member, field.how, from); });
+    if (!from.at_end()) throw from.error(fmt::format("'{}' is too much", from.word()));
     return kind;
 }
 

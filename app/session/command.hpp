@@ -3,7 +3,7 @@
 //
 //     open ball_on_sine        set x' 1.5         eps 1e-6 1e-6 1e-7        seek 3.2        # a comment
 //
-// Values are in the file's units, angles in radians; words.hpp tells how words with spaces are written.
+// Values are in the file's units, angles in radians or as 30 deg; words.hpp tells how words with spaces are written.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ struct Open {
 };
 struct Set {
     std::string name;  // a parameter, a coordinate x, or a rate x'
-    double value = 0.0;
+    Given value;
     static constexpr auto said = Said("set", "write: set NAME VALUE", Change::together, &Set::name, &Set::value);
 };
 // A new value for an option (all_options()), or for all that its command sets: what it is called, how it is written
@@ -155,7 +155,7 @@ struct Link {
 };
 
 struct Start {  // several values at once: the run in between might be none
-    std::vector<std::pair<std::string, double>> values;
+    std::vector<std::pair<std::string, Given>> values;
     static constexpr auto said =
         Said("start", "write: start NAME VALUE NAME VALUE ...", Change::together, &Start::values);
 };

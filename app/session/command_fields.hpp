@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace achilles::command {
@@ -15,6 +16,17 @@ enum class Change {
     view,      // how the run is looked at, a file: undo leaves it
     alone,     // what undo takes back
     together,  // the same, with the last change if that was of this kind and the same thing: the first of several fields
+};
+
+// The value of a name. What says its own unit (30 deg) keeps its text: whether that fits, the system tells.
+struct Given {
+    double value = 0.0;
+    std::string text = {};
+
+    Given() = default;
+    Given(double number) : value(number) {}  // NOLINT: most are numbers
+    Given(double number, std::string said) : value(number), text(std::move(said)) {}
+    friend bool operator==(const Given&, const Given&) = default;
 };
 
 // How a field is written. Nothing said: a text, a finite number, a whole number is one word; a list is the rest.

@@ -19,7 +19,7 @@ Session open_session(const std::string& name, const SystemDescription& first, co
                      const OptionOverrides& overrides, SystemSource library, Patience patience) {
     library.finish = [overrides](Options& options) { apply(overrides, options); };
     const Run run = asked_run(first, settings, overrides);
-    warn(run.options);
+    warn(first, run);
     return {name, first, run, std::move(library), patience};
 }
 

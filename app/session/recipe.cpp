@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Every value that differs, by name: a parameter, a start x, a rate x'.
-std::vector<std::pair<std::string, double>> changed_values(const SystemDescription& description, const Run& from,
-                                                           const Run& to) {
-    std::vector<std::pair<std::string, double>> changed;
+std::vector<std::pair<std::string, command::Given>> changed_values(const SystemDescription& description,
+                                                                   const Run& from, const Run& to) {
+    std::vector<std::pair<std::string, command::Given>> changed;
     for (std::size_t i = 0; i < to.parameters.size(); ++i)
         if (from.parameters[i] != to.parameters[i])
             changed.emplace_back(description.parameters[i].name, to.parameters[i]);
@@ -155,7 +155,7 @@ std::vector<std::string> run_options(const Session& session) {
     const Run &text = session.file_run(), &run = session.run();
     std::vector<std::string> words;
     for (const auto& [name, value] : changed_values(description, text, run))
-        words.insert(words.end(), {"--set", fmt::format("{}={}", name, value)});
+        words.insert(words.end(), {"--set", fmt::format("{}={}", name, value.value)});
     for (const auto group : options_by_command()) {
         const command::UseOption before(group[0], text.options), now(group[0], run.options);
         if (now.values != before.values && now.is_of_one_value()) {

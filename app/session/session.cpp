@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "session/refusal.hpp"
@@ -182,17 +184,36 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     move_to(0.0);
 }
 
-void Session::perform(const command::Set& command) { perform(command::Start{{{command.name, command.value}}}); }
+namespace {
+
+// Throws where a value says a unit that its name has not.
+void check_unit(const SystemDescription& description, const std::string& name, const command::Given& given) {
+    if (given.text.empty()) return;
+    try {
+        read_number(given.text, unit_given(description, name));
+    } catch (const ParseError& problem) {
+        throw refusal(fmt::format("{}: {}", name, problem.what()));
+    }
+}
+
+}  // namespace
+
+void Session::perform(const command::Set& command) {
+    perform(command::Start{{{command.name, command.value}}});
+    for (const std::string& told : outside_ranges(description(), run()))
+        if (told.starts_with(command.name + " ")) notice_ = told;
+}
 
 void Session::perform(const command::Start& command) {
     Run changed = run();
-    for (const auto& [name, value] : command.values) {
+    for (const auto& [name, given] : command.values) {
         double* const found = find_value(description(), changed, name);
         if (found == nullptr)
             throw refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name,
                                       did_you_mean(name, settable_names(description()))));
-        if (!std::isfinite(value)) throw refusal(fmt::format("'{}' must be finite", name));
-        *found = value;
+        if (!std::isfinite(given.value)) throw refusal(fmt::format("'{}' must be finite", name));
+        check_unit(description(), name, given);
+        *found = given.value;
     }
     rerun(changed);
 }

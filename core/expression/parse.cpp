@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 #include "expression/functions.hpp"
 #include "expression/nearest.hpp"
@@ -16,7 +17,7 @@ constexpr int deepest = 200;
 
 constexpr std::array<std::string_view, 9> not_smooth{"abs",   "min",  "max", "floor", "ceil",
                                                      "round", "sign", "mod", "fmod"};
-constexpr std::array<std::string_view, 5> reserved{"t", "pi", "gap", "lambda", "energy"};
+constexpr std::array<std::string_view, 6> reserved{"t", "pi", "gap", "lambda", "energy", "deg"};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -103,10 +104,17 @@ class Parser {
         return value;
     }
 
+    // 1/2 deg is (1/2) deg: a unit is a factor.
     Expression factors() {
         Expression left = signed_factor();
+        bool has_unit = false;
         for (;;) {
             const std::size_t where = at_;
+            if (const Expression* unit = take_unit()) {
+                if (std::exchange(has_unit, true)) throw ParseError(where, "a value has one unit");
+                left = left * *unit;
+                continue;
+            }
             if (take('*')) {
                 if (peek() == '*') throw ParseError(where, "unknown operator '**'; write '^' for a power");
                 left = left * signed_factor();
@@ -118,6 +126,24 @@ class Parser {
                 return left;
             }
         }
+    }
+
+    bool begins_with(std::string_view word) const {
+        const std::string_view rest = text_.substr(at_);
+        const bool ends_there =
+            rest.size() == word.size() || (rest.size() > word.size() && !is_name_part(rest[word.size()]));
+        return rest.starts_with(word) && (ends_there || !is_letter(word[0]));
+    }
+
+    // The unit that follows a value; null where none does.
+    const Expression* take_unit() {
+        for (const auto& [word, factor] : scope_.units) {
+            if (!begins_with(word)) continue;
+            at_ += word.size();
+            skip_space();
+            return &factor;
+        }
+        return nullptr;
     }
 
     // -x^2 is -(x^2): the sign binds less than the power.
@@ -163,6 +189,13 @@ class Parser {
 
     [[noreturn]] void fail_at_leftover() const {
         if (peek() == ')') throw ParseError(at_, "this ')' closes nothing");
+        for (const char* unit : {"deg", "\u00b0", "rad"}) {
+            const auto reason = scope_.forbidden.find(unit);
+            if (begins_with(unit) && reason != scope_.forbidden.end()) throw ParseError(at_, reason->second, unit);
+            if (begins_with(unit) && unit != std::string_view("rad"))
+                throw ParseError(at_,
+                                 "degrees may stand in a number that is given, start = \"30 deg\"; here write pi/180*");
+        }
         const bool value_follows = is_name_part(peek()) || peek() == '(' || peek() == '.';
         if (value_follows) throw ParseError(at_, "an operator is missing here; write '*' for a product");
         if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");

@@ -13,10 +13,11 @@
 namespace achilles {
 
 // What a name means where an expression stands. `allowed` maps a name, primes included ("x", "x'", "gap''"), to its
-// expression; `forbidden` maps names that exist but may not stand here to the reason, a full sentence.
+// expression; `forbidden` maps names (and units) that exist but may not stand here to the reason, a full sentence.
 struct Scope {
     std::map<std::string, Expression, std::less<>> allowed;
     std::map<std::string, std::string, std::less<>> forbidden;
+    std::map<std::string, Expression, std::less<>> units{};  // what may follow a value, as in 30 deg: a factor
 };
 
 // What is wrong, and where: `offset` counts bytes from the start of the text.
@@ -41,7 +42,7 @@ struct TextParts {
 // offender and the nearest allowed name.
 Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts = nullptr);
 
-// Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy.
+// Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy, deg.
 bool is_reserved(std::string_view name);
 // A letter, then letters, digits, underscores.
 bool is_name(std::string_view text);

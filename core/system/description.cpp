@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "number/subnormal.hpp"
 #include "system/input_error.hpp"
 
@@ -19,16 +20,6 @@ std::string_view trimmed(std::string_view text) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
     return text;
-}
-
-// The whole text as one finite or infinite number; nothing where it is anything else.
-std::optional<double> plain_number(std::string_view text) {
-    text = trimmed(text);
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
 }
 
 }  // namespace
@@ -79,6 +70,41 @@ double* find_value(const SystemDescription& description, Run& run, std::string_v
     return nullptr;
 }
 
+std::string unit_given(const SystemDescription& description, std::string_view name) {
+    for (const ParameterDescription& p : description.parameters)
+        if (p.name == name) return p.unit;
+    for (const CoordinateDescription& c : description.coordinates)
+        if (name == c.name || name == c.name + "'") return c.unit;
+    return {};
+}
+
+std::string unit_of(const SystemDescription& description, std::string_view name) {
+    const std::string unit = unit_given(description, name);
+    return unit.empty() || !name.ends_with('\'') ? unit : unit + "/s";
+}
+
+std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run) {
+    std::vector<std::string> told;
+    const auto look = [&](const std::string& name, double value, const std::array<double, 2>& range, bool is_written) {
+        if (!is_written || (value >= range[0] && value <= range[1])) return;
+        const std::string unit = unit_of(description, name), space = unit.empty() ? "" : " ";
+        const bool is_in_degrees = unit_given(description, name) == "rad" && std::abs(value) > 6.5;  // it seems
+        told.push_back(fmt::format("{} = {}{}{} is outside its range, {:.6g} to {:.6g}{}", name, value, space, unit,
+                                   range[0], range[1],
+                                   is_in_degrees ? fmt::format(": an angle in degrees is written {} deg", value) : ""));
+    };
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const CoordinateDescription& c = description.coordinates[i];
+        look(c.name, run.q[static_cast<Eigen::Index>(i)], c.range, c.has_range);
+        look(c.name + "'", run.v[static_cast<Eigen::Index>(i)], c.rate_range, c.has_rate_range);
+    }
+    for (std::size_t i = 0; i < description.parameters.size(); ++i) {
+        const ParameterDescription& p = description.parameters[i];
+        look(p.name, run.parameters[i], p.range, p.has_range);
+    }
+    return told;
+}
+
 void assign(Run& run, const SystemDescription& description, std::string_view name_value) {
     const auto refuse = [&](const std::string& why, const std::string& hint = {}) {
         return InputError("--set " + shown(name_value), {}, why, hint);
@@ -88,12 +114,16 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
         throw refuse("a value is missing", "write --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
     }
     const std::string name(trimmed(name_value.substr(0, equals))), written(name_value.substr(equals + 1));
-    const std::optional<double> value = plain_number(written);
-    if (!value || !std::isfinite(*value)) throw refuse(fmt::format("'{}' is not a finite number", shown(written)));
     double* const place = find_value(description, run, name);
     if (place == nullptr)
         throw refuse(fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
                                  did_you_mean(name, settable_names(description))));
+    std::optional<double> value;
+    try {
+        value = read_number(written, unit_given(description, name)).value;
+    } catch (const ParseError& error) {
+        throw refuse(error.what());
+    }
     const bool is_parameter = std::any_of(description.parameters.begin(), description.parameters.end(),
                                           [&](const ParameterDescription& p) { return p.name == name; });
     if (is_parameter && is_subnormal(*value)) throw refuse(subnormal_parameter(name, *value), subnormal_hint);

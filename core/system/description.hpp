@@ -57,6 +57,7 @@ struct CoordinateDescription {
     std::string name, unit;
     double start = 0.0, rate = 0.0;
     std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // of its sliders
+    bool has_range = false, has_rate_range = false;                 // they stand in the file
     Location at, start_at, rate_at;
 };
 
@@ -64,6 +65,7 @@ struct ParameterDescription {
     std::string name, unit, about;
     double value = 0.0;
     std::array<double, 2> range{0.0, 1.0};
+    bool has_range = false;  // it stands in the file
     Location at;
 };
 
@@ -121,6 +123,12 @@ Run default_run(const SystemDescription& description);
 std::vector<std::string> settable_names(const SystemDescription& description);
 // Where a run keeps the value of such a name; null if there is none.
 double* find_value(const SystemDescription& description, Run& run, std::string_view name);
+// The unit in which the value of such a name is given: rad for a rate in rad/s, too; "" where there is none.
+std::string unit_given(const SystemDescription& description, std::string_view name);
+// The unit of such a name's value, a rate's with its "/s"; "" where it is not known.
+std::string unit_of(const SystemDescription& description, std::string_view name);
+// A sentence for each value outside the range that the file gives it: no mistake, but perhaps not what was meant.
+std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run);
 // Assigns "NAME=VALUE" as --set does. Throws InputError without a location, and leaves the run as it is.
 void assign(Run& run, const SystemDescription& description, std::string_view name_value);
 

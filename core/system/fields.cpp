@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -50,8 +52,17 @@ Text Fields::string(std::string_view key) const {
     return value.text;
 }
 
-double Fields::number(std::string_view key) const {
-    const TomlValue& value = need(key);
+double Fields::number(std::string_view key, std::string_view unit) const { return number(key, need(key), unit); }
+
+double Fields::number(std::string_view key, const TomlValue& value, std::string_view unit) const {
+    if (value.kind == TomlValue::Kind::string) {
+        try {
+            return read_number(value.text.text, unit).value;
+        } catch (const ParseError& error) {
+            throw Mistake{
+                place_in(value.text, error.offset), fmt::format("'{}' in {}: {}", key, where_, error.what()), {}};
+        }
+    }
     if (value.kind != TomlValue::Kind::number) throw wrong_type(key, value, "a number");
     if (!std::isfinite(value.number)) {
         throw Mistake{value.at, fmt::format("'{}' in {} must be finite, not {}", key, where_, value.text.text), {}};
@@ -98,17 +109,26 @@ std::string Fields::string_or(std::string_view key, std::string otherwise) const
     return find(key) ? string(key).text : std::move(otherwise);
 }
 
-double Fields::number_or(std::string_view key, double otherwise) const { return find(key) ? number(key) : otherwise; }
+double Fields::number_or(std::string_view key, double otherwise, std::string_view unit) const {
+    return find(key) ? number(key, unit) : otherwise;
+}
 
-std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 2> otherwise) const {
+std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 2> otherwise,
+                                       std::string_view unit) const {
     const TomlValue* value = find(key);
     if (!value) return otherwise;
-    const auto is_number = [](const TomlValue& item) { return item.kind == TomlValue::Kind::number; };
+    const auto is_number = [](const TomlValue& item) {
+        return item.kind == TomlValue::Kind::number || item.kind == TomlValue::Kind::string;
+    };
     if (value->kind != TomlValue::Kind::array || value->items.size() != 2 || !is_number(value->items[0]) ||
         !is_number(value->items[1])) {
         throw Mistake{value->at, fmt::format("'{}' in {} must be two numbers, [low, high]", key, where_), {}};
     }
-    const std::array<double, 2> range{value->items[0].number, value->items[1].number};
+    const auto end = [&](std::size_t i) {
+        const TomlValue& item = value->items[i];
+        return item.kind == TomlValue::Kind::string ? number(key, item, unit) : item.number;
+    };
+    const std::array<double, 2> range{end(0), end(1)};
     if (!std::isfinite(range[0]) || !std::isfinite(range[1]) || !(range[0] < range[1])) {
         throw Mistake{value->at, fmt::format("'{}' in {} must be finite with low < high", key, where_), {}};
     }

@@ -27,18 +27,21 @@ class Fields {
 
     // The value of a key, checked. Throw where it is absent or of another type.
     Text string(std::string_view key) const;
-    double number(std::string_view key) const;    // finite
+    // Finite; a string is a constant expression, in which deg may stand where the unit is rad.
+    double number(std::string_view key, std::string_view unit = {}) const;
     double positive(std::string_view key) const;  // finite and > 0
     Text expression(std::string_view key) const;  // a string or a finite number
     std::array<Text, 2> point(std::string_view key) const;
     // The same with a value for absence.
     std::string string_or(std::string_view key, std::string otherwise) const;
-    double number_or(std::string_view key, double otherwise) const;
-    std::array<double, 2> range_or(std::string_view key, std::array<double, 2> otherwise) const;
+    double number_or(std::string_view key, double otherwise, std::string_view unit = {}) const;
+    std::array<double, 2> range_or(std::string_view key, std::array<double, 2> otherwise,
+                                   std::string_view unit = {}) const;
 
     // The same for a value that is an item of a key's array.
     Text expression(std::string_view key, const TomlValue& value) const;
     std::array<Text, 2> point(std::string_view key, const TomlValue& value) const;
+    double number(std::string_view key, const TomlValue& value, std::string_view unit) const;
 
     Mistake wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const;
 

@@ -50,7 +50,7 @@ Text read_name(Names& names, const Fields& fields) {
         names.complete = was_complete;
         names.excused.insert(name.text);
         throw Mistake{name.at, fmt::format("the name '{}' is reserved", name.text),
-                      "functions, t, pi, gap, lambda and energy keep their meaning: choose another name"};
+                      "functions, t, pi, gap, lambda, energy and deg keep their meaning: choose another name"};
     }
     const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
     if (!is_new)
@@ -58,6 +58,24 @@ Text read_name(Names& names, const Fields& fields) {
                       fmt::format("it is the name at line {} already", other->second.line)};
     names.complete = was_complete;
     return name;
+}
+
+// The unit of a name. Degrees are none: what is evaluated is the sine of radians. After such a mistake it is rad, as was
+// meant. Throws Mistake.
+void read_unit(const Fields& fields, std::string& unit) {
+    unit = fields.string_or("unit", "");
+    for (std::size_t at = 0; at < unit.size(); ++at) {
+        const std::size_t end = std::min(unit.find_first_of(" */^().", at), unit.size());
+        const std::string word = unit.substr(at, end - at);
+        at = end;
+        if (word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
+        const std::string right = std::string(unit).replace(end - word.size(), word.size(), "rad");
+        const Mistake mistake{fields.string("unit").at,
+                              fmt::format("the unit '{}' is not one to compute in", shown(unit)),
+                              fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
+        unit = right;
+        throw mistake;
+    }
 }
 
 // The tables of coordinates or parameters: where they cannot be had, neither can their names.
@@ -83,11 +101,15 @@ void read_coordinates(Reading& reading, const Fields& root) {
         const auto place = [&](const char* key) { return fields.find(key) ? fields.find(key)->at : coordinate.at; };
         coordinate.start_at = place("start");
         coordinate.rate_at = place("rate");
-        mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0); });
-        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0); });
-        mistakes.attempt([&] { coordinate.unit = fields.string_or("unit", ""); });
-        mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start)); });
-        mistakes.attempt([&] { coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate)); });
+        const std::string& unit = coordinate.unit;
+        mistakes.attempt([&] { read_unit(fields, coordinate.unit); });
+        mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0, unit); });
+        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0, unit); });
+        coordinate.has_range = fields.find("range") != nullptr;
+        coordinate.has_rate_range = fields.find("rate_range") != nullptr;
+        mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start), unit); });
+        mistakes.attempt(
+            [&] { coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate), unit); });
         if (!is_named) continue;
         if (reading.system.coordinates.size() == max_coordinates) {
             mistakes.add({coordinate.at, fmt::format("more than {} coordinates", max_coordinates), {}});
@@ -106,15 +128,16 @@ void read_parameters(Reading& reading) {
         fields.allow({"name", "value", "unit", "about", "range"}, mistakes);
         ParameterDescription parameter;
         const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
+        mistakes.attempt([&] { read_unit(fields, parameter.unit); });
         mistakes.attempt([&] {
-            parameter.value = fields.number("value");
+            parameter.value = fields.number("value", parameter.unit);
             parameter.at = fields.need("value").at;
         });
-        mistakes.attempt([&] { parameter.unit = fields.string_or("unit", ""); });
         mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
         const bool is_restitution = reading.system.restitution.text == parameter.name;
         const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
-        mistakes.attempt([&] { parameter.range = fields.range_or("range", usual); });
+        parameter.has_range = fields.find("range") != nullptr;
+        mistakes.attempt([&] { parameter.range = fields.range_or("range", usual, parameter.unit); });
         if (is_named) reading.system.parameters.push_back(parameter);
     }
 }

@@ -86,6 +86,11 @@ TEST(Command, looks_as_the_manual_says) {
     EXPECT_EQ(to_text(command::Size{"events", 0.0}), "size events auto");
     EXPECT_EQ(to_text(command::Size{"events", 0.25}), "size events 0.25");
     EXPECT_EQ(to_text(command::Save{"mine.toml", true}), "save mine.toml overwrite");
+    EXPECT_EQ(parse_command("set g 1/4"), Command(command::Set{"g", 0.25}));
+    for (const char* line : {"set theta1 30 deg", "set theta1 \"30 deg\"", "set theta1 30deg"})
+        EXPECT_NEAR(std::get<command::Set>(parse_command(line)).value.value, 0.5235987755982988, 1e-15) << line;
+    EXPECT_EQ(to_text(parse_command("set theta1 30 deg")), "set theta1 \"30 deg\"");
+    EXPECT_EQ(to_text(parse_command("start a 30 deg b 1 c pi")), "start a \"30 deg\" b 1 c 3.141592653589793");
     EXPECT_EQ(parse_command("eps 1e-6"), Command(command::Eps{1e-6, 1e-6, 1e-6}));
     EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
 }
@@ -122,6 +127,11 @@ TEST(Journal, names_the_place_of_a_mistake) {
                                 {"seek 1e999", 6, "not a finite number"},
                                 {"seek 3x", 6, "not a finite number"},
                                 {"set g", 6, "needs more"},
+                                {"set g 0,4", 7, "decimals have a point, 0.4"},
+                                {"set g abc", 7, "'abc' is not a finite number"},
+                                {"set g 1 2", 9, "'2' is too much"},
+                                {"set g 30 degrees", 10, "'degrees' is too much"},
+                                {"start x 1 y", 11, "this name has no value"},
                                 {"eps 1 2", 7, "one number or three"},
                                 {"conditions strict", 12, "'strict'"},
                                 {"reinitialization none", 18, "'none'"},

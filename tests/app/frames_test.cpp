@@ -143,7 +143,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
     const Folder folder;
     const std::pair<std::string, std::string> cases[] = {
         {"--out film --fps 0", "--fps 0: this must lie in [0.001, 1000]\n"},
-        {"--out film --fps x", "--fps x: this is not a finite number\n"},
+        {"--out film --fps x", "--fps x: 'x' is not a finite number: no name but pi has a value here\n"},
         {"--out film --speed -1", "--speed -1: this must lie in [1e-09, 1000000000]\n"},
         {"--out film --jobs 1.5", "--jobs 1.5: 1 to 256 processes can draw\n"},
         {"--out film --jobs 0", "--jobs 0: 1 to 256 processes can draw\n"},

@@ -62,6 +62,29 @@ TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
     EXPECT_EQ(to_text(session), before);
 }
 
+TEST(Session, a_value_says_its_unit_where_that_fits) {
+    Session session = test::session("double_pendulum");
+    session.apply(parse_command("set theta1 -20 deg"));
+    EXPECT_EQ(session.error(), "");
+    EXPECT_NEAR(session.run().q[0], -0.3490658503988659, 1e-15);
+    session.apply(parse_command("start theta1' 90deg theta1 pi/9"));
+    EXPECT_NEAR(session.run().v[0], 1.5707963267948966, 1e-15);
+    EXPECT_NEAR(session.run().q[0], 0.3490658503988659, 1e-15);
+    session.apply(parse_command("set L1 30 deg"));
+    EXPECT_NE(session.error().find("where the unit is rad, and here it is m"), std::string::npos) << session.error();
+    EXPECT_EQ(session.run().parameters, session.file_run().parameters);
+}
+
+TEST(Session, a_value_outside_its_range_is_told_and_used) {
+    Session session = test::session("double_pendulum");
+    session.apply(parse_command("set theta1 30"));
+    EXPECT_EQ(session.run().q[0], 30.0);
+    EXPECT_EQ(session.notice(),
+              "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg");
+    session.apply(parse_command("set m1 2"));
+    EXPECT_EQ(session.notice(), "") << "it was told once";
+}
+
 TEST(Session, options_change_the_run) {
     Session session = test::session("double_pendulum");
     session.apply(command::End{5.0});

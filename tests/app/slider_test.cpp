@@ -43,16 +43,58 @@ TEST(Slider, a_double_click_types_a_value_and_moves_nothing) {
     }
 }
 
-TEST(Slider, what_is_no_number_or_given_up_changes_nothing) {
-    for (const bool given_up : {false, true}) {
+TEST(Slider, what_is_given_up_changes_nothing) {
+    SliderHand hands("ball_on_sine");
+    hands.double_click("value of set g");
+    hands.type("5");
+    hands.press(key::escape);
+    EXPECT_EQ(hands.session.run().parameters[1], 1.0);
+    EXPECT_EQ(hands.state.typed.id, "");
+    EXPECT_TRUE(hands.all.empty());
+}
+
+// How many pixels of a control's place have this colour.
+int pixels(SliderHand& hands, const std::string& place, const Color& color) {
+    const Image picture = hands.picture();
+    const Rectangle r = hands.state.places.at(place);
+    int count = 0;
+    for (int y = static_cast<int>(r.y); y < static_cast<int>(r.y + r.height); ++y)
+        for (int x = static_cast<int>(r.x); x < static_cast<int>(r.x + r.width); ++x) {
+            const std::size_t at = 3 * static_cast<std::size_t>(y * picture.width + x);
+            count += picture.rgb[at] == color.r && picture.rgb[at + 1] == color.g && picture.rgb[at + 2] == color.b;
+        }
+    return count;
+}
+
+TEST(Slider, what_is_no_number_turns_the_field_red_and_says_why) {
+    for (const auto& [text, why] : {std::pair{"0,4", "decimals have a point, 0.4"}, std::pair{"abc", "no name but pi"},
+                                    std::pair{"1/", "ends where a value"}, std::pair{"30 deg", "the unit is rad"}}) {
         SliderHand hands("ball_on_sine");
         hands.double_click("value of set g");
-        hands.type(given_up ? "5" : "fast");
-        hands.press(given_up ? int{key::escape} : int{key::enter});
+        EXPECT_EQ(pixels(hands, "set g", light_theme().error_card), 0);
+        hands.type(text);
+        hands.press(key::enter);
         EXPECT_EQ(hands.session.run().parameters[1], 1.0);
+        EXPECT_TRUE(hands.all.empty()) << text;
+        EXPECT_EQ(hands.state.typed.id, "set g") << text;
+        EXPECT_NE(hands.state.typed.wrong.find(why), std::string::npos) << hands.state.typed.wrong;
+        EXPECT_GT(pixels(hands, "set g", light_theme().error_card), 500) << text;
+        // It stays until it is mended, or given up.
+        hands.click("set g");
+        hands.press_with_control('A');
+        hands.type("1/3");
+        EXPECT_EQ(hands.state.typed.wrong, "") << "it is another text";
+        hands.press(key::enter);
+        EXPECT_EQ(hands.session.run().parameters[1], 1.0 / 3.0);
         EXPECT_EQ(hands.state.typed.id, "");
-        EXPECT_TRUE(hands.all.empty());
     }
+    SliderHand hands("ball_on_sine");
+    hands.double_click("value of set g");
+    hands.type("0,4");
+    hands.press(key::enter);
+    hands.press(key::escape);
+    EXPECT_EQ(hands.state.typed.id, "");
+    EXPECT_EQ(hands.session.run().parameters[1], 1.0);
 }
 
 TEST(Slider, an_angle_is_typed_in_degrees) {
@@ -62,6 +104,14 @@ TEST(Slider, an_angle_is_typed_in_degrees) {
     hands.type("-45");
     hands.press(key::enter);
     EXPECT_NEAR(hands.session.run().q[0], -0.78539816339744831, 1e-15);
+    for (const char* text : {"90/2 deg", "90/2", "pi/4", "1/4*pi rad"}) {
+        hands.session.apply(parse_command("set theta1 0.1"));
+        hands.rest(30);  // or the clicks would be the third and fourth of the last two
+        hands.double_click("value of set theta1");
+        hands.type(text);
+        hands.press(key::enter);
+        EXPECT_NEAR(hands.session.run().q[0], 0.78539816339744831, 1e-15) << text;
+    }
 }
 
 TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {

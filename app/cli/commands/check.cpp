@@ -30,7 +30,7 @@ int check(const CheckArguments& arguments) {
     const Model model(description);
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
     model.check(run);
-    warn(run.options);
+    warn(description, run);
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;
     OutputFiles files;

@@ -6,9 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -54,10 +56,11 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 }  // namespace
 
 double number_from(const std::string& option, std::string_view text) {
-    const auto value = parse<double>(text);
-    if (!value || !std::isfinite(*value))
-        throw InputError(fmt::format("{} {}", option, text), {}, "this is not a finite number");
-    return *value;
+    try {
+        return read_number(text).value;
+    } catch (const ParseError& error) {
+        throw InputError(fmt::format("{} {}", option, shown(text)), {}, error.what());
+    }
 }
 
 void add_system_argument(CLI::App& command, std::string& system) {
@@ -102,7 +105,10 @@ std::vector<ViewDescription> views_of(const SystemDescription& description, cons
 }
 
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides) {
-    command.add_option("--set", settings, "a parameter, a coordinate x=0.3 or a rate x'=1.5; may be given again")
+    command
+        .add_option("--set", settings,
+                    "a parameter, a coordinate x=0.3 or a rate x'=1.5, with pi/6 or \"30 deg\" for an angle; may be "
+                    "given again")
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

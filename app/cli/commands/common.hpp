@@ -36,7 +36,7 @@ void add_scale_option(CLI::App& command, double& scale, const std::string& about
 // --size WxH and --scale S. `about` replaces what they say of themselves.
 void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});
 
-// A decimal number, all of it; strtod and with it CLI11 would take more (hexadecimal, "nan"). Throws InputError.
+// A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
 double number_from(const std::string& option, std::string_view text);
 
 }  // namespace achilles

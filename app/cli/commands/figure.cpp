@@ -79,7 +79,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
     model->check(run);
-    warn(run.options);
+    warn(description, run);
     job.add(arguments.out);
 
     const Trajectory trajectory = simulate(model, run);

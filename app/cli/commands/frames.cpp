@@ -118,7 +118,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_for(description, arguments.views);
     model->check(run);
-    warn(run.options);
+    warn(description, run);
     check_count({arguments.fps, arguments.speed, run.options.end_time});
 
     const Trajectory trajectory = simulate(model, run);

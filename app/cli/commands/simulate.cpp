@@ -30,7 +30,7 @@ int run(const SimulateArguments& arguments) {
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     model->check(run);
-    warn(run.options);
+    warn(description, run);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
     if (!arguments.json.empty()) files.add(arguments.json);

@@ -258,7 +258,7 @@ TEST(Description, hostile_files_end_in_a_message) {
 
 std::string assignment_error(const std::string& text) {
     const SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
-    Run run = default_run(system);
+    auto run = default_run(system);
     try {
         assign(run, system, text);
     } catch (const InputError& error) {
@@ -279,10 +279,56 @@ TEST(Description, assigns) {
     EXPECT_EQ(run.v[0], 4.0);
     EXPECT_EQ(assignment_error("mas=2"),
               "--set mas=2: 'mas' is no parameter, coordinate or rate of this system; did you mean 'mass'?");
-    EXPECT_EQ(assignment_error("mass=1x"), "--set mass=1x: '1x' is not a finite number");
+    EXPECT_EQ(assignment_error("mass=1x"),
+              "--set mass=1x: '1x' is not a finite number: an operator is missing here; write '*' for a product");
     EXPECT_EQ(assignment_error("mass=inf"), "--set mass=inf: 'inf' is not a finite number");
     EXPECT_EQ(assignment_error("mass"),
               "--set mass: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
+}
+
+const std::string arm =
+    "title = \"arm\"\n[[coordinate]]\nname = \"theta\"\nstart = \"30 deg\"\nrate = \"-90 deg\"\nunit = \"rad\"\n"
+    "range = [\"-180 deg\", \"180 deg\"]\nrate_range = [-5, \"2*pi\"]\n[[parameter]]\nname = \"tilt\"\nvalue = "
+    "\"pi/6\"\nunit = \"rad\"\n[[parameter]]\nname = \"L\"\nvalue = \"1/3\"\nunit = \"m\"\nrange = [\"1/10\", 1]\n"
+    "[lagrangian]\nkinetic = \"L^2*theta'^2/2\"\npotential = \"L*sin(theta - tilt)\"\n"
+    "[[constraint]]\ngap = \"theta\"\nrestitution = 0.5\n[run]\nend_time = \"2*pi\"\n";
+
+TEST(Description, numbers_may_be_constant_expressions) {
+    const SystemDescription system = parse_system(arm);
+    const double degree = 0.017453292519943295;
+    EXPECT_DOUBLE_EQ(system.coordinates[0].start, 30 * degree);
+    EXPECT_DOUBLE_EQ(system.coordinates[0].rate, -90 * degree);
+    EXPECT_DOUBLE_EQ(system.coordinates[0].range[0], -180 * degree);
+    EXPECT_DOUBLE_EQ(system.coordinates[0].rate_range[1], 360 * degree);
+    EXPECT_DOUBLE_EQ(system.parameters[0].value, 30 * degree);
+    EXPECT_EQ(system.parameters[1].value, 1.0 / 3.0);
+    EXPECT_EQ(system.parameters[1].range[0], 0.1);
+    EXPECT_DOUBLE_EQ(system.options.end_time, 360 * degree);
+    auto run = default_run(system);
+    assign(run, system, "theta=60 deg");
+    assign(run, system, "theta'=pi");
+    assign(run, system, "L = 2/3");
+    EXPECT_DOUBLE_EQ(run.q[0], 60 * degree);
+    EXPECT_DOUBLE_EQ(run.v[0], 180 * degree);
+    EXPECT_EQ(run.parameters[1], 2.0 / 3.0);
+    EXPECT_THROW(assign(run, system, "L=30 deg"), InputError);
+    EXPECT_THROW(assign(run, system, "L=0,4"), InputError);
+    EXPECT_EQ(run.parameters[1], 2.0 / 3.0);
+}
+
+TEST(Description, values_outside_a_range_of_the_file_are_told) {
+    const SystemDescription system = parse_system(arm);
+    auto run = default_run(system);
+    EXPECT_TRUE(outside_ranges(system, run).empty());
+    assign(run, system, "theta=30");
+    assign(run, system, "theta'=-6");
+    assign(run, system, "tilt=1000");  // its range is the slider's alone
+    assign(run, system, "L=2");
+    EXPECT_EQ(outside_ranges(system, run),
+              (std::vector<std::string>{"theta = 30 rad is outside its range, -3.14159 to 3.14159: an angle in degrees "
+                                        "is written 30 deg",
+                                        "theta' = -6 rad/s is outside its range, -5 to 6.28319",
+                                        "L = 2 m is outside its range, 0.1 to 1"}));
 }
 
 std::string reading_error(const std::filesystem::path& file) {

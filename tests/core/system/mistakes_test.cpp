@@ -81,8 +81,24 @@ INSTANTIATE_TEST_SUITE_P(Keys, Mistakes, testing::ValuesIn(in_keys));
 const Change in_types[] = {
     {"title = \"drop\"", "title = 1",
      "f.toml:1:9: 'title' in a system file must be a string, not a number\n    title = 1\n            ^"},
-    {"start = 1", "start = \"1\"",
-     "f.toml:4:9: 'start' in [[coordinate]] must be a number, not a string\n    start = \"1\"\n            ^"},
+    {"start = 1", "start = \"2*fast\"",
+     "f.toml:4:12: 'start' in [[coordinate]]: '2*fast' is not a finite number: no name but pi has a value here\n    "
+     "start = \"2*fast\"\n               ^"},
+    {"start = 1", "start = \"0,4\"",
+     "f.toml:4:10: 'start' in [[coordinate]]: '0,4' is not a finite number: decimals have a point, 0.4\n    start = "
+     "\"0,4\"\n             ^"},
+    {"value = 2", "value = \"30 deg\"",
+     "f.toml:10:13: 'value' in [[parameter]]: '30 deg' is not a finite number: 'deg' may follow a number where the "
+     "unit is rad, and here it is not\n    value = \"30 deg\"\n                ^"},
+    {"value = 2", "value = 2\nunit = \"deg\"",
+     "f.toml:11:9: the unit 'deg' is not one to compute in\n    unit = \"deg\"\n            ^\nwrite unit = "
+     "\"rad\", and values in degrees as \"30 deg\""},
+    {"start = 1", "start = \"60 deg\"\nunit = \"deg\"",
+     "f.toml:5:9: the unit 'deg' is not one to compute in\n    unit = \"deg\"\n            ^\nwrite unit = "
+     "\"rad\", and values in degrees as \"30 deg\""},
+    {"value = 2", "value = 2\nunit = \"N*m/deg\"",
+     "f.toml:11:9: the unit 'N*m/deg' is not one to compute in\n    unit = \"N*m/deg\"\n            ^\nwrite unit = "
+     "\"N*m/rad\", and values in degrees as \"30 deg\""},
     {"rate = 0.5", "rate = [0.5]",
      "f.toml:5:8: 'rate' in [[coordinate]] must be a number, not an array\n    rate = [0.5]\n           ^"},
     {"value = 2", "value = true",
@@ -97,8 +113,9 @@ const Change in_types[] = {
      "[[constraint]], once for each"},
     {"[run]\nend_time = 5\n", "[[run]]\nend_time = 5\n",
      "f.toml:20:1: [run] must be a table, not an array\n    [[run]]\n    ^"},
-    {"end_time = 5", "end_time = \"5\"",
-     "f.toml:21:12: 'end_time' in [run] must be a number, not a string\n    end_time = \"5\"\n               ^"},
+    {"end_time = 5", "end_time = \"soon\"",
+     "f.toml:21:13: 'end_time' in [run]: 'soon' is not a finite number: no name but pi has a value here\n    "
+     "end_time = \"soon\"\n                ^"},
     {"[\"s\", \"s^2\"]", "\"s\"",
      "f.toml:27:6: 'at' in [[drawing]] of shape curve must be a point [x, y], not a string\n    at = \"s\"\n         "
      "^"},
@@ -175,16 +192,19 @@ INSTANTIATE_TEST_SUITE_P(Values, Mistakes, testing::ValuesIn(in_values));
 
 const Change in_namesof[] = {
     {"name = \"theta\"", "name = \"sin\"",
-     "f.toml:7:9: the name 'sin' is reserved\n    name = \"sin\"\n            ^\nfunctions, t, pi, gap, lambda and "
-     "energy keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = \"m/2*(x'^2 + "
+     "f.toml:7:9: the name 'sin' is reserved\n    name = \"sin\"\n            ^\nfunctions, t, pi, gap, lambda, "
+     "energy and deg keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = "
+     "\"m/2*(x'^2 + "
      "theta'^2)\"\n                           ^"},
     {"name = \"m\"", "name = \"gap\"",
-     "f.toml:9:9: the name 'gap' is reserved\n    name = \"gap\"\n            ^\nfunctions, t, pi, gap, lambda and "
-     "energy keep their meaning: choose another name\n\nf.toml:15:12: unknown name 'm'\n    kinetic = \"m/2*(x'^2 + "
+     "f.toml:9:9: the name 'gap' is reserved\n    name = \"gap\"\n            ^\nfunctions, t, pi, gap, lambda, "
+     "energy and deg keep their meaning: choose another name\n\nf.toml:15:12: unknown name 'm'\n    kinetic = "
+     "\"m/2*(x'^2 + "
      "theta'^2)\"\n               ^"},
     {"name = \"theta\"", "name = \"floor\"",
-     "f.toml:7:9: the name 'floor' is reserved\n    name = \"floor\"\n            ^\nfunctions, t, pi, gap, lambda and "
-     "energy keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = \"m/2*(x'^2 + "
+     "f.toml:7:9: the name 'floor' is reserved\n    name = \"floor\"\n            ^\nfunctions, t, pi, gap, lambda, "
+     "energy and deg keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n    kinetic = "
+     "\"m/2*(x'^2 + "
      "theta'^2)\"\n                           ^"},
     {"name = \"theta\"", "name = \"x\"",
      "f.toml:7:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is the name at line 3 already"},

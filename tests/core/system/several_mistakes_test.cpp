@@ -23,7 +23,7 @@ std::vector<InputError> all_of(const std::string& text) {
 
 TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
     const std::string text = changed(good, {{"start = 1\n", "strat = 1\n"},
-                                            {"value = 2\n", "value = \"2\"\n"},
+                                            {"value = 2\n", "value = [2]\n"},
                                             {"\"m*x\"", "\"m*abs(x)\""},
                                             {"end_time = 5", "end_time = -5"},
                                             {"[\"gap'\"]", "[\"lamda\", \"y\"]"}});
@@ -33,8 +33,8 @@ TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
               "    ^\n"
               "known here: name, start, rate, unit, range, rate_range\n"
               "\n"
-              "f.toml:10:9: 'value' in [[parameter]] must be a number, not a string\n"
-              "    value = \"2\"\n"
+              "f.toml:10:9: 'value' in [[parameter]] must be a number, not an array\n"
+              "    value = [2]\n"
               "            ^\n"
               "\n"
               "f.toml:16:16: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives\n"

@@ -1,0 +1,104 @@
+#include "expression/read_number.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "expression/functions.hpp"
+#include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "number/ground.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::string_view spaces = " \t\r\n";
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(spaces);
+    if (first == text.npos) return {};
+    return text.substr(first, text.find_last_not_of(spaces) + 1 - first);
+}
+
+// A decimal number, all of it; what is too large is infinite.
+std::optional<double> plain_number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (end != text.data() + text.size() || problem == std::errc::invalid_argument) return std::nullopt;
+    return problem == std::errc() ? value : HUGE_VAL;
+}
+
+// "0.4" for 0,4; "" where the comma is not what is wrong.
+std::string with_a_point(std::string_view text) {
+    std::string other(text);
+    std::replace(other.begin(), other.end(), ',', '.');
+    return other != text && plain_number(other) ? other : "";
+}
+
+// What a person sees of a text in a message.
+std::string shown(std::string_view text) {
+    constexpr std::size_t most = 60;
+    std::string result;
+    for (const char c : text.substr(0, most)) result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    while (text.size() > most && !result.empty() && (static_cast<unsigned char>(result.back()) & 0x80) != 0)
+        result.pop_back();  // half a character
+    return "'" + result + (text.size() > most ? "...'" : "'");
+}
+
+Scope scope_of(std::string_view unit, Graph& graph) {
+    Scope scope;
+    const Expression degree = graph.pi() / graph.number(180);
+    for (const char* word : {"deg", "\u00b0", "rad"}) {
+        const bool is_radian = word == std::string_view("rad");
+        if (unit == "rad")
+            scope.units.emplace(word, is_radian ? graph.number(1) : degree);
+        else
+            scope.forbidden.emplace(word, in_quotes(word) + " may follow a number where the unit is rad, and here it " +
+                                              (unit.empty() ? "is not" : "is " + std::string(unit)));
+    }
+    return scope;
+}
+
+[[noreturn]] void fail(std::string_view text, std::size_t offset, const std::string& why, std::string_view name = {}) {
+    throw ParseError(offset, shown(text) + " is not a finite number" + (why.empty() ? "" : ": " + why), name);
+}
+
+}  // namespace
+
+GivenNumber read_number(std::string_view whole, std::string_view unit) {
+    const Ground ground;
+    const std::string_view text = trimmed(whole);
+    const auto begin = text.empty() ? 0 : static_cast<std::size_t>(text.data() - whole.data());
+    if (text.empty()) throw ParseError(0, "a number is missing");
+    GivenNumber given;
+    if (const auto plain = plain_number(text)) {
+        if (!std::isfinite(*plain)) fail(text, begin, "");
+        given.value = *plain;
+        return given;
+    }
+    if (const std::string better = with_a_point(text); !better.empty())
+        fail(text, begin, "decimals have a point, " + better);
+    Graph graph;
+    const Scope scope = scope_of(unit, graph);
+    try {
+        given.value = value_of_constant(parse(text, scope, graph));
+    } catch (const ParseError& error) {
+        const bool is_unknown = !error.name.empty() && !scope.forbidden.contains(error.name);
+        std::vector<std::string> known{"pi"};
+        for (const Function& function : functions) known.emplace_back(function.name);
+        fail(text, begin + error.offset,
+             is_unknown ? "no name but pi has a value here" + did_you_mean(error.name, known) : error.what(),
+             error.name);
+    }
+    if (!std::isfinite(given.value)) fail(text, begin, "");
+    // No name of the language but theirs has these letters.
+    given.has_pi = text.find("pi") != text.npos;
+    for (const auto& [word, factor] : scope.units) given.has_unit = given.has_unit || text.find(word) != text.npos;
+    return given;
+}
+
+}  // namespace achilles

@@ -1,0 +1,19 @@
+// A number as a person gives it, in a file, on the command line, in a journal or typed into a field: a constant
+// expression, 0.3, pi/6, 1/3, 30 deg. All of them are read here.
+#pragma once
+
+#include <string_view>
+
+namespace achilles {
+
+struct GivenNumber {
+    double value = 0.0;     // finite
+    bool has_unit = false;  // it says that it is in degrees or radians: 30 deg, 30°, 0.5 rad
+    bool has_pi = false;
+};
+
+// Reads the whole text. deg, ° (both pi/180) and rad (1) may follow a value where `unit`, that of the quantity, is rad.
+// Throws ParseError, whose message begins with the text: "'0,4' is not a finite number: ...".
+GivenNumber read_number(std::string_view text, std::string_view unit = {});
+
+}  // namespace achilles
