@@ -18,23 +18,62 @@ void append(std::string& row, double x) {
     if (std::isfinite(x)) row += fmt::format("{}", x + 0.0);
 }
 
+// What Python keeps for itself and a coordinate may be called; all of lambda's column is.
+constexpr std::string_view python_keywords[] = {
+    "and",    "as",   "assert", "async",  "await",    "break", "class", "continue", "def",
+    "del",    "elif", "else",   "except", "finally",  "for",   "from",  "global",   "if",
+    "import", "in",   "is",     "lambda", "nonlocal", "not",   "or",    "pass",     "raise",
+    "return", "try",  "while",  "with",   "yield",    "None",  "True",  "False"};
+
+// Each a name in Python, and no other's: x' is x_rate.
+std::vector<std::string> plain(const std::vector<std::string>& columns) {
+    std::vector<std::string> names;
+    for (std::string name : columns) {
+        if (name.ends_with('\'')) name.replace(name.size() - 1, 1, "_rate");
+        std::replace(name.begin(), name.end(), ' ', '_');
+        const auto is_taken = [&](const auto& list) {
+            return std::find(std::begin(list), std::end(list), name) != std::end(list);
+        };
+        while (is_taken(python_keywords) || is_taken(names)) name += '_';
+        names.push_back(name);
+    }
+    return names;
+}
+
+std::string row_of(const std::vector<std::string>& cells) {
+    std::string row;
+    for (const std::string& cell : cells) row += (&cell == cells.data() ? "" : ",") + cell;
+    return row + "\n";
+}
+
+// The names of the columns and, if wished for, their units.
+std::string heading(const Model& model, const CsvStyle& style) {
+    std::vector<std::string> columns{"t", "phase"}, units{"s", ""};
+    for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(model.dof()); ++i) {
+        columns.push_back(model.slot_names()[i]);
+        units.push_back(unit_of(model.description(), columns.back()));
+    }
+    columns.insert(columns.end(), {"gap", "gap rate", "lambda", "energy", "j"});
+    units.resize(columns.size());
+    return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
+}
+
+// Step ends and events; where steps are long, so many instants between them that a plot of the rows is a curve.
+std::vector<Sample> all_samples(const Trajectory& trajectory) {
+    constexpr std::size_t wanted = 1000;
+    return Sampler(trajectory).all(static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size())));
+}
+
 }  // namespace
 
-std::string to_csv(const Trajectory& trajectory) {
+std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
     const Ground ground;
     const Model& model = *trajectory.model;
-    const auto n = static_cast<std::size_t>(model.dof());
-    std::string text = "t,phase";
-    for (std::size_t i = 0; i < 2 * n; ++i) text += "," + model.slot_names()[i];
-    text += ",gap,gap rate,lambda,energy,j\n";
-
+    std::string text = heading(model, style);
     auto contact = model.evaluator(model.contact_terms(), trajectory.run.parameters);
     auto force = model.evaluator(model.force(), trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
-    // Step ends and events; where steps are long, so many instants between them that a plot of the rows is a curve.
-    constexpr std::size_t wanted = 1000;
-    const auto between = static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size()));
-    for (const Sample& sample : Sampler(trajectory).all(between)) {
+    for (const Sample& sample : style.instants ? samples_at(trajectory, *style.instants) : all_samples(trajectory)) {
         for (Evaluator<double>* program : std::initializer_list<Evaluator<double>*>{&contact, &force, &energy}) {
             set_state(*program, sample.state);
             program->run();

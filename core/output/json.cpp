@@ -30,6 +30,25 @@ Json system_of(const Trajectory& trajectory) {
     return {{"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}};
 }
 
+// Of what has one that is known.
+Json units_of(const SystemDescription& description) {
+    Json units = {{"t", "s"}};
+    for (const std::string& name : settable_names(description))
+        if (const std::string unit = unit_of(description, name); !unit.empty()) units[name] = unit;
+    return units;
+}
+
+Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) {
+    Json samples = Json::array();
+    for (const Sample& sample : samples_at(trajectory, times))
+        samples.push_back({{"t", number(sample.t)},
+                           {"j", sample.j},
+                           {"phase", to_text(sample.phase)},
+                           {"q", list(sample.state.q)},
+                           {"v", list(sample.state.v)}});
+    return samples;
+}
+
 Json options_of(const Options& options) {
     Json result = Json::object();
     for (const Option* option : told_options({"method", "tolerance"})) {
@@ -98,7 +117,7 @@ Json event_of(const Event& event) {
 
 std::string version() { return ACHILLES_VERSION; }
 
-std::string to_json(const Trajectory& trajectory) {
+std::string to_json(const Trajectory& trajectory, const Instants& instants) {
     const Ground ground;
     Json phases = Json::array(), events = Json::array();
     for (const Phase& phase : trajectory.phases)
@@ -108,29 +127,31 @@ std::string to_json(const Trajectory& trajectory) {
                           {"impacts", phase.impacts}});
     for (const Event& event : trajectory.events) events.push_back(event_of(event));
     const Statistics& s = trajectory.statistics;
-    const Json result = {
-        {"achilles", version()},
-        {"system", system_of(trajectory)},
-        {"options", options_of(trajectory.run.options)},
-        {"phases", phases},
-        {"events", events},
-        {"end",
-         {{"t", number(trajectory.end_time)},
-          {"q", list(trajectory.end.q)},
-          {"v", list(trajectory.end.v)},
-          {"phase", to_text(trajectory.end_phase)}}},
-        {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
-        {"statistics",
-         {{"steps", s.steps},
-          {"evaluations", s.evaluations},
-          {"impacts", s.impacts},
-          {"energy_drift", number(s.energy_drift)},
-          {"least_gap", number(s.least_gap)}}},
-        {"assumed",  // by the certificates
-         {{"arithmetic", "IEEE 754 double, round to nearest"},
-          {"ulps", rounding::libm},
-          {"ulps_hyperbolic", rounding::hyperbolic},
-          {"library", mathematical_library()}}}};
+    Json result = {{"achilles", version()},
+                   {"system", system_of(trajectory)},
+                   {"options", options_of(trajectory.run.options)},
+                   {"phases", phases},
+                   {"events", events},
+                   {"end",
+                    {{"t", number(trajectory.end_time)},
+                     {"q", list(trajectory.end.q)},
+                     {"v", list(trajectory.end.v)},
+                     {"phase", to_text(trajectory.end_phase)}}},
+                   {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
+                   {"start", {{"t", 0.0}, {"q", list(trajectory.run.q)}, {"v", list(trajectory.run.v)}}},
+                   {"units", units_of(trajectory.model->description())},
+                   {"statistics",
+                    {{"steps", s.steps},
+                     {"evaluations", s.evaluations},
+                     {"impacts", s.impacts},
+                     {"energy_drift", number(s.energy_drift)},
+                     {"least_gap", number(s.least_gap)}}},
+                   {"assumed",  // by the certificates
+                    {{"arithmetic", "IEEE 754 double, round to nearest"},
+                     {"ulps", rounding::libm},
+                     {"ulps_hyperbolic", rounding::hyperbolic},
+                     {"library", mathematical_library()}}}};
+    if (instants) result["samples"] = samples_of(trajectory, *instants);
     // Invalid UTF-8 in a title is replaced, never an exception.
     return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

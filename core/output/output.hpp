@@ -4,12 +4,20 @@
 
 #include <string>
 
+#include "output/sampling.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles {
 
-std::string to_json(const Trajectory& trajectory);
-std::string to_csv(const Trajectory& trajectory);
+// With instants the array `samples` holds them.
+std::string to_json(const Trajectory& trajectory, const Instants& instants = {});
+
+struct CsvStyle {
+    Instants instants{};
+    bool plain_names = false;  // columns called by names that Python can use: theta1_rate for theta1'
+    bool units = false;        // a second line with the unit of every column; empty where it is not known
+};
+std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
 std::string summary(const Trajectory& trajectory);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate);

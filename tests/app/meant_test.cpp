@@ -1,8 +1,10 @@
 // What is typed is what is meant: numbers, ranges and units on the command line, and what is said of them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/program.hpp"
@@ -33,6 +35,41 @@ TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
     EXPECT_EQ(none.err,
               "--set L1=30 deg: '30 deg' is not a finite number: 'deg' may follow a number where the unit is rad, and "
               "here it is m\n");
+}
+
+TEST(Data, HoldsTheInstantsThatWereAskedFor) {
+    const Folder folder;
+    ASSERT_EQ(folder.run("simulate ball_on_sine --samples 5 --json a.json --csv a.csv --plain-names").status, 0);
+    const json root = json::parse(content(folder.path() / "a.json"));
+    ASSERT_EQ(root["samples"].size(), 5u);
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(root["samples"][static_cast<std::size_t>(i)]["t"], 5.0 * i);
+    EXPECT_EQ(root["samples"][4]["q"], root["end"]["q"]);
+    EXPECT_EQ(root["start"]["v"], (json{1.5, 0.0}));
+    const std::string csv = content(folder.path() / "a.csv");
+    EXPECT_EQ(csv.rfind("t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j\n0,hybrid,0,2,1.5,0,", 0), 0u) << csv;
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
+    folder.put("t.txt", "3\n1\n");
+    const Answer answer = folder.run("simulate ball_on_sine --times t.txt --json -");
+    EXPECT_EQ(json::parse(answer.out)["samples"][1]["t"], 1.0);
+}
+
+TEST(Data, InstantsThatCannotBeAreBadInput) {
+    const Folder folder;
+    folder.put("t.txt", "3\n21\n");
+    const std::pair<const char*, const char*> mistakes[] = {
+        {"--times t.txt --csv a.csv", "t.txt:2:1: 21 is outside the run, 0 to 20\n    21\n    ^\n"},
+        {"--times none.txt --csv a.csv", "none.txt: there is no such file\n"},
+        {"--samples 1 --csv a.csv", "--samples 1: a whole number from 2 to 1000000 is expected\n"},
+        {"--samples 2.5 --csv a.csv", "--samples 2.5: a whole number from 2 to 1000000 is expected\n"},
+        {"--samples 5 --times t.txt --csv a.csv", "--samples: the instants are those of --times already\n"},
+        {"--samples 5", "--samples: this needs --csv F or --json F\n"},
+        {"--plain-names --json a.json", "--plain-names: this needs --csv F\n"}};
+    for (const auto& [arguments, message] : mistakes) {
+        const Answer answer = folder.run(std::string("simulate ball_on_sine ") + arguments);
+        EXPECT_EQ(answer.status, 2) << arguments;
+        EXPECT_EQ(answer.err, message);
+        EXPECT_EQ(folder.files().size(), 1u) << arguments;
+    }
 }
 
 }  // namespace

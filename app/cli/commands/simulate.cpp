@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+#include <tuple>
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
@@ -20,16 +23,51 @@ struct SimulateArguments {
     std::string system, json, csv;
     std::vector<std::string> settings;
     OptionOverrides overrides;
-    bool verbose = false;
+    std::string times;
+    std::optional<int> samples;
+    bool verbose = false, plain_names = false, units = false;
     int width = 0, height = 0;  // common options that mean nothing here
     double scale = 1.0;
 };
 
+int samples_from(const std::string& text) {
+    constexpr int least = 2, most = 1'000'000;
+    const double count = number_from("--samples", text);
+    if (!(count >= least && count <= most && count == std::floor(count)))
+        throw InputError("--samples " + text, {}, fmt::format("a whole number from {} to {} is expected", least, most));
+    return static_cast<int>(count);
+}
+
+// What was asked for, and has no effect without a file of data.
+void check_files(const SimulateArguments& arguments) {
+    const bool no_csv = arguments.csv.empty(), no_data = no_csv && arguments.json.empty();
+    for (const auto& [flag, is_given, is_useless, needs] :
+         {std::tuple{"--samples", arguments.samples.has_value(), no_data, "--csv F or --json F"},
+          std::tuple{"--times", !arguments.times.empty(), no_data, "--csv F or --json F"},
+          std::tuple{"--plain-names", arguments.plain_names, no_csv, "--csv F"},
+          std::tuple{"--units", arguments.units, no_csv, "--csv F"}})
+        if (is_given && is_useless) throw InputError(flag, {}, fmt::format("this needs {}", needs));
+    if (arguments.samples && !arguments.times.empty())
+        throw InputError("--samples", {}, "the instants are those of --times already");
+}
+
+Instants instants_of(const SimulateArguments& arguments, const Run& run) {
+    const double end = run.options.end_time;
+    if (arguments.samples) return equidistant(*arguments.samples, 0.0, end);
+    if (arguments.times.empty()) return {};
+    const std::string text = read_text(arguments.times);
+    if (text.size() > largest_file)
+        throw InputError(arguments.times, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
+    return read_instants(text, arguments.times, 0.0, end);
+}
+
 int run(const SimulateArguments& arguments) {
+    check_files(arguments);
     const SystemDescription description = read_system(find_system(arguments.system));
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     model->check(run);
+    const Instants instants = instants_of(arguments, run);
     warn(description, run);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
@@ -37,8 +75,9 @@ int run(const SimulateArguments& arguments) {
     if (!arguments.csv.empty()) files.add(arguments.csv);
 
     const Trajectory trajectory = simulate(model, run);
-    if (!arguments.json.empty()) files.put(arguments.json, to_json(trajectory));
-    if (!arguments.csv.empty()) files.put(arguments.csv, to_csv(trajectory));
+    if (!arguments.json.empty()) files.put(arguments.json, to_json(trajectory, instants));
+    if (!arguments.csv.empty())
+        files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
     if (arguments.json.empty() && arguments.csv.empty()) {
         files.add("-");
         files.put("-", summary(trajectory));
@@ -63,7 +102,16 @@ void add_simulate(CLI::App& program, int& status) {
         ->type_name("");
     command->add_option("--json", arguments->json, "where to write the trajectory as JSON; - is standard output")
         ->type_name("F");
-    command->add_option("--csv", arguments->csv, "where to write it as CSV")->type_name("F");
+    command->add_option("--csv", arguments->csv, "where to write it as CSV: times in s, angles in rad")->type_name("F");
+    command
+        ->add_option_function<std::string>(
+            "--samples", [arguments](const std::string& text) { arguments->samples = samples_from(text); },
+            "instants at equal distances, both ends included, for the rows of --csv and `samples` of --json")
+        ->type_name("N");
+    command->add_option("--times", arguments->times, "the same for the instants in a file, one a line")->type_name("F");
+    command->add_flag("--plain-names", arguments->plain_names,
+                      "columns of --csv have names that Python can use: theta1_rate for theta1'");
+    command->add_flag("--units", arguments->units, "a second line of --csv has the units of the columns");
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
     add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures; no effect here");
     add_run_options(*command, arguments->settings, arguments->overrides);

@@ -143,6 +143,94 @@ TEST_F(Outputs, CsvHasTwoRowsAtAnImpactTheSecondWithALargerJ) {
     EXPECT_EQ(lines[1].substr(0, 13), "0,hybrid,0,2,");
 }
 
+TEST_F(Outputs, JsonSaysStartAndUnits) {
+    const auto json = nlohmann::json::parse(to_json(trajectory));
+    EXPECT_EQ(json["start"], (nlohmann::json{{"t", 0.0}, {"q", {0.0, 2.0}}, {"v", {1.5, 0.0}}}));
+    EXPECT_EQ(json["units"],
+              (nlohmann::json{
+                  {"t", "s"}, {"x", "m"}, {"x'", "m/s"}, {"y", "m"}, {"y'", "m/s"}, {"m", "kg"}, {"g", "m/s^2"}}));
+    EXPECT_FALSE(json.contains("samples"));
+}
+
+TEST(Sampling, EquidistantInstantsHaveBothEnds) {
+    EXPECT_EQ(equidistant(2, 0.0, 0.3), (std::vector{0.0, 0.3}));
+    EXPECT_EQ(equidistant(5, 1.0, 2.0), (std::vector{1.0, 1.25, 1.5, 1.75, 2.0}));
+    EXPECT_EQ(equidistant(1000, 0.0, 0.7).back(), 0.7);
+}
+
+TEST_F(Outputs, ChosenInstantsAreTheOnlyRows) {
+    // An impact, a Zeno point, a release: the state after each; in the order in which they were asked for.
+    std::vector<double> times{20.0, 0.0};
+    for (const Event& event : trajectory.events) times.push_back(event.t);
+    const std::vector<std::string> lines = split(to_csv(trajectory, {times, false, false}), '\n');
+    ASSERT_EQ(lines.size(), times.size() + 1);
+    const auto json = nlohmann::json::parse(to_json(trajectory, times));
+    ASSERT_EQ(json["samples"].size(), times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        const auto cells = split(lines[i + 1], ',');
+        const auto& sample = json["samples"][i];
+        EXPECT_EQ(std::stod(cells[0]), times[i]);
+        EXPECT_EQ(sample["t"], times[i]);
+        EXPECT_EQ(sample["phase"], cells[1]);
+        for (std::size_t k = 0; k < 2; ++k) {
+            EXPECT_EQ(sample["q"][k].get<double>(), std::stod(cells[2 + k]));
+            EXPECT_EQ(sample["v"][k].get<double>(), std::stod(cells[4 + k]));
+        }
+        EXPECT_EQ(sample["j"], std::stoi(cells[10]));
+        if (i < 2) continue;
+        const Event& event = trajectory.events[i - 2];
+        EXPECT_EQ(sample["j"], i - 1);
+        const bool is_cut = event.kind == Event::Kind::impact && trajectory.events[i - 1].truncation;
+        const Vector& after = is_cut ? trajectory.events[i - 1].truncation->v : event.v_after;
+        EXPECT_NEAR(sample["v"][0].get<double>(), after[0], 1e-12);
+        EXPECT_NEAR(sample["v"][1].get<double>(), after[1], 1e-12);
+        EXPECT_EQ(sample["phase"], event.kind == Event::Kind::zeno ? "constrained" : "hybrid");
+    }
+}
+
+TEST_F(Outputs, WhatTheRunDidNotReachHasNoSample) {
+    auto run = with(Conditions::sharp);
+    run.options.max_impacts = 3;
+    const Trajectory stopped = simulate(model, run);
+    ASSERT_LT(stopped.end_time, 20.0);
+    EXPECT_EQ(samples_at(stopped, {0.0, stopped.end_time, std::nextafter(stopped.end_time, 20.0), 20.0}).size(), 2u);
+}
+
+std::string instants_told(const std::string& text) {
+    try {
+        read_instants(text, "t.txt", 0.0, 20.0);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(Sampling, InstantsAreReadFromAFile) {
+    EXPECT_EQ(read_instants("# seconds\n0\r\n\n 1/4 # a quarter\n20\n3", "t.txt", 0.0, 20.0),
+              (std::vector{0.0, 0.25, 20.0, 3.0}));
+    EXPECT_EQ(instants_told("0\n  20.5\n"), "t.txt:2:3: 20.5 is outside the run, 0 to 20\n      20.5\n      ^");
+    EXPECT_EQ(instants_told("-1"), "t.txt:1:1: -1 is outside the run, 0 to 20\n    -1\n    ^");
+    EXPECT_EQ(instants_told("0,4"),
+              "t.txt:1:1: '0,4' is not a finite number: decimals have a point, 0.4\n    0,4\n    ^");
+    EXPECT_EQ(instants_told("# none\n\n"), "t.txt: there is no time in it\nwrite one a line");
+}
+
+TEST_F(Outputs, CsvCanBeHeadedForPythonAndWithUnits) {
+    CsvStyle style;
+    style.plain_names = style.units = true;
+    const std::vector<std::string> lines = split(to_csv(trajectory, style), '\n');
+    EXPECT_EQ(lines[0], "t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j");
+    EXPECT_EQ(lines[1], "s,,m,m,m/s,m/s,,,,,");
+    EXPECT_EQ(lines[2].substr(0, 13), "0,hybrid,0,2,");
+    // Names that Python keeps, and one that is taken.
+    const auto odd = test::typed(
+        "title = \"odd\"\n[[coordinate]]\nname = \"is\"\nstart = 1\n[[coordinate]]\nname = \"is_rate\"\n"
+        "[lagrangian]\nkinetic = \"is'^2 + is_rate'^2\"\npotential = \"is\"\n[[constraint]]\ngap = \"is\"\n"
+        "restitution = 0.5\n[run]\nend_time = 0.1\n");
+    EXPECT_EQ(split(to_csv(simulate(odd, odd->default_run()), {{}, true, false}), '\n')[0],
+              "t,phase,is_,is_rate,is_rate_,is_rate_rate,gap,gap_rate,lambda_,energy,j");
+}
+
 TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
     const std::string text = summary(trajectory);
     EXPECT_NE(text.find("zeno      t = 2.725142173"), std::string::npos) << text;
