@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+
+#include "model/model.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -40,9 +44,58 @@ Run asked_run(const SystemDescription& description, const std::vector<std::strin
     return run;
 }
 
-void warn(const SystemDescription& description, const Run& run) {
-    for (const auto& told : {warnings(run.options), outside_ranges(description, run)})
-        for (const std::string& warning : told) fmt::print(stderr, "achilles: warning: {}\n", warning);
+namespace {
+
+bool can_start(const Model& model, const Run& run) {
+    try {
+        model.check(run);
+    } catch (const InputError&) {
+        return false;
+    }
+    return true;
+}
+
+// The run with this setting's value as the file has it.
+Run without(const Model& model, const std::string& setting, Run run) {
+    std::string name = setting.substr(0, setting.find('='));
+    name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+    Run file = model.default_run();
+    double* const place = find_value(model.description(), run, name);
+    if (place != nullptr) *place = *find_value(model.description(), file, name);
+    return run;
+}
+
+}  // namespace
+
+void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings) {
+    try {
+        model.check(run);
+    } catch (const InputError& problem) {
+        Run file = run;
+        std::string all, alone;
+        for (const std::string& setting : settings) {
+            all += fmt::format("{}--set {}", all.empty() ? "" : " ", setting);
+            if (can_start(model, without(model, setting, run))) alone = "--set " + setting;
+            file = without(model, setting, file);
+        }
+        if (!can_start(model, file)) throw;  // it is not the settings
+        std::vector<InputError> told;
+        for (const InputError& each : each_of(problem))
+            told.emplace_back(shown(alone.empty() ? all : alone), Location{}, each.message, each.hint);
+        throw InputErrors(told);
+    }
+}
+
+void warn(const SystemDescription& description, const Run& run, const Run* told) {
+    const auto all_of = [&](const Run& of) {
+        std::vector<std::string> all = warnings(of.options);
+        for (const std::string& outside : outside_ranges(description, of)) all.push_back(outside);
+        return all;
+    };
+    const std::vector<std::string> before = told != nullptr ? all_of(*told) : std::vector<std::string>{};
+    for (const std::string& warning : all_of(run))
+        if (std::find(before.begin(), before.end(), warning) == before.end())
+            fmt::print(stderr, "achilles: warning: {}\n", warning);
 }
 
 }  // namespace achilles

@@ -11,6 +11,8 @@
 
 namespace achilles {
 
+class Model;
+
 // The options that were given, by flag; the others keep what the file or the default says. `--eps` gives the three of
 // the explorer's command `eps`, and --eps-q and its kin go over it.
 struct OptionOverrides {
@@ -30,7 +32,11 @@ void apply(const OptionOverrides& overrides, Options& options);
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides);
 
-// Tells on standard error what a person should know of a run, once: core's warnings() and outside_ranges().
-void warn(const SystemDescription& description, const Run& run);
+// Model::check(). What a --set makes impossible is told with that setting in place of the file's line. Throws InputErrors.
+void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings);
+
+// Tells on standard error what a person should know of a run, once: core's warnings() and outside_ranges(). What was told
+// of another run before is left out.
+void warn(const SystemDescription& description, const Run& run, const Run* told = nullptr);
 
 }  // namespace achilles

@@ -79,13 +79,13 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
 std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
-    lines.push_back("\u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
-    lines.push_back(fmt::format("|q\u221e - q*| < {},  |v\u221e - v*| < {}", bound_text(c.position_bound),
+    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high) + " s");
+    lines.push_back(fmt::format("from the cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
                                 bound_text(c.velocity_bound)));
     if (c.uniform_position)
-        lines.push_back(fmt::format("until \u03c4\u221e: q true to {}", bound_text(*c.uniform_position)));
+        lines.push_back(fmt::format("drawn until \u03c4\u221e: q true to {}", bound_text(*c.uniform_position)));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("at \u03c4\u221e: q true to {}, v to {}", bound_text(*c.shadowing_position),
+        lines.push_back(fmt::format("drawn at \u03c4\u221e: q true to {}, v to {}", bound_text(*c.shadowing_position),
                                     bound_text(*c.shadowing_velocity)));
     lines.push_back(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min));
     if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
@@ -114,11 +114,15 @@ void lens_button(const Session& session, PanelState& state, Commands& commands) 
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
-    const bool close = show_card_title(
-        fmt::format("Zeno point, event {}: {}", index + 1, certificate.certified ? "certified" : "not certified"),
-        fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
-                    to_text(certificate.reinitialization)),
-        state);
+    const bool is_plastic = is_plastic_landing(event);
+    const bool close =
+        show_card_title(fmt::format("{}, event {}: {}", is_plastic ? "Plastic landing" : "Zeno point", index + 1,
+                                    is_plastic              ? "exact"
+                                    : certificate.certified ? "certified"
+                                                            : "not certified"),
+                        fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
+                                    to_text(certificate.reinitialization)),
+                        state);
     if (close) commands.emplace_back(command::Select{0});
     lens_button(session, state, commands);
     show_certificate(event);

@@ -88,14 +88,17 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
     row("end", pinned.end_time, present.end_time);
     if (!same_system) return;
     const auto& coordinates = session.description().coordinates;
+    const State& scale = session.scale();
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? degrees(1.0) : 1.0;
-        row(typeset_name(coordinates[i].name) + (is_angle ? " [\u00b0]" : ""), pinned.end.q[at] * factor,
-            present.end.q[at] * factor);
-        row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""), pinned.end.v[at] * factor,
-            present.end.v[at] * factor);
+        row(typeset_name(coordinates[i].name) + (is_angle ? " [\u00b0]" : ""),
+            without_noise(pinned.end.q[at], scale.q[at]) * factor,
+            without_noise(present.end.q[at], scale.q[at]) * factor);
+        row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
+            without_noise(pinned.end.v[at], scale.v[at]) * factor,
+            without_noise(present.end.v[at], scale.v[at]) * factor);
     }
 }
 

@@ -132,15 +132,18 @@ int reached(const Session& session) {
 // The coordinates after an event, and the rates where they fit too.
 std::string state_text(const Session& session, const Event& event, float width) {
     const auto& coordinates = session.description().coordinates;
+    const State& scale = session.scale();
     std::string positions, rates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto at = static_cast<Eigen::Index>(i);
-        positions += fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
-                                 number(event.q[at] * factor, "{:.5g}"), is_angle ? "\u00b0" : "");
+        positions +=
+            fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
+                        number(without_noise(event.q[at], scale.q[at]) * factor, "{:.5g}"), is_angle ? "\u00b0" : "");
         rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
-                             number(event.v_after[at] * factor, "{:.5g}"), is_angle ? "\u00b0/s" : "");
+                             number(without_noise(event.v_after[at], scale.v[at]) * factor, "{:.5g}"),
+                             is_angle ? "\u00b0/s" : "");
     }
     const std::string all = positions + rates;
     return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
@@ -184,7 +187,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     const float buttons = right - width - units(16.0F) - comparing_width();
     ImGui::AlignTextToFramePadding();
     for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t (s)"},
-                                   std::pair{speed_at, "speed"}, std::pair{state_at, "state after it"}}) {
+                                   std::pair{speed_at, "gap speed"}, std::pair{state_at, "state after it"}}) {
         if (!with_state && at >= speed_at) continue;  // a certificate stands there
         if (left + units(at) + ImGui::CalcTextSize(text).x > buttons) break;
         if (at != number_at) ImGui::SameLine();
@@ -209,7 +212,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
         list->AddText({std::floor(at.x + units(x)), at.y}, packed(color), text.c_str());
     };
     cell(number_at, std::to_string(index + 1), faint_color());
-    cell(kind_at, markers.label, text_color());
+    cell(kind_at, is_plastic_landing(event) ? "landing" : markers.label, text_color());
     cell(time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
     cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());

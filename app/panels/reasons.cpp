@@ -34,13 +34,15 @@ void row(const std::string& name, const std::string& first, const std::string& s
 // The rates before and after, in the units that are shown.
 void show_rates(const Session& session, const Event& event) {
     row("", "before", "after");
+    const State& scale = session.scale();
     const auto& coordinates = session.description().coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto at = static_cast<Eigen::Index>(i);
         row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
-            number(event.v_before[at] * factor), number(event.v_after[at] * factor));
+            number(without_noise(event.v_before[at], scale.v[at]) * factor),
+            number(without_noise(event.v_after[at], scale.v[at]) * factor));
     }
 }
 
@@ -101,9 +103,10 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
-    row("impact speed", number(event.impact_speed, "{:.9g}"));
+    row("gap speed |\u1e23|", number(event.impact_speed, "{:.9g}"));
     row("energy", number(reason.energy_before), number(reason.energy_after));
-    row("energy lost", number(reason.energy_before - reason.energy_after));
+    row("energy lost",
+        number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))));
     paragraph(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr), remaining().width, text_color());
 }
 
@@ -117,7 +120,9 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     if (room.width - words > units(160.0F) && !reason.force.empty())
         paint(force_panel(session.theme(), event, reason), screen_style(session.theme()), ImGui::GetWindowDrawList(),
               {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
-    row("\u03bb", number(reason.lambda, "{:.2g}"));
+    double most = 0.0;
+    for (const auto& [t, lambda] : reason.force) most = std::max(most, std::abs(lambda));
+    row("\u03bb", number(without_noise(reason.lambda, most), "{:.2g}"));
     row("\u03bb\u0307", number(reason.lambda_rate));
     row("h\u2034", number(reason.jerk));
     paragraph(

@@ -5,6 +5,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
+#include "model/model.hpp"
 
 namespace achilles {
 
@@ -20,7 +21,12 @@ Session open_session(const std::string& name, const SystemDescription& first, co
     library.finish = [overrides](Options& options) { apply(overrides, options); };
     const Run run = asked_run(first, settings, overrides);
     warn(first, run);
-    return {name, first, run, std::move(library), patience};
+    try {
+        return {name, first, run, std::move(library), patience};
+    } catch (const InputError&) {
+        if (!settings.empty()) check_asked(Model(first), run, settings);
+        throw;
+    }
 }
 
 SystemSource source_of(PictureJob& job) {

@@ -28,6 +28,7 @@ Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, 
       system(std::move(of)),
       sampler(trajectory),
       samples(plot_samples(trajectory)),
+      scale(scale_of(trajectory)),
       limits(system->mechanism.limits(trajectory, samples)),
       trail(trail_of(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
@@ -214,6 +215,14 @@ void Session::perform(const command::Start& command) {
         if (!std::isfinite(given.value)) throw refusal(fmt::format("'{}' must be finite", name));
         check_unit(description(), name, given);
         *found = given.value;
+    }
+    try {
+        system_->model->check(changed);
+    } catch (const InputError& problem) {  // of these values, not of the file, which runs
+        std::string names;
+        for (const auto& [name, given] : command.values)
+            names += fmt::format("{}{} = {}", names.empty() ? "" : ", ", name, given.value);
+        throw refusal(fmt::format("{}: {}", names, problem.message), problem.hint);
     }
     rerun(changed);
 }

@@ -87,6 +87,7 @@ class Session {
     // Its body along the run that is shown, a point a sample.
     const Trail& trail() const { return simulated_->trail; }
     std::span<const Sample> samples() const { return simulated_->samples; }
+    const State& scale() const { return simulated_->scale; }  // scale_of() the run
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return simulated_->limits; }
     // What is plotted, and the plots, composed.
@@ -128,6 +129,7 @@ class Session {
         std::shared_ptr<const System> system;
         Sampler sampler;
         std::vector<Sample> samples;
+        State scale;
         Drawing limits;
         Trail trail;
         int revision = 0;   // of what is plotted

@@ -1,7 +1,10 @@
 #include "expression/nearest.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <vector>
+
+#include "expression/greek.hpp"
 
 namespace achilles {
 
@@ -60,7 +63,32 @@ std::string in_quotes(std::string_view name) {
     return name.ends_with('\'') ? std::string(name) : "'" + std::string(name) + "'";
 }
 
+std::string spelled_out(std::string_view text) {
+    std::string result(text);
+    for (const auto& [name, letter] : greek_letters)
+        for (std::size_t at = result.find(letter); at != std::string::npos; at = result.find(letter, at))
+            result.replace(at, letter.size(), name);
+    return result;
+}
+
+std::string rates_are_written(std::string_view word, std::span<const std::string> names) {
+    for (const std::string& rate : names) {
+        if (!rate.ends_with('\'') || rate.ends_with("\'\'")) continue;
+        const std::string x = rate.substr(0, rate.size() - 1);
+        const std::string others[] = {x + "dot", x + "_dot", "d" + x, "v" + x, "v_" + x};
+        if (word == "v" || std::find(std::begin(others), std::end(others), word) != std::end(others))
+            return "; rates are written " + rate;
+    }
+    return "";
+}
+
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
+    if (std::string rates = rates_are_written(word, candidates); !rates.empty()) return rates;
+    const std::string latin = spelled_out(word);
+    if (latin != word)
+        return std::find(candidates.begin(), candidates.end(), latin) == candidates.end()
+                   ? "; Greek letters have names: " + latin
+                   : "; did you mean " + in_quotes(latin) + "?";
     const std::string best = nearest(word, candidates);
     return best.empty() ? "" : "; did you mean " + in_quotes(best) + "?";
 }

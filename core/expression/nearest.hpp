@@ -15,7 +15,14 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
 // A name as messages show it: 'x', but x' without quotes, which look like primes.
 std::string in_quotes(std::string_view name);
 
-// "; did you mean 'x'?" or "".
+// Greek letters by their names: theta1 for θ1, and 2*theta for 2*θ.
+std::string spelled_out(std::string_view text);
+
+// "; rates are written x'" where a word stands for a rate as other programs write it: xdot, x_dot, dx, vx, v_x of an x
+// whose x' is one of the names, or v alone; else "".
+std::string rates_are_written(std::string_view word, std::span<const std::string> names);
+
+// "; did you mean 'x'?", or how a rate is written, or "".
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace achilles

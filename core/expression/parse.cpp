@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "expression/functions.hpp"
+#include "expression/greek.hpp"
 #include "expression/nearest.hpp"
 
 namespace achilles {
@@ -178,7 +179,21 @@ class Parser {
             close(open);
             return inner;
         }
+        refuse_greek();
         throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + " where a value is expected");
+    }
+
+    // θ, and θ1 as a whole.
+    void refuse_greek() const {
+        const std::string_view rest = text_.substr(at_);
+        for (const auto& [name, letter] : greek_letters) {
+            if (!rest.starts_with(letter)) continue;
+            std::size_t end = letter.size();
+            while (end < rest.size() && is_name_part(rest[end])) ++end;
+            const std::string_view whole = rest.substr(0, end);
+            throw ParseError(
+                at_, "names have Latin letters: write " + spelled_out(whole) + " for '" + std::string(whole) + "'");
+        }
     }
 
     void close(std::size_t open) {
@@ -198,6 +213,7 @@ class Parser {
         }
         const bool value_follows = is_name_part(peek()) || peek() == '(' || peek() == '.';
         if (value_follows) throw ParseError(at_, "an operator is missing here; write '*' for a product");
+        refuse_greek();
         if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");
         throw ParseError(at_, "unexpected " + shown(text_.substr(at_)));
     }
@@ -269,6 +285,11 @@ class Parser {
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
+        std::vector<std::string> rates;  // those that may not stand here, too
+        for (const auto& [word, reason] : scope_.forbidden)
+            if (reason.starts_with("the rate ")) rates.push_back(word);
+        if (const std::string hint = rates_are_written(full, rates); !hint.empty())
+            throw ParseError(begin, "unknown name " + in_quotes(full) + hint, full);
         throw ParseError(begin, "unknown name " + in_quotes(full) + did_you_mean(full, known), full);
     }
 

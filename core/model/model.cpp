@@ -36,7 +36,9 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
     try {
         return parse(text.text, scope, graph);
     } catch (const ParseError& error) {
-        throw description_.error(place_in(text, error.offset), error.what());
+        if (text.at.line > 0) throw description_.error(place_in(text, error.offset), error.what());
+        // It stands in no file: it is shown itself.
+        throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), {}, text.text);
     }
 }
 

@@ -1,9 +1,32 @@
 // Names of the kinds of things, and a trajectory as text for golden tests.
 #include "run/trajectory.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace achilles {
+
+bool is_plastic_landing(const Event& event) {
+    return event.kind == Event::Kind::zeno && event.truncation && event.truncation->t == event.t && event.certificate &&
+           event.certificate->zeno_low == event.certificate->zeno_high;
+}
+
+State scale_of(const Trajectory& trajectory) {
+    State scale{trajectory.run.q.cwiseAbs(), trajectory.run.v.cwiseAbs()};
+    const auto take = [&](const Vector& q, const Vector& v) {
+        scale.q = scale.q.cwiseMax(q.cwiseAbs());
+        scale.v = scale.v.cwiseMax(v.cwiseAbs());
+    };
+    for (const Event& event : trajectory.events) {
+        take(event.q, event.v_before);
+        take(event.q, event.v_after);
+    }
+    take(trajectory.end.q, trajectory.end.v);
+    return scale;
+}
+
+double without_noise(double value, double scale) { return std::abs(value) < 1e-14 * scale ? 0.0 : value; }
 
 std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 

@@ -90,6 +90,9 @@ struct Event {
     std::optional<Certificate> certificate;  // zeno
 };
 
+// A Zeno event without bouncing: restitution 0 ends the fall in contact at once, exactly.
+bool is_plastic_landing(const Event& event);
+
 struct Outcome {
     enum class Kind {
         end_time,
@@ -127,6 +130,11 @@ struct Trajectory {
     Outcome outcome;
     Statistics statistics;
 };
+
+// The largest |q| and |v|, coordinate by coordinate, at the start, the events and the end: what is much smaller is noise.
+State scale_of(const Trajectory& trajectory);
+// For a person, 0 where a value is rounding noise beside such a scale: below 1e-14 of it.
+double without_noise(double value, double scale);
 
 std::string_view to_text(Phase::Kind);
 std::string_view to_text(Event::Kind);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/flat.hpp"
 #include "simulate/domain.hpp"
 
 namespace achilles {
@@ -208,10 +209,12 @@ std::string Execution::doubt(const StepResult& result) const {
     const std::string place = where(next_.t, next_.state);
     if (!next_.held.empty())
         return "the contact force comes closer to zero than the integration knows it just after " + place;
-    return fmt::format(
-        "the gap comes closer to zero than the integration knows it (to {:.1g}): an impact or none cannot be told just "
-        "after {}",
-        result.remainder, place);
+    const std::string known =
+        fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g})", result.remainder);
+    if (is_flat(*model_, run_.parameters, next_.state.q))
+        return fmt::format("{}, and dh vanishes where h = 0, so that contact has no normal, just after {}; {}", known,
+                           place, flat_hint);
+    return fmt::format("{}: an impact or none cannot be told just after {}", known, place);
 }
 
 void Execution::stop_at(StepFailure failure) {

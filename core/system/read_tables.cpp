@@ -45,7 +45,8 @@ Text read_name(Names& names, const Fields& fields) {
     const Text name = fields.string("name");
     if (!is_name(name.text))
         throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
-                      "a name is a letter, then letters, digits and underscores"};
+                      is_name(spelled_out(name.text)) ? "Greek letters have names: write " + spelled_out(name.text)
+                                                      : "a name is a letter, then letters, digits and underscores"};
     if (is_reserved(name.text)) {
         names.complete = was_complete;
         names.excused.insert(name.text);

@@ -7,6 +7,7 @@
 
 #include <toml++/toml.h>
 
+#include "expression/parse.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -172,6 +173,29 @@ TomlValue convert(const toml::node& node, Source source) {
     return value;
 }
 
+// What would be right in a line like gap = y - sin(x), or start = 0,4; "" where that is not what is wrong.
+std::string right_value(const std::string& line) {
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) return "";
+    const auto trimmed = [](std::string part) {
+        part.erase(0, std::min(part.find_first_not_of(" \t"), part.size()));
+        part.erase(part.find_last_not_of(" \t\r") + 1);
+        return part;
+    };
+    const std::string key = trimmed(line.substr(0, equals)), rest = line.substr(equals + 1);
+    const std::string value = trimmed(rest.substr(0, rest.find('#')));
+    if (!is_name(key) || value.empty() || value.find('"') != std::string::npos) return "";
+    if (value[0] == '[' || value[0] == '{')
+        return value.find_first_of("ghijklmnopqrsuvwxyz") == std::string::npos
+                   ? ""
+                   : "names and expressions stand in quotes, at = [\"x\", \"y\"]";
+    std::string with_point = value;
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+    const bool is_number = with_point.find_first_not_of("+-.0123456789eE") == std::string::npos;
+    if (is_number) return with_point == value ? "" : fmt::format("decimals have a point: {} = {}", key, with_point);
+    return fmt::format("put it in quotes: {} = \"{}\"", key, shown(value));
+}
+
 }  // namespace
 
 std::string_view kind_name(TomlValue::Kind kind) {
@@ -205,7 +229,8 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
             if (const auto colon = message.find(": "); colon != message.npos) message.remove_prefix(colon + 2);
         }
         const Location at = location(error.source().begin);
-        throw InputError(name, at, fmt::format("not valid TOML: {}", message), {}, line_of(text, at.line));
+        const std::string line = line_of(text, at.line);
+        throw InputError(name, at, fmt::format("not valid TOML: {}", message), right_value(line), line);
     }
 }
 

@@ -5,16 +5,11 @@
 #include <cctype>
 #include <utility>
 
+#include "expression/greek.hpp"
+
 namespace achilles {
 
 namespace {
-
-constexpr std::array<std::pair<std::string_view, std::string_view>, 34> signs{
-    {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},   {"eta", "η"},
-     {"theta", "θ"}, {"iota", "ι"},  {"kappa", "κ"}, {"lambda", "λ"},  {"mu", "μ"},      {"nu", "ν"},     {"xi", "ξ"},
-     {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "φ"},     {"chi", "χ"},    {"psi", "ψ"},
-     {"omega", "ω"}, {"pi", "π"},    {"Gamma", "Γ"}, {"Delta", "Δ"},   {"Theta", "Θ"},   {"Lambda", "Λ"}, {"Xi", "Ξ"},
-     {"Pi", "Π"},    {"Sigma", "Σ"}, {"Phi", "Φ"},   {"Psi", "Ψ"},     {"Omega", "Ω"},   {"gap", "h"}}};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
@@ -52,8 +47,10 @@ struct Name {
 };
 
 std::string sign_of(std::string_view word) {
-    const auto found = std::find_if(signs.begin(), signs.end(), [&](const auto& entry) { return entry.first == word; });
-    return std::string(found == signs.end() ? word : found->second);
+    if (word == "gap") return "h";
+    for (const auto& [name, letter] : greek_letters)
+        if (name == word) return std::string(letter);
+    return std::string(word);
 }
 
 std::string dots_of(const Name& name) { return name.primes == 1 ? "\u0307" : name.primes == 2 ? "\u0308" : ""; }

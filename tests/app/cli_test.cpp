@@ -140,9 +140,7 @@ TEST(Cli, WhatTheCommandLineSetsIsCheckedAtTheStart) {
     folder.put("drop.toml", drop);
     const Answer answer = folder.run("simulate drop.toml --set y=-1 --json a.json");
     EXPECT_EQ(answer.status, 2);
-    EXPECT_EQ(answer.err,
-              "drop.toml:9:8: the gap is negative at the start: h = -1\n    gap = \"y\"\n           ^\n"
-              "choose a start with h(q) >= 0\n");
+    EXPECT_EQ(answer.err, "--set y=-1: the gap is negative at the start: h = -1\nchoose a start with h(q) >= 0\n");
     EXPECT_EQ(folder.run("simulate drop.toml --set y=1e999").err, "--set y=1e999: '1e999' is not a finite number\n");
     EXPECT_EQ(folder.files(), std::vector<std::string>{"drop.toml"});
 }

@@ -37,6 +37,98 @@ TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
               "here it is m\n");
 }
 
+const std::string drop =
+    "title = \"drop\"\n[[coordinate]]\nname = \"y\"\nstart = 1.0\n[[parameter]]\nname = \"e\"\nvalue = "
+    "0.5\n[lagrangian]\n"
+    "kinetic = \"y'^2/2\"\npotential = \"9.81*y\"\n[[constraint]]\ngap = \"y\"\nrestitution = \"e\"\n";
+
+std::string with(const std::string& from, const std::string& to) {
+    return std::string(drop).replace(drop.find(from), from.size(), to);
+}
+
+// Mistakes of a file that many make: the sentence says what to write.
+TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
+    const struct {
+        std::string text, message;
+    } mistakes[] = {
+        {with("gap = \"y\"", "gap = y"),
+         "f.toml:12:7: not valid TOML: could not determine value type\n    gap = y\n          ^\nput it in quotes: gap "
+         "= "
+         "\"y\"\n"},
+        {with("start = 1.0", "start = 30 deg  # up"),
+         "f.toml:4:12: not valid TOML: expected a comment or whitespace, saw 'd'\n    start = 30 deg  # up\n           "
+         "    "
+         "^\nput it in quotes: start = \"30 deg\"\n"},
+        {with("start = 1.0", "start = 0,4"),
+         "f.toml:4:10: not valid TOML: expected a comment or whitespace, saw ','\n    start = 0,4\n             "
+         "^\ndecimals have a point: start = 0.4\n"},
+        {with("9.81*y", "9.81*y + ydot"),
+         "f.toml:10:23: unknown name 'ydot'; rates are written y'\n    potential = \"9.81*y + ydot\"\n                 "
+         "     "
+         "    ^\n"},
+        {with("y'^2/2", "v^2/2"),
+         "f.toml:9:12: unknown name 'v'; rates are written y'\n    kinetic = \"v^2/2\"\n               ^\n"},
+        {with("9.81*y", "9.81*θ1"),
+         "f.toml:10:19: names have Latin letters: write theta1 for 'θ1'\n    potential = \"9.81*θ1\"\n               "
+         "       ^\n"},
+        {with("name = \"y\"", "name = \"θ\""),
+         "f.toml:3:9: 'θ' is not a name\n    name = \"θ\"\n            ^\nGreek letters have names: write "
+         "theta\n"},
+    };
+    const Folder folder;
+    for (const auto& [text, message] : mistakes) {
+        folder.put("f.toml", text);
+        const Answer answer = folder.run("simulate f.toml");
+        EXPECT_EQ(answer.status, 2);
+        EXPECT_EQ(answer.err, message);
+    }
+}
+
+TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    folder.put("square.toml", with("gap = \"y\"", "gap = \"y^2\""));
+    folder.put("broken.toml", with("value = 0.5", "value = 1.5"));
+    const std::string flat =
+        "dh = 0 at the start, which is in contact: the normal is not defined\nthe gap comes to 0 without crossing it: "
+        "write one whose dh is not 0 there, as x in place of x^2\n";
+    const std::string large = "the restitution must lie in [0, 1], but it is 1.5\n";
+    const std::pair<std::string, std::string> mistakes[] = {
+        {"simulate drop.toml --set y=2 --set e=1.5", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},
+        {"check drop.toml --set e=1.5", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},
+        {"figure drop.toml --set e=1.5 --out a.svg", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},
+        {"screenshot drop.toml --set e=1.5 --out a.png", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},
+        {"simulate square.toml --set y=0", "--set y=0: " + flat},
+        {"simulate square.toml --set y=1e-170", "--set y=1e-170: " + flat},
+        {"simulate drop.toml --set ydot=1",
+         "--set ydot=1: 'ydot' is no parameter, coordinate or rate of this system; rates are written y'\n"},
+        {"simulate double_pendulum --set θ1=1",
+         "--set θ1=1: 'θ1' is no parameter, coordinate or rate of this system; did you mean 'theta1'?\n"},
+        {"simulate broken.toml --set y=2",
+         "broken.toml:13:16: " + large + "    restitution = \"e\"\n                   ^\n0 is plastic, 1 is elastic\n"},
+        {"figure drop.toml --do \"set e 1.5\" --out a.svg",
+         "set e 1.5: e = 1.5: " + large + "0 is plastic, 1 is elastic\n"},
+        {"figure drop.toml --do \"plot 1 t y,e\" --out a.svg",
+         "plot 1 t y,e: unexpected ','\n    y,e\n     ^\nwrite: plot NUMBER X Y..., expressions with spaces in double "
+         "quotes\n"},
+        {"simulate .", ".: cannot read the file: it is a directory\n"}};
+    for (const auto& [arguments, message] : mistakes) {
+        const Answer answer = folder.run(arguments);
+        EXPECT_EQ(answer.status, 2) << arguments;
+        EXPECT_EQ(answer.err, message) << arguments;
+        EXPECT_EQ(folder.files().size(), 3u) << arguments;
+    }
+}
+
+TEST(Meant, StepsWarnAsOptionsDo) {
+    const Answer answer = Folder().run(
+        "figure double_pendulum --end 0.1 --set m1=7 --do \"tolerance 1e-30\" --do \"set theta1 3\" --out a.svg");
+    EXPECT_EQ(answer.err,
+              "achilles: warning: m1 = 7 kg is outside its range, 0.1 to 5\n"
+              "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n"
+              "achilles: warning: theta1 = 3 rad is outside its range, -1.5708 to 1.5708\n");
+}
+
 TEST(Data, HoldsTheInstantsThatWereAskedFor) {
     const Folder folder;
     ASSERT_EQ(folder.run("simulate ball_on_sine --samples 5 --json a.json --csv a.csv --plain-names").status, 0);

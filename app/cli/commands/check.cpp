@@ -29,7 +29,7 @@ int check(const CheckArguments& arguments) {
     const auto before = std::chrono::steady_clock::now();
     const Model model(description);
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
-    model.check(run);
+    check_asked(model, run, arguments.settings);
     warn(description, run);
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;

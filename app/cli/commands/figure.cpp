@@ -61,11 +61,14 @@ int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job)
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
                                    arguments.overrides, source_of(job), {});
     job.add(arguments.out);
+    const Run asked = session.run();
+    const auto model = session.model();
     for (const Command& step : steps) {
         session.apply(step);
         if (!session.error().empty()) throw InputError(to_text(step), {}, session.error());
         if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
     }
+    warn(session.description(), session.run(), session.model() == model ? &asked : nullptr);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
     return put(arguments, session.trajectory(), figure_of(session, style), as_svg, job);
@@ -78,7 +81,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
-    model->check(run);
+    check_asked(*model, run, arguments.settings);
     warn(description, run);
     job.add(arguments.out);
 

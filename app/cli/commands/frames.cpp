@@ -117,7 +117,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_for(description, arguments.views);
-    model->check(run);
+    check_asked(*model, run, arguments.settings);
     warn(description, run);
     check_count({arguments.fps, arguments.speed, run.options.end_time});
 

@@ -66,7 +66,7 @@ int run(const SimulateArguments& arguments) {
     const SystemDescription description = read_system(find_system(arguments.system));
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
-    model->check(run);
+    check_asked(*model, run, arguments.settings);
     const Instants instants = instants_of(arguments, run);
     warn(description, run);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.

@@ -135,7 +135,7 @@ TEST_F(Expressions, ErrorsNameThePlaceAndTheLikelyWord) {
     EXPECT_EQ(error("w"), "0: 'w' may not stand here");
     EXPECT_EQ(error("1e999"), "0: this number is out of range: it has an exponent beyond 400");
     EXPECT_EQ(error("x # y"), "2: unexpected '#'");
-    EXPECT_EQ(error("\xCE\xB8"), "0: unexpected '\xCE\xB8' where a value is expected");
+    EXPECT_EQ(error("\xCE\xB8"), "0: names have Latin letters: write theta for '\xCE\xB8'");
     EXPECT_EQ(error("sin(x, y)"), "5: the function 'sin' takes one argument");
     EXPECT_EQ(error(std::string(100000, '(')).substr(0, 28), "200: nested more than 200 le");
 }

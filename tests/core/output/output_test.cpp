@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "core/systems.hpp"
@@ -239,6 +240,48 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
     EXPECT_NE(text.find("decided by the condition c3: velocity"), std::string::npos) << text;
     EXPECT_NE(text.find("do not cover"), std::string::npos) << text;
     EXPECT_NE(text.find("outcome: end time"), std::string::npos) << text;
+}
+
+TEST_F(Outputs, TheSummarySaysUnitsAndInWordsWhatIsBounded) {
+    const std::string text = summary(simulate(model, with(Conditions::sharp)));
+    for (const char* words :
+         {"hybrid phase, t = 0 to 2.72514216 s", "x = 4.6088", " m, y = -0.99", " s, the Zeno time;",
+          "the true Zeno point is within ", " of the position at the cut, its velocity within ",
+          "from the cut to tau_inf what is drawn is within ", "gap speed 0.456469",
+          "x' = ", " m/s, y' = ", "Gap speeds are |hdot|"})
+        EXPECT_NE(text.find(words), std::string::npos) << words << "\n" << text;
+}
+
+TEST(Summary, APlasticLandingIsCalledSo) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "e=0");
+    const Trajectory trajectory = simulate(floor, run);
+    const std::string text = summary(trajectory);
+    EXPECT_NE(text.find("  landing   t = 0.437768"), std::string::npos) << text;
+    EXPECT_NE(text.find("plastic: it comes to rest"), std::string::npos);
+    EXPECT_EQ(text.find("zeno "), std::string::npos);
+    EXPECT_EQ(text.find("cut short"), std::string::npos);
+    EXPECT_TRUE(is_plastic_landing(test::events_of(trajectory, Event::Kind::zeno)[0]));
+    const Trajectory bouncing = simulate(floor, floor->default_run());
+    EXPECT_FALSE(is_plastic_landing(test::events_of(bouncing, Event::Kind::zeno)[0]));
+}
+
+// A release of the pendulum is at theta1 = 0, but for rounding: people read 0, scripts what was computed.
+TEST(Summary, RoundingNoiseIsZeroForPeople) {
+    const auto pendulum = test::load("double_pendulum");
+    const Trajectory trajectory = simulate(pendulum, pendulum->default_run());
+    const Event release = test::events_of(trajectory, Event::Kind::release)[0];
+    ASSERT_NE(release.q[0], 0.0);
+    ASSERT_LT(std::abs(release.q[0]), 1e-20);
+    EXPECT_NE(summary(trajectory).find("theta1 = 0 rad, theta2 = 0 rad"), std::string::npos) << summary(trajectory);
+    EXPECT_NE(to_json(trajectory).find(fmt::format("{}", release.q[0])), std::string::npos);
+    EXPECT_EQ(without_noise(-5.6e-16, 12.0), 0.0);
+    EXPECT_EQ(without_noise(1e-20, 1e-20), 1e-20);
+    EXPECT_EQ(without_noise(2e-14, 1.0), 2e-14);
+    const State scale = scale_of(trajectory);
+    EXPECT_GT(scale.q[0], 0.5);
+    EXPECT_GT(scale.v[0], 0.5);
 }
 
 TEST_F(Outputs, TextIsForGoldens) {

@@ -289,7 +289,8 @@ const Change in_expression[] = {
     {"\"m*x\"", "\"m*x # y\"", "f.toml:16:18: unexpected '#'\n    potential = \"m*x # y\"\n                     ^"},
     {"\"m*x\"", "\"\"\"\nm*x\n  + bb\"\"\"", "f.toml:18:5: unknown name 'bb'\n      + bb\"\"\"\n        ^"},
     {"\"m*x\"", "\"m*x + θ + k\"",
-     "f.toml:16:20: unexpected 'θ' where a value is expected\n    potential = \"m*x + θ + k\"\n                       "
+     "f.toml:16:20: names have Latin letters: write theta for 'θ'\n    potential = \"m*x + θ + k\"\n                   "
+     "    "
      "^"},
     {"\"s^2\"", "\"r^2\"", "f.toml:27:13: unknown name 'r'\n    at = [\"s\", \"r^2\"]\n                ^"},
     {"\"s^2\"", "\"x'\"",
@@ -354,7 +355,7 @@ const Change in_start[] = {
      "\"m/2*(x'^2 + theta'^2)\"\n               ^\nevery coordinate needs a positive inertia"},
     {"\"x - sin(theta)/9\"", "\"(x - 1)^2\"",
      "f.toml:18:8: dh = 0 at the start, which is in contact: the normal is not defined\n    gap = \"(x - 1)^2\"\n      "
-     "     ^"},
+     "     ^\nthe gap comes to 0 without crossing it: write one whose dh is not 0 there, as x in place of x^2"},
     {"\"x - sin(theta)/9\"", "\"log(x - 2)\"",
      "f.toml:18:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n    gap = \"log(x - 2)\"\n      "
      "     ^"},

@@ -1,0 +1,26 @@
+#include "model/flat.hpp"
+
+#include <cmath>
+
+namespace achilles {
+
+bool is_flat(const Model& model, std::span<const double> parameters, const Vector& q) {
+    const Layout& layout = model.layout();
+    const Expression gap = model.equations().gap;
+    Graph graph(gap.graph());  // a copy: a model is shared between threads and never changes
+    std::vector<std::uint32_t> slots;
+    for (std::size_t i = 0; i < layout.dof; ++i) slots.push_back(layout.q(i));
+    std::vector<Expression> outputs = gradient(graph.adopt(gap), slots);
+    for (const auto& row : jacobian(outputs, slots)) outputs.insert(outputs.end(), row.begin(), row.end());
+    outputs.push_back(graph.adopt(gap));
+    const Program program(outputs, layout.slots());
+    auto value = model.evaluator(program, parameters);
+    set_state(value, State{q, Vector::Zero(q.size())});
+    value.run();
+    double slope = 0.0, bend = 0.0;
+    for (std::size_t i = 0; i + 1 < outputs.size(); ++i)
+        (i < layout.dof ? slope : bend) += value.output(i) * value.output(i);
+    return slope <= 4.0 * std::abs(value.output(outputs.size() - 1)) * std::sqrt(bend);
+}
+
+}  // namespace achilles
