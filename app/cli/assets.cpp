@@ -62,6 +62,8 @@ std::vector<fs::path> system_files() { return files_in("systems", ".toml"); }
 
 std::vector<fs::path> journal_files() { return files_in("journals", ".journal"); }
 
+std::vector<fs::path> manual_files() { return files_in("manual", ".md"); }
+
 std::vector<std::string> system_names() {
     std::vector<std::string> names;
     for (const fs::path& file : system_files()) names.push_back(file.stem().string());

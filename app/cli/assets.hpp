@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-// The folder that holds systems/, journals/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
+// The folder that holds systems/, journals/, manual/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
 // "../share/achilles". Throws InputError if none is there.
 std::filesystem::path assets();
 
@@ -21,6 +21,9 @@ std::vector<std::string> system_names();
 // The same of journals: a file in assets/journals is a tour.
 std::vector<std::filesystem::path> journal_files();
 std::filesystem::path find_journal(std::string_view journal);
+
+// The pages of the manual.
+std::vector<std::filesystem::path> manual_files();
 
 // The file of SYSTEM, a path or a name. Throws InputError with the nearest name and the list of names.
 std::filesystem::path find_system(std::string_view system);

@@ -70,6 +70,7 @@ int run(std::vector<std::string> words) {
     add_reproduce(program, status);
     add_check(program, status);
     add_list(program, status);
+    add_manual(program, status);
     try {
         put_default_command(program, words);
         std::reverse(words.begin(), words.end());  // CLI11 takes them from the back

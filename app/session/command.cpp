@@ -194,6 +194,20 @@ void list_names(std::vector<std::string>& names) {
     for (const std::string_view name : names_of<Kind>()) names.emplace_back(name);
 }
 
+// "write: range NUMBER x LOW HIGH, or: ..." without what is said to somebody who wrote something else.
+std::string without_request(std::string usage) {
+    constexpr std::string_view request = "write: ";
+    return usage.starts_with(request) ? usage.substr(request.size()) : usage;
+}
+template <Spoken Kind>
+void list_usages(std::vector<std::string>& lines) {
+    std::vector<std::string_view> names = names_of<Kind>();
+    if (names.empty()) names = {Kind::said.name};
+    for (const std::string_view name : names)
+        lines.push_back(Kind::said.usage == alone ? std::string(name)
+                                                  : without_request(filled(Kind::said.usage, name)));
+}
+
 template <Spoken Kind>
 Change change_of(const Kind&) {
     return Kind::said.change;
@@ -249,6 +263,11 @@ void list_names(std::vector<std::string>& names) {
     for (const auto group : options_by_command()) names.emplace_back(group[0].command);
 }
 
+template <std::same_as<UseOption>>
+void list_usages(std::vector<std::string>& lines) {
+    for (const auto group : options_by_command()) lines.push_back(without_request(std::string(group[0].usage)));
+}
+
 // A number has a slider, which is dragged.
 Change change_of(const UseOption& use) {
     return std::holds_alternative<double>(use.values[0]) ? Change::together : Change::alone;
@@ -272,6 +291,13 @@ std::vector<std::string> names_of_all(const std::variant<Kinds...>*) {
     return names;
 }
 
+template <class... Kinds>
+std::vector<std::string> usages_of_all(const std::variant<Kinds...>*) {
+    std::vector<std::string> lines;
+    (list_usages<Kinds>(lines), ...);
+    return lines;
+}
+
 constexpr const AnyCommand* any = nullptr;
 
 }  // namespace
@@ -292,6 +318,8 @@ Command parse_command(std::string_view text, const std::string& file, int line_n
         fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
         fmt::format("the commands are: {}", fmt::join(names, ", ")));
 }
+
+std::vector<std::string> command_usages() { return command::usages_of_all(command::any); }
 
 command::Change change_of(const Command& command) {
     return std::visit([](const auto& what) { return command::change_of(what); },

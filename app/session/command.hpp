@@ -281,6 +281,9 @@ std::string to_text(const Command& command);
 // Reads one line. Throws InputError that names file, line and column. A line must hold a command: see parse_journal.
 Command parse_command(std::string_view text, const std::string& file = "<command>", int line = 1);
 
+// How all are written, a line each.
+std::vector<std::string> command_usages();
+
 command::Change change_of(const Command& command);
 // Whether a command goes on with the change that the last one made: the same slider, the same plot.
 bool goes_on(const Command& last, const Command& next);

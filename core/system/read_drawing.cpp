@@ -7,6 +7,7 @@
 #include "expression/parse.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
+#include "system/keys.hpp"
 
 namespace achilles {
 
@@ -14,25 +15,24 @@ namespace {
 
 using Shape = DrawingDescription::Shape;
 
-struct ShapeKeys {
+struct NamedShape {
     std::string name;
     Shape shape;
-    std::vector<std::string> own;  // beside shape, color, width, fill
 };
 
-const std::vector<ShapeKeys>& shapes() {
-    static const std::vector<ShapeKeys> list{{"disc", Shape::disc, {"at", "radius"}},
-                                             {"segment", Shape::segment, {"from", "to"}},
-                                             {"curve", Shape::curve, {"at", "over"}},
-                                             {"polyline", Shape::polyline, {"points"}},
-                                             {"text", Shape::text, {"at", "text"}}};
+const std::vector<NamedShape>& shapes() {
+    static const std::vector<NamedShape> list{{"disc", Shape::disc},
+                                              {"segment", Shape::segment},
+                                              {"curve", Shape::curve},
+                                              {"polyline", Shape::polyline},
+                                              {"text", Shape::text}};
     return list;
 }
 
-const ShapeKeys& shape_of(const Fields& fields) {
+const NamedShape& shape_of(const Fields& fields) {
     const Text name = fields.string("shape");
     std::vector<std::string> names;
-    for (const ShapeKeys& shape : shapes()) {
+    for (const NamedShape& shape : shapes()) {
         if (shape.name == name.text) return shape;
         names.push_back(shape.name);
     }
@@ -77,9 +77,9 @@ std::string read_color(const Fields& fields) {
 }  // namespace
 
 DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes) {
-    const ShapeKeys& shape = shape_of(fields);
-    std::vector<std::string> keys{"shape", "color", "width", "fill"};
-    keys.insert(keys.end(), shape.own.begin(), shape.own.end());
+    const NamedShape& shape = shape_of(fields);
+    std::vector<std::string> keys = keys_of("[[drawing]]"), own = keys_of(shape.name);
+    keys.insert(keys.end(), own.begin(), own.end());
     Fields of_shape(fields.table(), fmt::format("[[drawing]] of shape {}", shape.name));
     of_shape.allow(keys, mistakes);
 
@@ -114,7 +114,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
 }
 
 ViewDescription read_view(Fields& fields, Mistakes& mistakes) {
-    fields.allow({"name", "x", "y"}, mistakes);
+    fields.allow(keys_of("[[view]]"), mistakes);
     ViewDescription view;
     mistakes.attempt([&] { view.x = fields.expression("x"); });
     const TomlValue& y = fields.need("y");

@@ -11,6 +11,7 @@
 #include "number/ground.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
+#include "system/keys.hpp"
 
 namespace achilles {
 
@@ -92,7 +93,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
     const std::size_t before = reading.mistakes.count();
     for (Fields& fields : named_tables(reading, "coordinate")) {
         Mistakes& mistakes = reading.mistakes;
-        fields.allow({"name", "start", "rate", "unit", "range", "rate_range"}, mistakes);
+        fields.allow(keys_of("[[coordinate]]"), mistakes);
         CoordinateDescription coordinate;
         const bool is_named = mistakes.attempt([&] {
             const Text name = read_name(reading.names, fields);
@@ -126,7 +127,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
 void read_parameters(Reading& reading) {
     for (Fields& fields : named_tables(reading, "parameter")) {
         Mistakes& mistakes = reading.mistakes;
-        fields.allow({"name", "value", "unit", "about", "range"}, mistakes);
+        fields.allow(keys_of("[[parameter]]"), mistakes);
         ParameterDescription parameter;
         const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
         mistakes.attempt([&] { read_unit(fields, parameter.unit); });
@@ -146,7 +147,7 @@ void read_parameters(Reading& reading) {
 void read_lagrangian(Reading& reading, const Fields& root) {
     root.need("lagrangian", missing("[lagrangian]"));
     Fields fields(*root.find("lagrangian"), "[lagrangian]");
-    fields.allow({"kinetic", "potential"}, reading.mistakes);
+    fields.allow(keys_of("[lagrangian]"), reading.mistakes);
     reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
     reading.mistakes.attempt([&] { reading.system.potential = fields.expression("potential"); });
 }
@@ -161,7 +162,7 @@ void read_constraint(Reading& reading, const Fields& root) {
         reading.mistakes.add({constraints[1].table().at, "more than one [[constraint]]",
                               "Achilles simulates systems with exactly one unilateral constraint"});
     Fields& fields = constraints[0];
-    fields.allow({"gap", "restitution"}, reading.mistakes);
+    fields.allow(keys_of("[[constraint]]"), reading.mistakes);
     reading.mistakes.attempt([&] { reading.system.gap = fields.expression("gap"); });
     reading.mistakes.attempt([&] { reading.system.restitution = fields.expression("restitution"); });
 }
@@ -233,8 +234,7 @@ FileReading read_tables(std::string text, std::string name) {
     Mistakes& mistakes = read.mistakes;
     Reading reading{system, root, mistakes, read.names};
     Fields fields(root, "a system file");
-    const std::vector<std::string> keys{"title", "source", "coordinate", "parameter",  "lagrangian", "constraint",
-                                        "run",   "view",   "drawing",    "truncation", "extra"};
+    const std::vector<std::string> keys = keys_of("");
     fields.allow(keys, mistakes);
     for (const TomlEntry& entry : root.entries)  // an unknown table may hold names
         if (entry.value.kind == TomlValue::Kind::array || entry.value.kind == TomlValue::Kind::table)

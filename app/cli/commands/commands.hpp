@@ -23,6 +23,7 @@ void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
+void add_manual(CLI::App& program, int& status);  // help and new
 void add_check(CLI::App& program, int& status);
 
 }  // namespace achilles

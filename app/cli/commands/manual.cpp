@@ -1,0 +1,61 @@
+// help and new: the manual, and a system to start from.
+#include "cli/manual.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/commands/commands.hpp"
+#include "cli/write_files.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::string contents() {
+    std::string text = "achilles help TOPIC prints a page of the manual:\n\n";
+    const std::vector<ManualTopic> topics = manual_topics();
+    std::size_t width = 0;
+    for (const ManualTopic& topic : topics) width = std::max(width, topic.name.size());
+    for (const ManualTopic& topic : topics) text += fmt::format("  {:<{}}  {}\n", topic.name, width, topic.title);
+    return text + "\nachilles COMMAND --help tells the options of a command, achilles --help the commands.\n";
+}
+
+// Writes the skeleton where nothing is yet.
+void write_new(const std::string& name) {
+    std::filesystem::path file = name;
+    if (file.extension() != ".toml") file += ".toml";
+    std::error_code problem;
+    if (std::filesystem::symlink_status(file, problem).type() != std::filesystem::file_type::not_found)
+        throw InputError(file.string(), {}, "this file is there already", "choose another name");
+    OutputFiles files;
+    files.add(file.string());
+    files.put(file.string(), skeleton_system());
+    files.commit();
+    fmt::print("{0} is written; achilles simulate {1}{0} runs it\n", file.string(), file.has_parent_path() ? "" : "./");
+}
+
+}  // namespace
+
+void add_manual(CLI::App& program, int& status) {
+    CLI::App* help = program.add_subcommand("help", "The manual, a page for each topic");
+    const auto topic = std::make_shared<std::string>();
+    help->add_option("TOPIC", *topic, "none lists them")->type_name("");
+    help->callback([topic, &status] {
+        const std::string text = topic->empty() ? contents() : manual_page(*topic);
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        status = reached_end;
+    });
+    CLI::App* skeleton = program.add_subcommand("new", "Writes NAME.toml, a system to start from, with every key");
+    const auto name = std::make_shared<std::string>();
+    skeleton->add_option("NAME", *name, "the file, with or without .toml")->required()->type_name("");
+    skeleton->callback([name, &status] {
+        write_new(*name);
+        status = reached_end;
+    });
+}
+
+}  // namespace achilles

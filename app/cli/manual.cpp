@@ -1,0 +1,144 @@
+#include "cli/manual.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/assets.hpp"
+#include "expression/functions.hpp"
+#include "expression/nearest.hpp"
+#include "model/model.hpp"
+#include "model/read_system.hpp"
+#include "output/output.hpp"
+#include "session/command.hpp"
+#include "simulate/simulate.hpp"
+#include "system/keys.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Columns as wide as what stands in them, so that the page reads well as plain text, too.
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths(rows[0].size(), 3);
+    for (const auto& row : rows)
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+    std::string text;
+    const auto write = [&](const std::vector<std::string>& row) {
+        text += "|";
+        for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format(" {:<{}} |", row[i], widths[i]);
+        text += "\n";
+    };
+    write(rows[0]);
+    std::vector<std::string> rule;
+    for (const std::size_t width : widths) rule.emplace_back(width, '-');
+    write(rule);
+    std::for_each(rows.begin() + 1, rows.end(), write);
+    return text;
+}
+
+std::string keys_table(std::string_view heading) {
+    std::vector<std::vector<std::string>> rows{{"key", "what may stand there", "meaning"}};
+    for (const FileTable& keys : file_tables()) {
+        if (keys.heading != heading) continue;
+        for (const FileKey& key : keys.keys)
+            rows.push_back({fmt::format("`{}`", key.name), std::string(key.value), std::string(key.about)});
+    }
+    return table(rows);
+}
+
+std::string shapes_table() {
+    std::vector<std::vector<std::string>> rows{{"shape", "key", "what may stand there", "meaning"}};
+    for (const FileTable& keys : file_tables())
+        if (!keys.heading.empty() && keys.heading.front() != '[')
+            for (const FileKey& key : keys.keys)
+                rows.push_back({fmt::format("`{}`", keys.heading), fmt::format("`{}`", key.name),
+                                std::string(key.value), std::string(key.about)});
+    return table(rows);
+}
+
+std::string options_table() {
+    std::vector<std::vector<std::string>> rows{
+        {"key", "table", "flag", "command of the explorer", "default", "meaning"}};
+    for (const Option& option : all_options()) {
+        const std::string choice = option.words.empty() ? "" : fmt::format(" ({})", fmt::join(option.words, " or "));
+        const std::string unit = option.unit.empty() ? "" : fmt::format(", {}", option.unit);
+        rows.push_back({fmt::format("`{}`", option.key), fmt::format("[{}]", option.table),
+                        fmt::format("`{}`", option.flag), fmt::format("`{}`", option.command), to_text(option.get({})),
+                        fmt::format("{}{}{}", option.about, unit, choice)});
+    }
+    return table(rows);
+}
+
+std::string functions_line() {
+    std::vector<std::string_view> names;
+    for (const Function& function : functions) names.push_back(function.name);
+    return fmt::format("    {}\n", fmt::join(names, " "));
+}
+
+std::string commands_list() { return fmt::format("    {}\n", fmt::join(command_usages(), "\n    ")); }
+
+std::string csv_header() {
+    const auto model = std::make_shared<const Model>(read_system(find_system("ball_on_sine")));
+    Run run = model->default_run();
+    run.options.end_time = 1e-3;
+    const std::string csv = to_csv(simulate(model, run));
+    return fmt::format("    {}\n", csv.substr(0, csv.find('\n')));
+}
+
+// What a line {{NAME}} stands for.
+std::string expanded(std::string_view name) {
+    constexpr std::string_view keys = "keys ";
+    if (name.starts_with(keys)) return keys_table(name.substr(keys.size()));
+    if (name == "keys") return keys_table("");
+    if (name == "shapes") return shapes_table();
+    if (name == "options") return options_table();
+    if (name == "functions") return functions_line();
+    if (name == "commands") return commands_list();
+    if (name == "csv") return csv_header();
+    throw InputError("manual", {}, fmt::format("there is no table '{}'", name));
+}
+
+std::string title_of(const fs::path& page) {
+    const std::string text = read_text(page);
+    const std::size_t begin = text.find_first_not_of("# ");
+    return begin == std::string::npos ? "" : text.substr(begin, text.find('\n') - begin);
+}
+
+}  // namespace
+
+std::vector<ManualTopic> manual_topics() {
+    std::vector<ManualTopic> topics;
+    for (const fs::path& page : manual_files()) topics.push_back({page.stem().string(), title_of(page)});
+    return topics;
+}
+
+std::string manual_page(std::string_view topic) {
+    std::vector<std::string> known;
+    for (const fs::path& page : manual_files()) {
+        known.push_back(page.stem().string());
+        if (known.back() != topic) continue;
+        const std::string text = read_text(page);
+        std::string result;
+        for (std::size_t at = 0; at < text.size();) {
+            const std::size_t end = std::min(text.find('\n', at), text.size());
+            const std::string_view line(text.data() + at, end - at);
+            at = end + 1;
+            if (line.starts_with("{{") && line.ends_with("}}"))
+                result += expanded(line.substr(2, line.size() - 4));
+            else
+                result += std::string(line) + "\n";
+        }
+        return result;
+    }
+    throw InputError({}, {}, fmt::format("there is no topic '{}'{}", topic, did_you_mean(std::string(topic), known)),
+                     fmt::format("the topics are: {}", fmt::join(known, ", ")));
+}
+
+std::string skeleton_system() { return read_text(assets() / "manual" / "skeleton.toml"); }
+
+}  // namespace achilles

@@ -1,0 +1,73 @@
+#include "system/keys.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace achilles {
+
+std::span<const FileTable> file_tables() {
+    static const std::vector<FileTable> tables{
+        {"",
+         {{"title", "text, needed", "what lists, windows and figures call the system"},
+          {"source", "text", "where it is from"},
+          {"coordinate", "tables, 1 to 8", "[[coordinate]], in the order in which states are written"},
+          {"parameter", "tables", "[[parameter]]"},
+          {"lagrangian", "table, needed", "[lagrangian]"},
+          {"constraint", "one table, needed", "[[constraint]]"},
+          {"run", "table", "[run]: how a run is made, unless the command line says otherwise"},
+          {"truncation", "table", "[truncation]: when infinitely many impacts may be cut short"},
+          {"view", "tables",
+           "[[view]]: the plots. Without one every coordinate and the gap over t, and the plane of the "
+           "first two"},
+          {"drawing", "tables", "[[drawing]]: the mechanism"},
+          {"extra", "table", "[extra]: whatever other programs want to know; it is not read"}}},
+        {"[[coordinate]]",
+         {{"name", "name, needed", "its rate is the name with a prime: x'"},
+          {"start", "number, 0", "q(0)"},
+          {"rate", "number, 0", "q'(0)"},
+          {"unit", "text", "\"rad\" is shown in degrees, and takes values as \"30 deg\""},
+          {"range", "[low, high]", "of the slider; a value outside of it gets a warning"},
+          {"rate_range", "[low, high]", "the same of the rate"}}},
+        {"[[parameter]]",
+         {{"name", "name, needed", ""},
+          {"value", "number, needed", ""},
+          {"unit", "text", "as of a coordinate"},
+          {"about", "text", "what a slider says of it"},
+          {"range", "[low, high]",
+           "of the slider, logarithmic where low > 0 and high/low >= 100; a value outside of it "
+           "gets a warning"}}},
+        {"[lagrangian]",
+         {{"kinetic", "expression, needed", "T(q, q'), quadratic in the rates"},
+          {"potential", "expression, needed", "V(q)"}}},
+        {"[[constraint]]",
+         {{"gap", "expression, needed", "h(q): the system is free where it is positive, an impact is where it closes"},
+          {"restitution", "expression, needed", "e, of the parameters, from 0 (plastic) to 1 (elastic)"}}},
+        {"[[view]]",
+         {{"name", "text, needed", "what --view calls it"},
+          {"x", "expression, needed", "of t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy"},
+          {"y", "[expressions], needed", "the same; a curve each"}}},
+        {"[[drawing]]",
+         {{"shape", "word, needed", "one of those below"},
+          {"color", "\"#rrggbb\"", "else that of the phase, or of what does not move"},
+          {"width", "expression", "of the line, in the drawing's units"},
+          {"fill", "true or false", "a disc is filled unless it says false"}}},
+        {"disc", {{"at", "[x, y], needed", "its middle"}, {"radius", "expression, needed", ""}}},
+        {"segment", {{"from", "[x, y], needed", ""}, {"to", "[x, y], needed", ""}}},
+        {"curve",
+         {{"at", "[x, y], needed", "expressions that may have the curve's own parameter"},
+          {"over", "[\"s\", low, high], needed", "that parameter, and between what"}}},
+        {"polyline", {{"points", "[[x, y], ...], needed", ""}}},
+        {"text", {{"at", "[x, y], needed", ""}, {"text", "text, needed", ""}}}};
+    return tables;
+}
+
+std::vector<std::string> keys_of(std::string_view heading) {
+    const auto all = file_tables();
+    const auto table = std::find_if(all.begin(), all.end(), [&](const FileTable& t) { return t.heading == heading; });
+    assert(table != all.end());
+    std::vector<std::string> names;
+    for (const FileKey& key : table->keys) names.emplace_back(key.name);
+    return names;
+}
+
+}  // namespace achilles

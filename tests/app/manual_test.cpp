@@ -1,0 +1,239 @@
+// The manual says what the program does: its tables are the program's, every example runs, the schema holds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/program.hpp"
+#include "cli/assets.hpp"
+#include "cli/manual.hpp"
+#include "model/read_system.hpp"
+#include "run/options.hpp"
+#include "session/command.hpp"
+#include "system/keys.hpp"
+
+namespace achilles::test {
+namespace {
+
+using nlohmann::json;
+
+std::string page_text(const std::string& name) { return read_text(assets() / "manual" / name); }
+
+// The blocks ```KIND of all pages.
+std::vector<std::string> examples(const std::string& kind) {
+    std::vector<std::string> found;
+    for (const auto& file : manual_files()) {
+        std::istringstream lines(read_text(file));
+        bool inside = false;
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with("```")) {
+                inside = !inside && line == "```" + kind;
+                if (inside) found.emplace_back();
+            } else if (inside) {
+                found.back() += line + "\n";
+            }
+        }
+    }
+    return found;
+}
+
+TEST(Manual, EveryPageHasItsTables) {
+    const auto topics = manual_topics();
+    ASSERT_GE(topics.size(), 4u);
+    for (const ManualTopic& topic : topics) {
+        EXPECT_FALSE(topic.title.empty()) << topic.name;
+        EXPECT_EQ(manual_page(topic.name).find("{{"), std::string::npos) << topic.name;
+    }
+    const std::string system = manual_page("system"), commands = manual_page("commands");
+    for (const FileTable& table : file_tables())
+        for (const FileKey& key : table.keys)
+            EXPECT_NE(system.find("`" + std::string(key.name) + "`"), std::string::npos) << key.name;
+    for (const Option& option : all_options())
+        EXPECT_NE(system.find("`" + std::string(option.flag) + "`"), std::string::npos) << option.flag;
+    for (const std::string& usage : command_usages())
+        EXPECT_NE(commands.find("    " + usage + "\n"), std::string::npos);
+}
+
+// In words, too: the prose is ours, the list the program's.
+TEST(Manual, TellsWhatEveryCommandDoes) {
+    const std::string all = page_text("commands.md"), prose = all.substr(all.find("## What they do"));
+    for (const std::string& usage : command_usages()) {
+        const std::string name = usage.substr(0, usage.find(' '));
+        if (!options_set_by(name).empty()) continue;  // "The options"
+        EXPECT_NE(prose.find("`" + name + "`"), std::string::npos) << name;
+    }
+}
+
+TEST(Manual, EverySystemInItCanBeRun) {
+    const auto systems = examples("toml");
+    ASSERT_FALSE(systems.empty());
+    for (const std::string& text : systems) {
+        const Folder folder;
+        folder.put("example.toml", text);
+        const Answer answer = folder.run("simulate ./example.toml");
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        EXPECT_EQ(answer.err, "");
+    }
+}
+
+TEST(Manual, EveryJournalInItCanBeReplayed) {
+    const auto journals = examples("journal");
+    ASSERT_FALSE(journals.empty());
+    for (const std::string& text : journals) {
+        const Folder folder;
+        folder.put("example.journal", text);
+        const Answer answer = folder.run("screenshot --journal example.journal --out example.png --size 640x480");
+        EXPECT_EQ(answer.status, 0) << answer.err;
+    }
+}
+
+TEST(Manual, EveryCommandLineInItCanBeTyped) {
+    const auto sessions = examples("console");
+    ASSERT_FALSE(sessions.empty());
+    const std::string prompt = "$ achilles ";
+    for (const std::string& text : sessions) {
+        const Folder folder;
+        std::istringstream lines(text);
+        for (std::string line; std::getline(lines, line);) {
+            ASSERT_TRUE(line.starts_with(prompt)) << line;
+            const Answer answer = folder.run(line.substr(prompt.size()));
+            EXPECT_EQ(answer.status, 0) << line << "\n" << answer.err;
+        }
+    }
+}
+
+TEST(Manual, IsPrintedByItsTopics) {
+    const Folder folder;
+    const Answer contents = folder.run("help");
+    EXPECT_EQ(contents.status, 0);
+    for (const ManualTopic& topic : manual_topics()) {
+        EXPECT_NE(contents.out.find("  " + topic.name), std::string::npos);
+        const Answer page = folder.run("help " + topic.name);
+        EXPECT_EQ(page.status, 0);
+        EXPECT_EQ(page.out, manual_page(topic.name));
+    }
+    const Answer none = folder.run("help sistem");
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("there is no topic 'sistem'; did you mean 'system'?"), std::string::npos) << none.err;
+}
+
+// ---- the skeleton ----
+
+TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {
+    const std::string text = skeleton_system();
+    const auto is_there = [&](const std::string& key) {
+        return text.find("\n" + key) != std::string::npos || text.find("\n# " + key) != std::string::npos ||
+               text.find("[" + key + "]") != std::string::npos;
+    };
+    for (const FileTable& table : file_tables())
+        for (const FileKey& key : table.keys) EXPECT_TRUE(is_there(std::string(key.name))) << table.heading << key.name;
+    for (const Option& option : all_options()) EXPECT_TRUE(is_there(std::string(option.key))) << option.key;
+    const Folder folder;
+    const Answer written = folder.run("new mine");
+    EXPECT_EQ(written.status, 0) << written.err;
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"mine.toml"});
+    EXPECT_NE(written.out.find("./mine.toml runs it"), std::string::npos) << written.out;
+    const Answer run = folder.run("simulate ./mine.toml");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    EXPECT_NE(run.out.find("zeno"), std::string::npos) << run.out;
+}
+
+TEST(Skeleton, OverwritesNothing) {
+    const Folder folder;
+    folder.put("mine.toml", "mine\n");
+    const Answer answer = folder.run("new mine.toml");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err, "mine.toml: this file is there already\nchoose another name\n");
+    EXPECT_EQ(content(folder.path() / "mine.toml"), "mine\n");
+}
+
+// ---- the schema ----
+
+bool is_of_type(const json& value, const std::string& type) {
+    if (type == "number") return value.is_number();
+    if (type == "integer") return value.is_number_integer();
+    if (type == "string") return value.is_string();
+    if (type == "boolean") return value.is_boolean();
+    if (type == "null") return value.is_null();
+    if (type == "array") return value.is_array();
+    return type == "object" && value.is_object();
+}
+
+// As much of JSON Schema as ours uses; whatever else it said would be a fault, too. The faults, by their places.
+void find_faults(const json& value, const json& schema, const std::string& at, std::vector<std::string>& faults) {
+    const auto fault = [&](const std::string& what) { faults.push_back(at + ": " + what); };
+    for (const auto& [word, said] : schema.items()) {
+        if (word == "$schema" || word == "title" || word == "properties" || word == "items") continue;
+        if (word == "type") {
+            const json types = said.is_array() ? said : json::array({said});
+            if (std::none_of(types.begin(), types.end(), [&](const json& type) { return is_of_type(value, type); }))
+                fault("is no " + said.dump());
+        } else if (word == "enum") {
+            if (std::find(said.begin(), said.end(), value) == said.end()) fault(value.dump() + " is none of these");
+        } else if (word == "required") {
+            for (const json& key : said)
+                if (!value.contains(key.get<std::string>())) fault("lacks " + key.dump());
+        } else if (word == "additionalProperties") {
+            for (const auto& [key, member] : value.items()) {
+                if (schema.contains("properties") && schema["properties"].contains(key)) continue;
+                if (said.is_boolean())
+                    fault("has " + key);
+                else
+                    find_faults(member, said, at + "/" + key, faults);
+            }
+        } else if (word == "minItems" || word == "maxItems") {
+            const auto limit = said.get<std::size_t>();
+            if (word == "minItems" ? value.size() < limit : value.size() > limit) fault("has another length");
+        } else {
+            fault("the schema says " + word);
+        }
+    }
+    if (value.is_object() && schema.contains("properties"))
+        for (const auto& [key, member] : value.items())
+            if (schema["properties"].contains(key))
+                find_faults(member, schema["properties"][key], at + "/" + key, faults);
+    if (value.is_array() && schema.contains("items"))
+        for (std::size_t i = 0; i < value.size(); ++i)
+            find_faults(value[i], schema["items"], at + "/" + std::to_string(i), faults);
+}
+
+std::vector<std::string> faults_of(const json& run) {
+    static const json schema = json::parse(page_text("trajectory.schema.json"));
+    std::vector<std::string> faults;
+    find_faults(run, schema, "", faults);
+    return faults;
+}
+
+TEST(Schema, HoldsForEverySystemOfTheGallery) {
+    const Folder folder;
+    for (const std::string& system : system_names())
+        for (const char* conditions : {"sharp", "paper"}) {
+            const Answer answer =
+                folder.run("simulate " + system + " --end 4 --eps 1e-3 --conditions " + conditions + " --json -");
+            EXPECT_EQ(answer.status, 0) << answer.err;
+            EXPECT_EQ(faults_of(json::parse(answer.out)), std::vector<std::string>()) << system;
+        }
+}
+
+TEST(Schema, NoticesWhatIsOtherwise) {
+    const Folder folder;
+    json run = json::parse(folder.run("simulate ball_on_sine --end 3 --json -").out);
+    ASSERT_EQ(faults_of(run), std::vector<std::string>());
+    run["events"][0]["t"] = "late";
+    EXPECT_EQ(faults_of(run).size(), 1u);
+    run["events"][1].erase("q");
+    EXPECT_EQ(faults_of(run).size(), 2u);
+    run["phases"][0]["kind"] = "flight";
+    EXPECT_EQ(faults_of(run).size(), 3u);
+    run["more"] = 1;
+    EXPECT_EQ(faults_of(run).size(), 4u);
+}
+
+}  // namespace
+}  // namespace achilles::test
