@@ -117,6 +117,7 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     io.IniFilename = nullptr;  // nothing is remembered between runs
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
+    io.ConfigInputTextCursorBlink = false;  // a window that waits for letters can sleep
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     map_keys(io);
     restyle(options.scale, options.dark);

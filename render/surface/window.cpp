@@ -25,8 +25,8 @@ static_assert(key::escape == GLFW_KEY_ESCAPE && key::remove == GLFW_KEY_DELETE &
               key::keypad_enter == GLFW_KEY_KP_ENTER && key::left_shift == GLFW_KEY_LEFT_SHIFT &&
               key::right_super == GLFW_KEY_RIGHT_SUPER && ' ' == GLFW_KEY_SPACE && 'A' == GLFW_KEY_A);
 
-// A sleeping window looks up this often by itself (for a blinking text cursor, more often).
-constexpr double sleep_seconds = 0.5, blink_seconds = 0.1;
+// A minimised window looks up this often.
+constexpr double sleep_seconds = 0.5;
 // ImGui needs a few frames after an event before everything has settled.
 constexpr int settling_frames = 4;
 
@@ -133,7 +133,7 @@ struct Window::Implementation {
     double monitor_scale = 1.0, scale = 1.0;
     bool dark = false, stale = false, moving = true;
     int unsettled = settling_frames;
-    double last_frame = -1.0;
+    double last_frame = -1.0, pause = 0.0;
 };
 
 GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const std::string& title) {
@@ -232,8 +232,10 @@ void Window::Implementation::wait() {
     if (moving || unsettled > 0 || !events.empty()) {
         glfwPollEvents();
     } else {
-        const Interface::Active active(interface);
-        glfwWaitEventsTimeout(ImGui::GetIO().WantTextInput ? blink_seconds : sleep_seconds);
+        if (pause > 0.0)
+            glfwWaitEventsTimeout(pause);
+        else
+            glfwWaitEvents();
         unsettled = std::max(unsettled, 1);
     }
     if (!events.empty()) unsettled = settling_frames;
@@ -291,7 +293,10 @@ void Window::on_close(std::function<bool()> may_close) { implementation_->may_cl
 
 void Window::close() { glfwSetWindowShouldClose(implementation_->window, GLFW_TRUE); }
 
-void Window::keep_drawing(bool moving) { implementation_->moving = moving; }
+void Window::keep_drawing(bool moving, double pause) {
+    implementation_->moving = moving;
+    implementation_->pause = pause;
+}
 
 void Window::wake() { glfwPostEmptyEvent(); }
 

@@ -23,9 +23,9 @@ class Window {
     void close();
     // Asked whenever the window is to be closed; if it says no, the window stays.
     void on_close(std::function<bool()> may_close);
-    // false: nothing moves by itself, so after a few frames the window sleeps until the user does something. true at
-    // first.
-    void keep_drawing(bool moving);
+    // false: nothing moves by itself, so after a few frames the window sleeps until the user does something, or where
+    // `pause` is positive so many seconds at most. true at first.
+    void keep_drawing(bool moving, double pause = 0.0);
     // Wakes a sleeping window; the only member that another thread may call.
     static void wake();
     // From the next frame on; `scale` comes on top of what the monitor asks for.

@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 #include "paint/mechanism.hpp"
 #include "render/samples.hpp"
@@ -274,6 +277,30 @@ TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
     });
     EXPECT_EQ(frames, 10);
     EXPECT_TRUE(window.dropped().empty());
+}
+
+// With nothing to do it draws nothing, until it is woken. Even a field that waits for letters lets it sleep.
+TEST_F(OnDisplay, a_window_that_rests_draws_nothing) {
+    Window window(support::options(200, 100), "achilles");
+    window.keep_drawing(false);
+    int frames = 0, when_woken = 0;
+    std::atomic<bool> is_over = false;
+    char letters[8] = "";
+    std::thread later([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+        is_over = true;
+        Window::wake();
+    });
+    window.run([&] {
+        ImGui::SetKeyboardFocusHere();
+        ImGui::InputText("letters", letters, sizeof letters);
+        ++frames;
+        if (!is_over) when_woken = frames;
+        if (is_over) window.close();
+    });
+    later.join();
+    // Some frames to settle after it appeared; twice a second would be more.
+    EXPECT_LE(when_woken, 12);
 }
 
 TEST(Window, without_a_display_there_is_a_message) {
