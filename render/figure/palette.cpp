@@ -10,9 +10,12 @@ namespace {
 
 constexpr Color blue{0, 114, 178, 255}, vermilion{213, 94, 0, 255}, green{0, 158, 115, 255}, purple{170, 68, 153, 255};
 constexpr Color sky{86, 180, 233, 255}, orange{240, 165, 40, 255}, mint{70, 200, 160, 255}, pink{225, 135, 190, 255};
-constexpr Color olive{165, 150, 20, 255}, slate{110, 116, 124, 255}, wine{136, 34, 85, 255};
-constexpr Color yellow{235, 235, 120, 255}, silver{170, 180, 180, 255}, coral{255, 120, 110, 255},
-    lavender{150, 140, 255, 255};
+// Of several curves in a panel: none is the hue of a phase, which a dash tells there, and the first few are no event's.
+constexpr Color wine{136, 34, 85, 255}, olive{130, 135, 0, 255}, slate{95, 102, 112, 255}, rose{216, 73, 131, 255},
+    forest{17, 91, 15, 255}, lilac{129, 128, 238, 255}, navy{3, 17, 84, 255}, leaf{4, 153, 81, 255};
+constexpr Color blush{255, 130, 150, 255}, straw{220, 220, 110, 255}, silver{185, 192, 200, 255},
+    lime{119, 225, 52, 255}, violet{144, 49, 243, 255}, grass{64, 162, 88, 255}, brick{171, 89, 103, 255},
+    steel{111, 123, 169, 255};
 
 }  // namespace
 
@@ -95,8 +98,8 @@ Color phase_color(const Theme& theme, Phase::Kind kind) {
 }
 
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves) {
-    const std::array<Color, 8> light{blue, vermilion, green, purple, olive, sky, slate, wine},
-        dark{sky, orange, mint, pink, yellow, lavender, silver, coral};
+    const std::array<Color, 8> light{wine, olive, slate, rose, forest, lilac, navy, leaf},
+        dark{blush, straw, silver, lime, violet, grass, brick, steel};
     Stroke stroke;
     stroke.color = curves == 1 ? phase_color(theme, kind) : (theme.dark ? dark : light)[curve % light.size()];
     stroke.width = kind == Phase::Kind::hybrid ? 1.6 : 2.0;
