@@ -18,6 +18,8 @@ class Body {
 
     const Point& at() const { return at_; }
     double radius() const { return radius_; }  // of its disc, in world units; 0 without one
+    // Whether any coordinate moves it here.
+    bool moves() const { return jx_.norm() + jy_.norm() > 1e-9; }
     // J v.
     Point velocity(const Vector& v) const;
     // The force F at the body that does what the generalised force Q does, J'F = Q; nothing where no force there can.

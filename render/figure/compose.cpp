@@ -48,15 +48,15 @@ struct Range {
     }
 };
 
-Sample at_event(const Event& event) {
+}  // namespace
+
+Sample sample_at(const Event& event) {
     Sample sample;
     sample.t = event.t;
     sample.state = {event.q, event.v_after};
     sample.contact = event.kind == Event::Kind::zeno;
     return sample;
 }
-
-}  // namespace
 
 PreparedView::PreparedView(const Model& model, const ViewDescription& view) : name_(view.name) {
     std::vector<Text> texts{view.x};
@@ -169,7 +169,7 @@ void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values&
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         for (const Event& event : trajectory.events) {
             if (event.kind != kind || event.t > end) continue;
-            values.set(at_event(event));
+            values.set(sample_at(event));
             for (std::size_t i = 0; i < curves; ++i) {
                 if (framing.hidden.contains(i)) continue;
                 const Point point = point_of(values[0], values[i + 1]);

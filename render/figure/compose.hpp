@@ -62,6 +62,9 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
 // What the view's quantities are at one sample, x first, in the units that are shown.
 std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view);
 
+// What is drawn at an event: the state after it.
+Sample sample_at(const Event& event);
+
 // Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
 // gets room at the top.
 void place_legend(Panel& panel);

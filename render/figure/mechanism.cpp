@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "figure/field.hpp"
+
 namespace achilles {
 
 namespace {
@@ -138,46 +140,6 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, con
     return placed;
 }
 
-// The zero line of the gap over the window, by marching squares: segments, separated by NaN points.
-std::vector<Point> Mechanism::zero_line(std::span<const double> parameters, const Drawing& limits) const {
-    constexpr int columns = 160, rows = 120;
-    Evaluator<double> gap = model_.evaluator(model_.gap(), parameters);
-    const auto place = [&](int i, int j) {
-        return Point{limits.x_low + (limits.x_high - limits.x_low) * i / columns,
-                     limits.y_low + (limits.y_high - limits.y_low) * j / rows};
-    };
-    std::vector<double> h(static_cast<std::size_t>((columns + 1) * (rows + 1)));
-    const auto index = [&](int i, int j) { return static_cast<std::size_t>(j * (columns + 1) + i); };
-    for (int j = 0; j <= rows; ++j) {
-        for (int i = 0; i <= columns; ++i) {
-            const Point p = place(i, j);
-            gap.input(0) = p.x;
-            gap.input(1) = p.y;
-            gap.run();
-            h[index(i, j)] = gap.output(0);
-        }
-    }
-    std::vector<Point> line;
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-    for (int j = 0; j < rows; ++j) {
-        for (int i = 0; i < columns; ++i) {
-            const int corner[5][2] = {{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}, {i, j}};
-            std::vector<Point> crossings;
-            for (int k = 0; k < 4; ++k) {
-                const double a = h[index(corner[k][0], corner[k][1])], b = h[index(corner[k + 1][0], corner[k + 1][1])];
-                if (!((a < 0.0) != (b < 0.0)) || !std::isfinite(a) || !std::isfinite(b)) continue;
-                const Point p = place(corner[k][0], corner[k][1]), q = place(corner[k + 1][0], corner[k + 1][1]);
-                const double s = a / (a - b);
-                crossings.push_back({p.x + s * (q.x - p.x), p.y + s * (q.y - p.y)});
-            }
-            // Two of them, or four in a saddle, which is two segments.
-            for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
-                line.insert(line.end(), {crossings[k], crossings[k + 1], {nothing, nothing}});
-        }
-    }
-    return line;
-}
-
 Grip::Hold Grip::at(const State& state) {
     if (!run_) return {{state.q[0], state.q[1]}, 0.0};
     set_state(*run_, state);
@@ -186,8 +148,7 @@ Grip::Hold Grip::at(const State& state) {
 }
 
 std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
-    Grip grip;
-    if (plane_) return grip;
+    if (plane_) return Grip();
     const Item *disc = nullptr, *line = nullptr;
     for (const Item& item : items_) {
         if (!item.moves) continue;
@@ -196,10 +157,28 @@ std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
     }
     const Item* held = disc != nullptr ? disc : line;
     if (held == nullptr) return std::nullopt;
-    grip.run_ = model_.evaluator(held->program, parameters);
-    grip.disc_ = held->description.shape == Kind::disc;
-    grip.first_ = 2 * (held->description.points.size() - 1);
+    return grip_of(*held, held->description.points.size() - 1, parameters);
+}
+
+Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
+    Grip grip;
+    grip.run_ = model_.evaluator(item.program, parameters);
+    grip.disc_ = item.description.shape == Kind::disc;
+    grip.first_ = 2 * point;
     return grip;
+}
+
+std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
+    std::vector<Grip> all;
+    if (auto first = grip(parameters)) all.push_back(std::move(*first));
+    for (const Item& item : items_) {
+        const Kind shape = item.description.shape;
+        if (!item.moves || shape == Kind::text || shape == Kind::curve) continue;
+        const std::size_t last = item.description.points.size() - 1;
+        all.push_back(grip_of(item, last, parameters));
+        if (last > 0) all.push_back(grip_of(item, 0, parameters));
+    }
+    return all;
 }
 
 Drawing Mechanism::draw(const State& state, std::span<const double> parameters, const Drawing& limits,
@@ -231,7 +210,14 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
         shape.radius = placed.radius;
     }
     if (plane_) {
-        add(Shape::Kind::polyline, theme.surface, 2.0).points = zero_line(parameters, limits);
+        Evaluator<double> gap = model_.evaluator(model_.gap(), parameters);
+        const Field h(limits, [&](const Point& p) {
+            gap.input(0) = p.x;
+            gap.input(1) = p.y;
+            gap.run();
+            return gap.output(0);
+        });
+        add(Shape::Kind::polyline, theme.surface, 2.0).points = h.zero_line();
         Shape& disc = add(Shape::Kind::disc, theme.body, 0.0);
         disc.moves = true;
         disc.points = {{state.q[0], state.q[1]}};

@@ -43,6 +43,11 @@ class Mechanism {
 
     // Nothing where no shape but texts and curves moves.
     std::optional<Grip> grip(std::span<const double> parameters) const;
+    // That one, then every other point by which a hand can take hold: centres, and both ends of lines. Some may stand
+    // still.
+    std::vector<Grip> grips(std::span<const double> parameters) const;
+    // Whether there is nothing to draw but a note that says so.
+    bool is_empty() const { return items_.empty() && !plane_; }
 
  private:
     struct Item {
@@ -55,7 +60,7 @@ class Mechanism {
         double radius = 0.0, width = 2.0;
     };
     Placed place(const Item& item, Evaluator<double>& run, const State& state) const;
-    std::vector<Point> zero_line(std::span<const double> parameters, const Drawing& limits) const;
+    Grip grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
 
     const Model& model_;
     std::vector<Item> items_;
