@@ -94,10 +94,11 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"controls", "editor", "events", "force",
-                                                   "lens",     "plots",  "trail",  "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "events", "force",
+                                                   "lens",     "plane",    "plots",  "trail",  "velocity"};
 struct Show {
-    std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force
+    std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force;
+                       // the section accuracy of the controls, the configuration plane in place of the mechanism
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,

@@ -15,18 +15,23 @@ class History {
     bool can_undo() const { return !undone_to_.empty(); }
     bool can_redo() const { return !redone_to_.empty(); }
 
-    // A command has been done; before it was this moment.
-    void remember(const Command& command, const Moment& before) {
+    // A command has been done, which led from one moment to another. What changed nothing, or in the end brought back
+    // what was there, is nothing to undo.
+    void remember(const Command& command, const Moment& before, const Moment& now) {
         constexpr std::size_t most = 200;
         if (change_of(command) < command::Change::alone) {
             // Something else was done in between: the next change is one of its own. (Seeking is part of dragging.)
             if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
             return;
         }
+        if (now == before) return;
         if (!changed_by_ || !goes_on(*changed_by_, command)) undone_to_.push_back(before);
         if (undone_to_.size() > most) undone_to_.erase(undone_to_.begin());
         redone_to_.clear();
         changed_by_ = command;
+        if (undone_to_.back() != now) return;
+        undone_to_.pop_back();
+        changed_by_.reset();
     }
 
     // The moment to go to, from the present one. There must be one.

@@ -33,25 +33,65 @@ std::string name_of(const ViewDescription& view) {
     return view.x.text == "t" ? name : name + " over " + view.x.text;
 }
 
+// What any system can be looked at by: every coordinate and rate over time, the phase planes, the planes of two
+// coordinates, and the gap.
+std::vector<ViewDescription> more_views(const Model& model) {
+    std::vector<ViewDescription> views;
+    const auto add = [&](const std::string& x, const std::string& y) {
+        views.push_back(view_of("", x, {y}));
+        views.back().name = name_of(views.back());
+    };
+    const auto& coordinates = model.description().coordinates;
+    for (const auto& c : coordinates) add("t", c.name);
+    for (const auto& c : coordinates) add("t", c.name + "'");
+    for (const auto& c : coordinates) add(c.name, c.name + "'");
+    for (const char* y : {"gap'", "gap''"}) add("t", y);
+    for (std::size_t i = 0; i < coordinates.size(); ++i)
+        for (std::size_t j = i + 1; j < coordinates.size(); ++j) add(coordinates[i].name, coordinates[j].name);
+    for (const char* y : {"gap'", "lambda", "energy"}) add("gap", y);
+    for (const char* y : {"gap", "lambda", "energy"}) add(coordinates[0].name, y);
+    for (const char* y : {"gap", "energy"}) add(coordinates[0].name + "'", y);
+    return views;
+}
+
 }  // namespace
 
 Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), choices_(model_->description().views) {
-    for (const auto& [name, y] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}, {"energy", "energy"}}) {
-        const ViewDescription view = view_of(name, "t", {y});
-        if (std::none_of(choices_.begin(), choices_.end(), [&](const auto& c) { return same_expressions(c, view); }))
-            choices_.push_back(view);
-    }
+    for (const auto& [name, y] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}, {"energy", "energy"}})
+        offer(view_of(name, "t", {y}));
+    // As many as the largest grid has places, each another one.
+    for (const ViewDescription& view : more_views(*model_))
+        if (choices_.size() < most_columns * most_rows) offer(view);
     const std::size_t own = model_->description().views.size();
     columns_ = own > 2 ? 2 : 1;
     rows_ = own > 1 ? 2 : 1;
     fill();
 }
 
-// As many plots as the grid has places, by the order of the choices.
+// To choose from, unless it is there already.
+void Plots::offer(const ViewDescription& view) {
+    if (std::none_of(choices_.begin(), choices_.end(), [&](const auto& c) { return same_expressions(c, view); }))
+        choices_.push_back(view);
+}
+
+// As many plots as the grid has places, by the order of the choices, none twice.
 void Plots::fill() {
     const auto places = static_cast<std::size_t>(columns_ * rows_);
     if (list_.size() > places) list_.resize(places);
-    while (list_.size() < places) list_.push_back(prepared(choices_[list_.size() % choices_.size()]));
+    for (std::size_t i = 0; list_.size() < places; ++i) {
+        const ViewDescription& view = choices_[i % choices_.size()];
+        const bool is_there = i < choices_.size() && std::any_of(list_.begin(), list_.end(), [&](const Plot& plot) {
+                                  return same_expressions(plot.view, view);
+                              });
+        if (!is_there) list_.push_back(prepared(view));
+    }
+}
+
+bool operator==(const Plots& a, const Plots& b) {
+    return a.columns_ == b.columns_ && a.rows_ == b.rows_ && a.linked_ == b.linked_ &&
+           std::equal(a.list_.begin(), a.list_.end(), b.list_.begin(), b.list_.end(), [](const Plot& p, const Plot& q) {
+               return p.view.name == q.view.name && same_expressions(p.view, q.view) && p.framing == q.framing;
+           });
 }
 
 Plot Plots::prepared(const ViewDescription& view) const {

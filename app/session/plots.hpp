@@ -29,7 +29,7 @@ class Plots {
     int columns() const { return columns_; }
     int rows() const { return rows_; }
     bool linked() const { return linked_; }  // plots over time show the same time
-    // The file's views, then those that any system has: gap, contact force, energy.
+    // The file's views, then those that any system has: gap, contact force, energy, and enough others to fill a large grid.
     const std::vector<ViewDescription>& choices() const { return choices_; }
 
     // Each throws InputError and changes nothing where it makes no sense. Returns nothing; counts revision() up.
@@ -49,10 +49,13 @@ class Plots {
                                Medium medium = Medium::screen) const;
     int revision() const { return revision_; }
     const std::shared_ptr<const Model>& model() const { return model_; }
+    // Whether they show the same, whatever led there.
+    friend bool operator==(const Plots& a, const Plots& b);
 
  private:
     Plot& at(int number);
     Plot prepared(const ViewDescription& view) const;
+    void offer(const ViewDescription& view);
     void fill();
 
     std::shared_ptr<const Model> model_;

@@ -131,15 +131,19 @@ std::vector<Command> recipe(const Session& session) {
     const SystemDescription& description = session.description();
     std::vector<Command> steps;
     const Trajectory* pinned = session.pinned();
-    if (pinned != nullptr && pinned->model != session.model()) {
+    // A run of the text as it was before it was edited: what opens a system lets go of it.
+    if (pinned != nullptr && pinned->model != session.model() && session.pinned_system() == session.system()) {
         const SystemDescription& other = pinned->model->description();
         append(steps, steps_to_text(session.pinned_system(), is_untitled(session.pinned_system()), held_by(other.file),
                                     other.source_text));
         append(steps, steps_between(other, pinned->model->default_run(), pinned->run));
         steps.emplace_back(command::Pin{true});
+        steps.emplace_back(command::Text{description.source_text});
+        steps.emplace_back(command::Reset{});
+    } else {
+        append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
+                                    description.source_text));
     }
-    append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
-                                description.source_text));
     append(steps, run_steps(session, session.file_run()));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.

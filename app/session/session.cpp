@@ -55,7 +55,7 @@ void Session::apply(const Command& command) {
         const bool changes_nothing = change_of(command) == command::Change::none;
         if (!changes_nothing) error_.clear();
         if (changes_nothing) notice_ = noticed;
-        history_.remember(command, before);
+        history_.remember(command, before, moment());
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
@@ -129,6 +129,7 @@ void Session::begin_document(Document document) {
         time_ = 0.0;
         scene_.forget_place();
         placed_.reset();
+        pinned_.reset();  // a run of another system is nothing to compare with
         change_system(system, Plots(system->model), run);
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);

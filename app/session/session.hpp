@@ -29,7 +29,8 @@ struct SystemSource {
     std::function<Document(const std::string& system)> open{};                                // empty: from its file
     std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
     std::function<std::string(const std::string& journal)> journal{};  // the text of one; empty: there are none
-    bool exports = true;                                               // false: `export` writes nothing
+    std::string folder{};  // where paths without one begin, for messages of what is written; empty: they do not tell
+    bool exports = true;   // false: `export` writes nothing
 };
 
 // Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
@@ -168,6 +169,10 @@ class Session {
         std::shared_ptr<const System> system;
         Plots plots;
         Run run;
+        friend bool operator==(const Moment& a, const Moment& b) {
+            return a.system == b.system && a.run == b.run && a.document.name == b.document.name &&
+                   a.document.text == b.document.text && a.plots == b.plots;
+        }
     };
     Moment moment() const { return {document_, system_, plots_, asked_}; }
     void restore(Moment back);

@@ -28,7 +28,9 @@ void Session::perform(const command::Export& command) {
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
         throw refusal("the run is still under way", "export again when it is there");
     if (library_.exports) take_away(*this, command.file, command.overwrite);
-    notice_ = fmt::format("{} is written", command.file);
+    const std::filesystem::path file(command.file);
+    notice_ =
+        fmt::format("{} is written", (file.is_absolute() ? file : library_.folder / file).lexically_normal().string());
 }
 
 void Session::perform(const command::Copy& command) {

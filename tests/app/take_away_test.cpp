@@ -59,9 +59,9 @@ TEST(Recipe, of_an_untouched_session_is_one_line) {
     EXPECT_EQ(journal_text(recipe(test::session("ball_on_sine"))), "open ball_on_sine\n");
 }
 
-TEST(Recipe, keeps_a_pinned_run_of_another_system_and_an_edited_text) {
+TEST(Recipe, keeps_a_pinned_run_of_the_text_before_it_was_edited) {
     Session session = test::session("double_pendulum"), again = test::session("ball_on_sine");
-    apply(session, "end 5\npin\nnew\n");
+    apply(session, "new\nend 5\npin\n");
     std::string text = session.document().text;
     text.replace(text.find("9.81"), 4, "1.62");
     session.apply(command::Text{text});
