@@ -8,6 +8,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/dropped.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
 #include "journal/tour.hpp"
@@ -92,13 +93,13 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
-// What the files dropped on the window ask for: to replay a journal, or to open a system, once changes of the text are
-// saved or given up.
+// What the files dropped on the window ask for: to replay a journal or what a picture carries, or to open a system, once
+// changes of the text are saved or given up.
 std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
     std::vector<Command> commands;
     for (const std::string& file : window.dropped()) {
-        const bool is_journal = std::filesystem::path(file).extension() == ".journal";
-        request(session, state, is_journal ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
+        const bool replays = std::filesystem::path(file).extension() == ".journal" || is_picture(file);
+        request(session, state, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
     }
     return commands;
 }
@@ -144,7 +145,10 @@ class Explorer {
         for (const Command& command : commands) take(command);
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
-        window_.keep_drawing(session_.playing() || tour_.runs() || is_typing(state_));
+        // A run that is under way is asked now and then how far it is.
+        constexpr double progress_seconds = 0.25;
+        window_.keep_drawing(session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_),
+                             session_.under_way() != nullptr ? progress_seconds : 0.0);
     }
 
     // Tells the record what is not told yet.
@@ -168,7 +172,8 @@ class Explorer {
             return;
         }
         try {
-            begin(read_journal(find_journal(replay->journal)));
+            begin(is_picture(replay->journal) ? session_in(replay->journal)
+                                              : read_journal(find_journal(replay->journal)));
         } catch (const InputError& problem) {
             stop_tour();
             session_.refuse(problem);
@@ -222,6 +227,8 @@ int explore(const ExploreOptions& options) {
     const std::string name = options.system ? *options.system : first_system();
     SystemSource library;
     library.find = find_system;
+    std::error_code no_folder;
+    library.folder = std::filesystem::current_path(no_folder).string();
     library.journal = [](const std::string& wanted) { return journal_file(find_journal(wanted)); };
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());

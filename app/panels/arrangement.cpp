@@ -9,7 +9,7 @@ namespace {
 
 // Lengths at scale 1. Below these widths and heights a panel cannot be read.
 constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
-                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F;
+                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F;
 
 // What the user asked for, or what fits; whole pixels, at least `least`, and where there is room for both also at most
 // `most`.
@@ -38,9 +38,11 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
     const float left =
         has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
-    const float low = has_events ? size_of(scene.share("events"), m.height, std::max(180.0F * u, 0.26F * m.height),
-                                           least_events * u, all - least_top * u)
-                                 : 0.0F;
+    // Where there is room for it, what a certificate says stands there without scrolling.
+    const float fitting_events = std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
+    const float low =
+        has_events ? size_of(scene.share("events"), m.height, fitting_events, least_events * u, all - least_top * u)
+                   : 0.0F;
     const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));
     const float x = edge + (left > 0.0F ? left + between : 0.0F), width = std::max(0.0F, m.width - edge - x);
     const float right = has_plots ? size_of(scene.share("plots"), m.width, 0.54F * width, least_plots * u,
@@ -58,8 +60,13 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float said = std::min(m.caption ? m.caption(centre) : 0.0F, top + height - said_at);
     parts.caption = {x, said_at, centre, said};
     const float picture = said_at + said + (said > 0.0F ? 0.6F * between : 0.0F);
-    const float picture_height = std::max(0.0F, top + height - timeline - between - picture);
-    parts.mechanism = {x, picture, centre, picture_height};
+    const float lower = top + height - timeline - between;  // the end of what stands above the player
+    // The picture first: where it would be too low to be one, the results stand back.
+    const float results =
+        std::clamp(m.results ? m.results(centre) : 0.0F, 0.0F, std::max(0.0F, lower - picture - least_picture * u));
+    const float space = results > 0.0F ? 0.4F * between : 0.0F;
+    parts.mechanism = {x, picture, centre, std::max(0.0F, lower - results - space - picture)};
+    parts.results = {x, lower - results, centre, results};
     parts.timeline = {x, top + height - timeline, centre, timeline};
     parts.plots = {x + centre + between, top, right, height};
     const float events_x = events_below ? edge : x;

@@ -11,7 +11,8 @@
 namespace achilles {
 
 struct Arrangement {
-    Rectangle bar, controls, error, caption, mechanism, timeline, plots, events, status;  // of no size: not shown
+    Rectangle bar, controls, error, caption, mechanism, results, timeline, plots, events,
+        status;  // of no size: not shown
     // What a hand drags to resize a panel: the gap beside it.
     struct Splitter {
         std::string panel;  // as in command::Size
@@ -31,8 +32,8 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // of the surface
     float unit = 1.0F;                  // a pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
-    // How high a message, and what a tour says, are in so much width; 0: there is none.
-    std::function<float(float width)> error, caption;
+    // How high a message, what a tour says, and the results are in so much width; 0: there are none.
+    std::function<float(float width)> error, caption, results;
 };
 
 // Panels keep a width that can be read as long as the surface has room for it.

@@ -32,6 +32,7 @@ void menu(const char* name, PanelState& state, const Content& content) {
     remember(state, std::string("menu ") + name);
     if (!open) return;
     content();
+    close_by_escape();
     ImGui::EndMenu();
 }
 
@@ -66,6 +67,8 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
          {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"}, std::pair{"force", "Contact force"}})
         if (item(name, nullptr, state, scene.shows(what)))
             commands.emplace_back(command::Show{what, !scene.shows(what)});
+    const bool plane = scene.shows("plane");
+    if (item("Configuration plane", nullptr, state, plane)) commands.emplace_back(command::Show{"plane", !plane});
     if (item("All of the motion", nullptr, state, false, scene.look().has_value()))
         commands.emplace_back(command::LookAll{});
     ImGui::Separator();

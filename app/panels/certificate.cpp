@@ -63,8 +63,7 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
     quiet(more);
     const float width = ImGui::GetTextLineHeight();
     ImGui::SameLine(ImGui::GetContentRegionMax().x - width - margin);
-    const bool close =
-        ImGui::InvisibleButton("close", {width, width}) || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool pressed = ImGui::InvisibleButton("close", {width, width}), close = take_escape(state) || pressed;
     remember(state, "close card");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float inset = 0.28F * width;

@@ -36,6 +36,7 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
                 request(session, state, command::Open{entry.name}, commands);
             remember(state, "open " + entry.name);
         }
+        close_by_escape();
         ImGui::EndCombo();
     }
 }
@@ -157,8 +158,7 @@ bool moved(const OptionRow& row, Options& options, const Options& file, PanelSta
     return true;
 }
 
-void truncation(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    section("Truncation of the bouncing");
+void bounds(const Options& now, const Options& file, PanelState& state, Commands& commands) {
     // One slider for all three, and one for each.
     constexpr double low = 1e-12, high = 1e-1;
     const OptionRow all{"eps_q", "eps", "\u03b5, all", "all three bounds below at once", low, high};
@@ -166,15 +166,80 @@ void truncation(const Session& session, const Run& file, PanelState& state, Comm
         {"eps_q", "eps q", "   position", "bound on the error of the position at the Zeno point", low, high},
         {"eps_v", "eps v", "   velocity", "bound on the error of the velocity at the Zeno point", low, high},
         {"eps_t", "eps t", "   time", "bound on the error of the Zeno time, s", low, high}};
-    const Options& now = session.run().options;
     Options changed = now;
-    const bool all_moved = moved(all, changed, file.options, state);
+    const bool all_moved = moved(all, changed, file, state);
     const OptionValue common = option("eps_q").get(changed);
     if (all_moved) changed = now;
-    for (const OptionRow& row : each) moved(row, changed, file.options, state);
+    for (const OptionRow& row : each) moved(row, changed, file, state);
     if (all_moved)
         for (const OptionRow& row : each) option(row.key).set(changed, common);
     if (changed != now) commands.emplace_back(command::UseOption(option("eps_q"), changed));
+}
+
+// One option that a slider moves.
+void slide(const OptionRow& row, const Session& session, const Run& file, PanelState& state, Commands& commands) {
+    Options changed = session.run().options;
+    if (moved(row, changed, file.options, state)) commands.emplace_back(command::UseOption(option(row.key), changed));
+}
+
+// The keys of what the section holds.
+constexpr const char* accuracy_keys[] = {"eps_q", "eps_v", "eps_t", "conditions", "reinitialization", "tolerance"};
+
+// What the folded section says: "ε 1e-06, sharp, tol 1e-10".
+std::string accuracy_text(const Options& options) {
+    const Truncation& t = options.truncation;
+    const bool alike = t.eps_q == t.eps_v && t.eps_v == t.eps_t;
+    return fmt::format("\u03b5 {}, {}, tol {}", alike ? fmt::format("{:.3g}", t.eps_q) : "mixed", to_text(t.conditions),
+                       fmt::format("{:.3g}", options.tolerance));
+}
+
+// The heading that folds and opens the section; folded it tells what it holds. A dot in the accent's colour: something
+// differs from the file.
+bool accuracy_heading(const Session& session, const Run& file, PanelState& state, Commands& commands) {
+    const bool open = session.scene().shows("accuracy");
+    const Options& now = session.run().options;
+    ImGui::Dummy({0.0F, units(4.0F)});
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
+    if (ImGui::InvisibleButton("accuracy", {std::max(width, 1.0F), line}))
+        commands.emplace_back(command::Show{"accuracy", !open});
+    remember(state, "accuracy");
+    const bool changed = std::any_of(std::begin(accuracy_keys), std::end(accuracy_keys), [&](const char* key) {
+        return option(key).get(now) != option(key).get(file.options);
+    });
+    const Color color = ImGui::IsItemHovered() ? text_color() : faint_color();
+    tooltip(open
+                ? "fold: truncation of the bouncing and tolerance of the integration"
+                : fmt::format("truncation of the bouncing: {} conditions, {} restart, bounds {:.3g} (position), {:.3g} "
+                              "(velocity), {:.3g} s (time); integration: tolerance {:.3g}. A click opens",
+                              to_text(now.truncation.conditions), to_text(now.truncation.reinitialization),
+                              now.truncation.eps_q, now.truncation.eps_v, now.truncation.eps_t, now.tolerance));
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float r = units(4.0F);
+    const ImVec2 c{at.x + r, std::floor(at.y + 0.5F * line) + 1.0F};
+    if (open)
+        list->AddTriangleFilled({c.x - r, c.y - 0.6F * r}, {c.x + r, c.y - 0.6F * r}, {c.x, c.y + r}, packed(color));
+    else
+        list->AddTriangleFilled({c.x - 0.6F * r, c.y - r}, {c.x - 0.6F * r, c.y + r}, {c.x + r, c.y}, packed(color));
+    const char* const title = "Accuracy";
+    const float text_at = at.x + units(14.0F), after = text_at + ImGui::CalcTextSize(title).x + units(8.0F);
+    list->AddText({text_at, at.y}, packed(color), title);
+    const float right = at.x + width;
+    if (open) {
+        list->AddLine({after, c.y}, {right, c.y}, ImGui::GetColorU32(ImGuiCol_Border));
+        return true;
+    }
+    const std::string text = fitted(accuracy_text(now), right - after);
+    list->AddText({std::floor(right - ImGui::CalcTextSize(text.c_str()).x), at.y},
+                  packed(changed ? current_theme().accent : text_color()), text.c_str());
+    return false;
+}
+
+// How the bouncing is cut short, and how closely the motion between is followed.
+void accuracy(const Session& session, const Run& file, PanelState& state, Commands& commands) {
+    if (!accuracy_heading(session, file, state, commands)) return;
+    const Options& now = session.run().options;
+    bounds(now, file.options, state, commands);
     choice(
         {"conditions", "", "conditions",
          "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
@@ -184,19 +249,16 @@ void truncation(const Session& session, const Run& file, PanelState& state, Comm
             "the velocity the constrained motion starts with: the paper's "
             "euclidean projection, or the kinetic one of a plastic impact"},
            now, file.options, state, commands);
+    slide({"tolerance", "tolerance", "tolerance", "of the integration: local error per step, absolute and relative",
+           1e-14, 1e-4},
+          session, file, state, commands);
 }
 
-void integration(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    section("Integration");
+void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {
     // Of the file, not of the run: a range that grew with the value would run away under the hand.
     const double longest = std::max(50.0, 2.0 * file.options.end_time);
-    for (const OptionRow& row :
-         {OptionRow{"tolerance", "tolerance", "tolerance", "local error per step, absolute and relative", 1e-14, 1e-4},
-          OptionRow{"end_time", "end", "end", "the run stops here at the latest", 0.1, longest, 4}}) {
-        Options changed = session.run().options;
-        if (moved(row, changed, file.options, state))
-            commands.emplace_back(command::UseOption(option(row.key), changed));
-    }
+    slide({"end_time", "end", "end", "the run stops here at the latest", 0.1, longest, 4}, session, file, state,
+          commands);
 }
 
 }  // namespace
@@ -222,13 +284,13 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
     if (has_parameters) first_section("Parameters", session, file, state, commands);
     parameters(session, file, state, commands);
     if (has_parameters)
-        section("Start");
+        section("Start and end");
     else
-        first_section("Start", session, file, state, commands);
+        first_section("Start and end", session, file, state, commands);
     for (std::size_t i = 0; i < session.description().coordinates.size(); ++i)
         for (const bool is_rate : {false, true}) start_value(session, file, i, is_rate, state, commands);
-    truncation(session, file, state, commands);
-    integration(session, file, state, commands);
+    end_time(session, file, state, commands);
+    accuracy(session, file, state, commands);
     ImGui::PopStyleVar();
 }
 

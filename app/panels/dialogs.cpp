@@ -22,6 +22,12 @@ std::string expanded(const std::string& path) {
     return home != nullptr && path.rfind("~/", 0) == 0 ? home + path.substr(1) : path;
 }
 
+// A system file has an ending: "mine" is mine.toml.
+std::string as_system(const std::string& path) {
+    const fs::path file(path);
+    return file.has_filename() && file.extension().empty() ? path + ".toml" : path;
+}
+
 // What is to be known of a path before anything is done with it.
 struct Verdict {
     std::string note;
@@ -122,9 +128,9 @@ void open_dialog(PanelState& state, const Session& session, Commands& commands) 
 
 void save_dialog(PanelState& state, const Session& session, Commands& commands) {
     EditorState& editor = state.editor;
-    const auto judge = [&](const std::string& path) { return to_save(session.document(), path); };
+    const auto judge = [&](const std::string& path) { return to_save(session.document(), as_system(path)); };
     if (!path_chosen("Save", state, judge)) return;
-    const std::string file = expanded(editor.path);
+    const std::string file = as_system(expanded(editor.path));
     close(editor);
     hand_over_text(editor, commands);
     commands.emplace_back(command::Save{file, judge(file).asks});

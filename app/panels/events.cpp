@@ -17,29 +17,70 @@ namespace achilles {
 
 namespace {
 
-// Where the columns of the list begin, at scale 1, from its left edge.
-constexpr float sign_at = 14.0F, number_at = 34.0F, kind_at = 78.0F, time_at = 174.0F, speed_at = 300.0F,
-                state_at = 410.0F, list_padding = 4.0F;
+// Where the columns of the list are, at scale 1, from its left edge: signs and words begin there, numbers end there.
+constexpr float sign_at = 14.0F, number_at = 62.0F, kind_at = 76.0F, time_at = 274.0F, proof_at = 366.0F,
+                speed_at = 462.0F, state_width = 112.0F, list_padding = 4.0F;
+constexpr float list_beside_card = 300.0F, least_card = 540.0F;
 
-// A line of the list: an event, or one line of what its certificate says.
-struct Row {
-    std::size_t event;
-    std::string certificate;
-};
-
-// Text broken into lines of at most this width.
-std::vector<std::string> wrapped(const std::string& text, float width) {
-    std::vector<std::string> lines;
-    const char* at = text.c_str();
-    const char* const end = at + text.size();
-    while (at < end) {
-        const char* stop = ImGui::GetFont()->CalcWordWrapPositionA(1.0F, at, end, width);
-        if (stop == at) stop = end;
-        lines.emplace_back(at, stop);
-        for (at = stop; at < end && *at == ' ';) ++at;
+// The lines of the list: each event, but impacts one after the other as one line, until it is opened. A run may have a
+// hundred thousand impacts: only what is seen is made.
+class Rows {
+ public:
+    struct Row {
+        std::size_t event;      // the first, of impacts in one line
+        std::size_t count = 0;  // of these impacts; 0: the line is an event
+        bool is_open = false;   // they follow, line by line
+    };
+    Rows(const Session& session, const PanelState& state) {
+        const Trajectory& trajectory = session.trajectory();
+        std::size_t next = 0;
+        for (const std::size_t turn : turns(trajectory)) {
+            add_impacts(session, state, next, turn - next);
+            add({turn, 1, false, false, 0});
+            next = turn + 1;
+        }
+        add_impacts(session, state, next, trajectory.events.size() - next);
     }
-    return lines;
-}
+    std::size_t size() const { return count_; }
+    Row at(std::size_t index) const {
+        const auto after = std::upper_bound(parts_.begin(), parts_.end(), index,
+                                            [](std::size_t i, const Part& part) { return i < part.row; });
+        const Part& part = *std::prev(after);
+        const std::size_t within = index - part.row;
+        if (part.is_folded && within == 0) return {part.first, part.count, part.is_open};
+        return {part.first + within - (part.is_folded ? 1 : 0)};
+    }
+    // The line of this event, or that which it is folded into.
+    std::size_t row_of(std::size_t event) const {
+        const auto after = std::upper_bound(parts_.begin(), parts_.end(), event,
+                                            [](std::size_t e, const Part& part) { return e < part.first; });
+        if (after == parts_.begin()) return 0;
+        const Part& part = *std::prev(after);
+        if (part.is_folded && !part.is_open) return part.row;
+        return part.row + (part.is_folded ? 1 : 0) + event - part.first;
+    }
+
+ private:
+    struct Part {
+        std::size_t first, count;
+        bool is_folded, is_open;
+        std::size_t row;
+    };
+    void add(Part part) {
+        part.row = count_;
+        count_ += (part.is_folded ? 1 : 0) + (part.is_folded && !part.is_open ? 0 : part.count);
+        parts_.push_back(part);
+    }
+    void add_impacts(const Session& session, const PanelState& state, std::size_t first, std::size_t count) {
+        if (count == 0) return;
+        const auto chosen = static_cast<std::size_t>(std::max(session.selected() - 1, 0));
+        const bool has_chosen = session.selected() > 0 && chosen >= first && chosen < first + count;
+        add({first, count, count > 1 && !state.show_impacts, has_chosen || state.unfolded.contains(first), 0});
+    }
+
+    std::vector<Part> parts_;
+    std::size_t count_ = 0;
+};
 
 // The index of the event that the user chose, which is shown with its reasons; or none.
 std::optional<std::size_t> chosen(const Session& session) {
@@ -61,66 +102,6 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
     }
 }
 
-// A certificate in its symbols; the sentence itself is plain text, for terminals.
-std::string typeset_sentence(const Certificate& certificate) {
-    std::string text = sentence(certificate);
-    for (const auto& [plain, symbol] :
-         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
-          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
-        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
-            text.replace(at, std::string_view(plain).size(), symbol);
-    return text;
-}
-
-// The lines of the list: every event, or only those that are no impacts, each certificate in as many lines as it needs.
-// A run may have a hundred thousand impacts: only what is seen is made.
-class Rows {
- public:
-    Rows(const Session& session, bool impacts, float width) : impacts_(impacts) {
-        turns_ = turns(session.trajectory());
-        const auto& events = session.trajectory().events;
-        count_ = impacts ? events.size() : turns_.size();
-        for (std::size_t i = 0; i < turns_.size(); ++i) {
-            const Event& event = events[turns_[i]];
-            if (!event.certificate || has_card(session)) continue;
-            const std::size_t row = impacts ? turns_[i] : i;
-            notes_.push_back({row + added_, wrapped(typeset_sentence(*event.certificate), width)});
-            added_ += notes_.back().lines.size();
-        }
-    }
-    std::size_t size() const { return count_ + added_; }
-    Row at(std::size_t index) const {
-        std::size_t before = 0;  // lines of certificates above
-        for (const Note& note : notes_) {
-            if (index <= note.row) break;
-            const std::size_t line = index - note.row - 1;
-            if (line < note.lines.size()) return {event_of(note.row - before), note.lines[line]};
-            before += note.lines.size();
-        }
-        return {event_of(index - before), ""};
-    }
-    // The first row of this event, or of the next one that has a row.
-    std::size_t row_of(std::size_t event) const {
-        const auto turn = std::lower_bound(turns_.begin(), turns_.end(), event);
-        std::size_t row = impacts_ ? event : static_cast<std::size_t>(turn - turns_.begin());
-        for (const Note& note : notes_)
-            if (note.row < row) row += note.lines.size();
-        return row;
-    }
-
- private:
-    struct Note {
-        std::size_t row;  // of its event
-        std::vector<std::string> lines;
-    };
-    std::size_t event_of(std::size_t plain_row) const { return impacts_ ? plain_row : turns_[plain_row]; }
-
-    bool impacts_;
-    std::vector<std::size_t> turns_;
-    std::vector<Note> notes_;
-    std::size_t count_ = 0, added_ = 0;
-};
-
 // The last event that the present has reached, or none.
 int reached(const Session& session) {
     const auto& events = session.trajectory().events;
@@ -129,24 +110,49 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-// The coordinates after an event, and the rates where they fit too.
-std::string state_text(const Session& session, const Event& event, float width) {
-    const auto& coordinates = session.description().coordinates;
-    const State& scale = session.scale();
-    std::string positions, rates;
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? degrees(1.0) : 1.0;
-        const auto at = static_cast<Eigen::Index>(i);
-        positions +=
-            fmt::format("{}{} = {}{}", i == 0 ? "" : ",  ", typeset_name(coordinates[i].name),
-                        number(without_noise(event.q[at], scale.q[at]) * factor, "{:.5g}"), is_angle ? "\u00b0" : "");
-        rates += fmt::format(",  {} = {}{}", typeset_name(coordinates[i].name + "'"),
-                             number(without_noise(event.v_after[at], scale.v[at]) * factor, "{:.5g}"),
-                             is_angle ? "\u00b0/s" : "");
+// A column of the state after an event: a coordinate or its rate.
+struct StateColumn {
+    std::string name, title;
+    Eigen::Index coordinate = 0;
+    bool is_rate = false;
+    double factor = 1.0;
+    double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
+    // Rounding noise is shown as 0.
+    double shown(const Event& event, const State& scale) const {
+        return without_noise(of(event), (is_rate ? scale.v : scale.q)[coordinate] * factor);
     }
-    const std::string all = positions + rates;
-    return fitted(label_width(all, ImGui::GetFontSize()) <= width ? all : positions, width);
+};
+
+std::vector<StateColumn> state_columns(const Session& session) {
+    std::vector<StateColumn> columns;
+    const auto& coordinates = session.description().coordinates;
+    for (const bool is_rate : {false, true})
+        for (std::size_t i = 0; i < coordinates.size(); ++i) {
+            const bool is_angle = coordinates[i].unit == "rad";
+            std::string unit = is_angle ? "\u00b0" : typeset_unit(coordinates[i].unit);
+            if (is_rate && !unit.empty()) unit += "/s";
+            const std::string name = coordinates[i].name + (is_rate ? "'" : "");
+            columns.push_back({name, with_unit(typeset_name(name), unit), static_cast<Eigen::Index>(i), is_rate,
+                               is_angle ? degrees(1.0) : 1.0});
+        }
+    return columns;
+}
+
+// The events for a spreadsheet, every digit: the chosen one, or all. In the units of the list.
+std::string table(const Session& session) {
+    const std::vector<StateColumn> columns = state_columns(session);
+    std::string text = "#\tevent\tt\timpact speed";
+    for (const StateColumn& column : columns) text += "\t" + column.name;
+    const auto& events = session.trajectory().events;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (chosen(session).value_or(i) != i) continue;
+        const Event& event = events[i];
+        const bool is_impact = event.kind == Event::Kind::impact;
+        text += fmt::format("\n{}\t{}\t{}\t{}", i + 1, event_markers(session.theme(), event.kind).label, event.t,
+                            is_impact ? fmt::format("{}", event.impact_speed) : "");
+        for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
+    }
+    return text + "\n";
 }
 
 constexpr const char* both_ways = "paper | sharp";
@@ -177,67 +183,125 @@ void show_comparing(const Session& session, float x, PanelState& state, Commands
     tooltip("keep the present run in the plots, in grey, beside those that follow");
 }
 
+// A number that ends at x.
+void number_cell(ImVec2 at, float x, const std::string& text, const Color& color) {
+    const float left = at.x + units(x) - label_width(text, ImGui::GetFontSize());
+    paint_label(ImGui::GetWindowDrawList(), std::floor(left), at.y, text, color, ImGui::GetFontSize());
+}
+
+// How many columns of the state have room.
+std::size_t columns_shown(const Session& session, float width) {
+    const float room = width - units(speed_at + 12.0F);
+    const auto fitting = static_cast<std::size_t>(std::max(0.0F, room / units(state_width)));
+    return has_card(session) ? 0 : std::min(fitting, 2 * session.description().coordinates.size());
+}
+
+void paint_titles(const Session& session, ImVec2 at, float width) {
+    const bool alone = !has_card(session);
+    const auto title = [&](float x, const std::string& text) {
+        if (units(x) <= width) number_cell(at, x, text, faint_color());
+    };
+    title(number_at, "#");
+    ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(faint_color()), "event");
+    title(time_at, "t (s)");
+    if (!alone) return;
+    title(proof_at, "\u00b1");
+    title(speed_at, "gap speed");
+    const std::vector<StateColumn> columns = state_columns(session);
+    for (std::size_t i = 0; i < columns_shown(session, width); ++i)
+        title(speed_at + state_width * static_cast<float>(i + 1), columns[i].title);
+}
+
 void show_header(const Session& session, PanelState& state, Commands& commands) {
-    const bool with_state = !has_card(session);
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    const float left = ImGui::GetCursorPosX() + units(list_padding);
     const float right = ImGui::GetContentRegionMax().x;
     const float width =
         ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
-    const float buttons = right - width - units(16.0F) - comparing_width();
+    const float copy_width = button_width("copy");
+    const float buttons = right - width - units(16.0F) - copy_width - units(button_gap) - comparing_width();
     ImGui::AlignTextToFramePadding();
-    for (const auto& [at, text] : {std::pair{number_at, "#"}, std::pair{kind_at, "event"}, std::pair{time_at, "t (s)"},
-                                   std::pair{speed_at, "gap speed"}, std::pair{state_at, "state after it"}}) {
-        if (!with_state && at >= speed_at) continue;  // a certificate stands there
-        if (left + units(at) + ImGui::CalcTextSize(text).x > buttons) break;
-        if (at != number_at) ImGui::SameLine();
-        ImGui::SetCursorPosX(left + units(at));
-        ImGui::TextUnformatted(text);
-    }
-    ImGui::PopStyleColor();
+    ImGui::TextUnformatted("Events");
     ImGui::SameLine(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
-    tooltip("list the impacts, or only Zeno points and releases");
+    tooltip("list every impact; without, those in a row are one line, which a click opens");
+    ImGui::SameLine(right - width - units(16.0F) - copy_width);
+    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed('C', false);
+    if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
+    remember(state, "copy events");
+    tooltip("the chosen event, or all, as a table with every digit, for a spreadsheet (Ctrl+C)");
     show_comparing(session, buttons, state, commands);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at) {
-    const float right = ImGui::GetContentRegionAvail().x;
+    const float width = ImGui::GetContentRegionAvail().x;
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
-    Markers markers = event_markers(session.theme(), event.kind);
+    const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
-    const auto cell = [&](float x, const std::string& text, const Color& color) {
-        list->AddText({std::floor(at.x + units(x)), at.y}, packed(color), text.c_str());
-    };
-    cell(number_at, std::to_string(index + 1), faint_color());
-    cell(kind_at, is_plastic_landing(event) ? "landing" : markers.label, text_color());
-    cell(time_at, number(event.t, "{:.9f}"), text_color());
+    number_cell(at, number_at, std::to_string(index + 1), faint_color());
+    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
+                  is_plastic_landing(event) ? "landing" : markers.label.c_str());
+    number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
-    cell(speed_at, event.kind == Event::Kind::impact ? number(event.impact_speed) : "\u2013", text_color());
-    paint_label(list, std::floor(at.x + units(state_at)), at.y,
-                state_text(session, event, right - units(state_at + 20.0F)), text_color(), ImGui::GetFontSize());
+    const std::string proof = event.kind == Event::Kind::zeno ? time_text(event) : "";
+    if (const std::size_t sign = proof.find("\u00b1 "); sign != std::string::npos)
+        number_cell(at, proof_at, proof.substr(sign + 3), text_color());
+    if (event.kind == Event::Kind::impact)
+        number_cell(at, speed_at, number(event.impact_speed, "{:.6f}"), text_color());
+    const std::vector<StateColumn> columns = state_columns(session);
+    for (std::size_t i = 0; i < columns_shown(session, width); ++i)
+        number_cell(at, speed_at + state_width * static_cast<float>(i + 1),
+                    number(columns[i].shown(event, session.scale()), "{:.5f}"), text_color());
 }
 
-void show_row(const Session& session, const Row& row, int index, bool is_reached, PanelState& state,
-              Commands& commands) {
+// "10 impacts", and when the first and the last of them were.
+void paint_impacts(const Session& session, const Rows::Row& row, ImVec2 at) {
+    const auto& events = session.trajectory().events;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 c{at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()};
+    const float r = units(4.0F);
+    if (row.is_open)
+        list->AddTriangleFilled({c.x - r, c.y - 0.6F * r}, {c.x + r, c.y - 0.6F * r}, {c.x, c.y + r},
+                                packed(faint_color()));
+    else
+        list->AddTriangleFilled({c.x - 0.6F * r, c.y - r}, {c.x - 0.6F * r, c.y + r}, {c.x + r, c.y},
+                                packed(faint_color()));
+    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
+                  fmt::format("{} impacts", row.count).c_str());
+    number_cell(at, time_at, number(events[row.event].t, "{:.9f}"), faint_color());
+}
+
+void show_impacts(const Session& session, const Rows::Row& row, int present, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const int event_number = static_cast<int>(row.event) + 1;
-    const bool is_event = row.certificate.empty();
-    const bool is_selected = session.selected() == event_number || (session.selected() == 0 && is_reached);
-    ImGui::PushID(index);  // not its address, which another frame gives to another row
+    const auto& events = session.trajectory().events;
+    const std::size_t last = row.event + row.count - 1;
+    const bool is_reached = !row.is_open && session.selected() == 0 && present >= static_cast<int>(row.event) &&
+                            present <= static_cast<int>(last);
+    if (ImGui::Selectable("##row", is_reached)) {
+        const int chosen = session.selected() - 1;
+        if (!row.is_open)
+            state.unfolded.insert(row.event);
+        else
+            state.unfolded.erase(row.event);
+        if (row.is_open && chosen >= static_cast<int>(row.event) && chosen <= static_cast<int>(last))
+            commands.emplace_back(command::Select{0});
+    }
+    remember(state, "impacts " + std::to_string(row.event + 1));
+    tooltip(fmt::format("events {} to {}, t = {:.9g} to {:.9g} s: a click {} them", row.event + 1, last + 1,
+                        events[row.event].t, events[last].t, row.is_open ? "folds" : "lists"));
+    paint_impacts(session, row, at);
+}
+
+void show_event(const Session& session, std::size_t event, int present, PanelState& state, Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const int event_number = static_cast<int>(event) + 1;
+    const bool is_selected =
+        session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(event));
     // Another click on the chosen event lets go of it.
     if (ImGui::Selectable("##row", is_selected))
         commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
-    ImGui::PopID();
-    if (is_event) remember(state, "event " + std::to_string(event_number));
-    if (is_event)
-        paint_event(session, row.event, at);
-    else
-        ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y},
-                                            packed(is_selected ? text_color() : faint_color()),
-                                            row.certificate.c_str());
+    remember(state, "event " + std::to_string(event_number));
+    paint_event(session, event, at);
 }
 
 // Scrolls so that the row is seen, once whenever another row is the one to see.
@@ -254,6 +318,51 @@ void follow(const Rows& all, int event, PanelState& state) {
 
 }  // namespace
 
+namespace {
+
+void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
+    ImGui::BeginChild("list", size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    paint_titles(session, ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x);
+    ImGui::Dummy({1.0F, ImGui::GetTextLineHeight()});
+    const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
+    const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
+    ImGui::BeginChild("rows", {0.0F, room}, false);
+    const Rows all(session, state);
+    const int present = reached(session);
+    ImGui::SetCursorPosY(
+        std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));  // the first line is marked as high as the others
+    if (all.size() == 0) ImGui::TextDisabled("  nothing happens in this run");
+    if (all.size() > 0) follow(all, session.selected() > 0 ? session.selected() - 1 : std::max(present, 0), state);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const Rows::Row row = all.at(static_cast<std::size_t>(i));
+            ImGui::PushID(i);  // not its address, which another frame gives to another row
+            if (row.count > 0)
+                show_impacts(session, row, present, state, commands);
+            else
+                show_event(session, row.event, present, state, commands);
+            ImGui::PopID();
+        }
+    ImGui::EndChild();
+    ImGui::EndChild();
+}
+
+void show_card(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
+    ImGui::BeginChild("card", size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    if (const auto event = chosen(session))
+        show_card_of_event(session, *event, state, commands);
+    else
+        show_comparison(session, state, commands);
+    ImGui::EndChild();
+    ImGui::PopStyleVar(2);
+}
+
+}  // namespace
+
 void show_events(const Session& session, PanelState& state, Commands& commands) {
     show_header(session, state, commands);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
@@ -262,34 +371,13 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
     const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
                          units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
-    const auto event = chosen(session);
-    const float list_width = has_card(session) ? units(speed_at) : 0.0F;
-    ImGui::BeginChild("list", {list_width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-    const float width = ImGui::GetContentRegionAvail().x - units(kind_at + 16.0F);
-    const Rows all(session, state.show_impacts, width);
-    const int present = reached(session);
-    if (all.size() == 0) ImGui::TextDisabled("  nothing happens in this run");
-    follow(all, session.selected() > 0 ? session.selected() - 1 : std::max(present, 0), state);
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
-    while (clipper.Step())
-        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const Row row = all.at(static_cast<std::size_t>(i));
-            show_row(session, row, i, static_cast<int>(row.event) == present, state, commands);
-        }
-    ImGui::EndChild();
-    if (has_card(session)) {
-        ImGui::SameLine(0.0F, units(8.0F));
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
-        ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
-        ImGui::BeginChild("card", {0.0F, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
-        if (event)
-            show_card_of_event(session, *event, state, commands);
-        else
-            show_comparison(session, state, commands);
-        ImGui::EndChild();
-        ImGui::PopStyleVar(2);
-    }
+    const bool with_card = has_card(session);
+    // A card needs its width; where there is none for both it stands alone, until it is closed.
+    const float width = ImGui::GetContentRegionAvail().x, gap = units(8.0F);
+    const bool with_list = !with_card || width - units(list_beside_card) - gap >= units(least_card);
+    if (with_list) show_list(session, {with_card ? units(list_beside_card) : 0.0F, height}, state, commands);
+    if (with_list && with_card) ImGui::SameLine(0.0F, gap);
+    if (with_card) show_card(session, {0.0F, height}, state, commands);
     ImGui::PopStyleVar();
     ImGui::PopStyleColor();
 }

@@ -15,7 +15,8 @@ namespace {
 
 constexpr ImGuiWindowFlags fixed_window = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                           ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus;
+                                          ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus |
+                                          ImGuiWindowFlags_NoFocusOnAppearing;  // a message must not close a menu
 constexpr ImGuiWindowFlags still_window =
     fixed_window | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
@@ -49,6 +50,7 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     measures.bar = ImGui::GetFrameHeight() + units(12.0F);
     measures.status = ImGui::GetFrameHeight() + units(6.0F);
     measures.timeline = timeline_height();
+    measures.results = results_height;
     measures.error = [&](float width) { return card_height(message, width); };
     measures.caption = [&](float width) { return caption_height(session, state, width); };
     return achilles::arrange(session.scene(), measures);
@@ -121,9 +123,17 @@ void copy(const Session& session, PanelState& state) {
 
 // A hand that presses anew begins another change, be it of the same slider. A double click is one with its first press.
 void begin_change(PanelState& state, Commands& commands) {
-    if (!state.changing || ImGui::GetIO().MouseClickedCount[ImGuiMouseButton_Left] != 1) return;
+    const auto& clicked = ImGui::GetIO().MouseClickedCount;
+    if (!state.changing || (clicked[ImGuiMouseButton_Left] != 1 && clicked[ImGuiMouseButton_Right] != 1)) return;
     state.changing = false;
     commands.emplace_back(command::Done{});
+}
+
+// For the panels; whatever stands before them takes Escape for itself.
+bool escape_pressed() {
+    const bool is_covered = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) && !is_covered &&
+           !ImGui::GetIO().WantTextInput;
 }
 
 bool is_part_of_change(const Command& command) { return goes_on(command, command); }
@@ -134,6 +144,9 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
     use_theme(session.theme().dark);
     begin_change(state, commands);
+    state.escape = escape_pressed();
+    // Of a slider that is shown no longer.
+    if (ImGui::GetTime() - state.pressed.clicked_since > 1.0) state.pressed.clicked.clear();
     const std::string message = card_text(session);
     const Arrangement parts = arrange(session, state, message);
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
@@ -150,6 +163,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
+    part("results", parts.results, still_window, [&] { show_results(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
     part("plots", parts.plots, still_window, [&] {
         if (lens_is_open(session))

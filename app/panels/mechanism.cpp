@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
@@ -16,11 +19,14 @@ namespace achilles {
 
 namespace {
 
+using Holding = HeldMechanism::What;
+
 // The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
 // the height it took.
 float show_state(const Session& session, ImVec2 at, float width) {
+    constexpr float first = 130.0F, column = 130.0F;
+    // Where there is little room each coordinate has a line, its rate beside it, below the phase.
     const bool narrow = width < units(390.0F);
-    const float first = narrow ? 104.0F : 130.0F, column = narrow ? 112.0F : 130.0F;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
     const Phase::Kind phase = session.now().phase;
@@ -36,15 +42,18 @@ float show_state(const Session& session, ImVec2 at, float width) {
         const auto index = static_cast<Eigen::Index>(i);
         const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
         const std::string rate_unit = unit.empty() ? "" : unit + "/s";
-        const float x = at.x + units(first + column * static_cast<float>(i % columns));
-        const float y = at.y + 2.0F * line * static_cast<float>(i / columns);
+        const auto place = static_cast<float>(i);
+        const float x = at.x + units(narrow ? 16.0F : first + column * static_cast<float>(i % columns));
+        const float y = at.y + line * (narrow ? place + 1.0F : 2.0F * static_cast<float>(i / columns));
+        const float rate_x = narrow ? x + units(column) : x, rate_y = narrow ? y : y + line;
         const auto text = [&](const std::string& name, double value, const std::string& of) {
             return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;
         };
         paint_label(list, x, y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
-        paint_label(list, x, y + line, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
+        paint_label(list, rate_x, rate_y, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
                     faint_color(), size);
     }
+    if (narrow) return line * static_cast<float>(coordinates.size() + 1) + units(8.0F);
     const std::size_t rows = (coordinates.size() + columns - 1) / columns;
     return 2.0F * line * static_cast<float>(std::max<std::size_t>(rows, 1)) + units(8.0F);
 }
@@ -88,51 +97,91 @@ double arrow_scale(const Rectangle& area, double largest) {
 struct Picture {
     Rectangle area;
     Placement placement;
-    std::optional<Body> body;
-    Point center, tip;   // pixels: of the body, and of its velocity
-    double scale = 0.0;  // pixels for a unit of velocity
+    std::vector<Body> bodies;    // by Mechanism::grips(); the first has the arrow
+    std::vector<Point> centers;  // pixels
+    Point tip;                   // of the velocity, pixels
+    double scale = 0.0;          // pixels for a unit of velocity
 };
 
-Picture paint_picture(const Session& session, const Rectangle& area) {
-    Drawing drawing =
-        session.mechanism().draw(session.now().state, session.run().parameters, world(session, area), session.theme());
-    if (session.scene().shows("trail"))
-        add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
-    // Behind everything the pinned run at the same instant.
-    if (const auto then = session.pinned_now()) {
-        const Drawing ghost =
-            session.mechanism().draw(then->state, session.pinned()->run.parameters, drawing, session.theme());
-        for (std::size_t i = ghost.shapes.size(); i-- > 0;) {
-            Shape shape = ghost.shapes[i];
-            if (shape.kind == Shape::Kind::text) continue;
-            shape.stroke.color.a = shape.fill_color.a = 70;
-            drawing.shapes.insert(drawing.shapes.begin(), shape);
-        }
+// What the arrows are measured by: the run, or until the hand lets go what they were measured by when it took hold.
+std::pair<double, double> largest(const Session& session, const HeldMechanism& held) {
+    if (held.what == Holding::nothing) return {session.trail().fastest, session.trail().strongest};
+    return {held.fastest, held.strongest};
+}
+
+bool holds_start(const HeldMechanism& held) {
+    return held.has_moved && (held.what == Holding::body || held.what == Holding::arrow);
+}
+
+// The state in the picture: the present, or the start while the hand moves it. (A run that takes long is not awaited.)
+State shown_state(const Session& session, const HeldMechanism& held) {
+    return holds_start(held) ? State{session.run().q, session.run().v} : session.now().state;
+}
+
+// What can be seen of the world so that everything stays where it was on the screen.
+void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& area) {
+    const Point low = placement.world({area.x, double{area.y} + double{area.height}});
+    const Point high = placement.world({double{area.x} + double{area.width}, area.y});
+    drawing.x_low = low.x, drawing.x_high = high.x;
+    drawing.y_low = low.y, drawing.y_high = high.y;
+}
+
+// Behind everything the pinned run at the same instant.
+void add_ghost(const Session& session, Drawing& drawing) {
+    const auto then = session.pinned_now();
+    if (!then) return;
+    const Drawing ghost =
+        session.mechanism().draw(then->state, session.pinned()->run.parameters, drawing, session.theme());
+    for (std::size_t i = ghost.shapes.size(); i-- > 0;) {
+        Shape shape = ghost.shapes[i];
+        if (shape.kind == Shape::Kind::text) continue;
+        shape.stroke.color.a = shape.fill_color.a = 70;
+        drawing.shapes.insert(drawing.shapes.begin(), shape);
     }
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
-    if (auto grip = session.mechanism().grip(session.trajectory().run.parameters))
-        picture.body = Body::of(*grip, session.now().state);
-    if (!picture.body) return picture;
-    picture.center = picture.placement.pixel(picture.body->at());
-    picture.scale = arrow_scale(area, session.trail().fastest);
-    const Point v = picture.body->velocity(session.now().state.v);
-    picture.tip = {picture.center.x + picture.scale * v.x, picture.center.y - picture.scale * v.y};
-    list->PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
-    if (session.scene().shows("force") && session.now().contact) {
-        const double scale = arrow_scale(area, session.trail().strongest);
-        if (const auto F = picture.body->force(contact_force(session.trajectory(), session.now())))
-            arrow(picture.center, {picture.center.x + scale * F->x, picture.center.y - scale * F->y},
+}
+
+void paint_arrows(const Session& session, const HeldMechanism& held, Picture& picture) {
+    const auto [fastest, strongest] = largest(session, held);
+    const Body& body = picture.bodies.front();
+    const Point center = picture.centers.front(), v = body.velocity(shown_state(session, held).v);
+    picture.scale = arrow_scale(picture.area, fastest);
+    picture.tip = {center.x + picture.scale * v.x, center.y - picture.scale * v.y};
+    if (session.scene().shows("force") && session.now().contact && !holds_start(held)) {
+        const double scale = arrow_scale(picture.area, strongest);
+        if (const auto F = body.force(contact_force(session.trajectory(), session.now())))
+            arrow(center, {center.x + scale * F->x, center.y - scale * F->y},
                   phase_color(session.theme(), Phase::Kind::constrained));
     }
-    if (session.scene().shows("velocity")) arrow(picture.center, picture.tip, text_color());
+    if (session.scene().shows("velocity")) arrow(center, picture.tip, text_color());
+}
+
+Picture paint_picture(const Session& session, const Rectangle& area, const HeldMechanism& held) {
+    const State state = shown_state(session, held);
+    const auto& parameters = session.run().parameters;
+    Drawing seen = world(session, area);
+    if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
+    Drawing drawing = session.mechanism().draw(state, parameters, seen, session.theme());
+    if (session.scene().shows("trail"))
+        add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
+    add_ghost(session, drawing);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
+    for (Grip& grip : session.mechanism().grips(parameters)) {
+        const auto body = Body::of(grip, state);
+        if (!body && picture.bodies.empty()) return picture;
+        picture.bodies.push_back(body ? *body : picture.bodies.front());
+        picture.centers.push_back(picture.placement.pixel(picture.bodies.back().at()));
+    }
+    if (picture.bodies.empty()) return picture;
+    list->PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
+    paint_arrows(session, held, picture);
     list->PopClipRect();
     return picture;
 }
 
-bool is_near(const Point& a, const ImVec2& b, double reach) {
-    return std::hypot(a.x - double{b.x}, a.y - double{b.y}) <= reach;
-}
+double distance(const Point& a, const ImVec2& b) { return std::hypot(a.x - double{b.x}, a.y - double{b.y}); }
+
+ImVec2 pixel(const Point& point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
 // Looks so that the world at the mouse stays there while `factor` times as much is seen, moved by some pixels.
 command::Look look_again(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
@@ -155,72 +204,121 @@ command::Start start_of(const Session& session, const Vector* q, const Vector* v
     return start;
 }
 
-void drag_body(const Session& session, const Picture& picture, Commands& commands) {
-    const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
-    if (delta.x == 0.0F && delta.y == 0.0F) return;
-    auto grip = session.mechanism().grip(session.run().parameters);
-    if (const auto q = held_at(*grip, {session.run().q, session.run().v}, picture.placement.world({mouse.x, mouse.y})))
+// Where the hand wants what it holds, in pixels.
+Point wanted(const HeldMechanism& held) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    return {mouse.x + held.offset.x, mouse.y + held.offset.y};
+}
+
+void drag_body(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {
+    auto grips = session.mechanism().grips(session.run().parameters);
+    if (held.grip >= grips.size()) return;
+    const Point place = picture.placement.world(wanted(held));
+    if (const auto q = held_at(grips[held.grip], {session.run().q, session.run().v}, place))
         commands.emplace_back(start_of(session, &*q, nullptr));
 }
 
-void drag_arrow(const Session& session, const Picture& picture, Commands& commands) {
+void drag_arrow(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {
+    auto grip = session.mechanism().grip(session.run().parameters);
+    const auto body = grip ? Body::of(*grip, {session.run().q, session.run().v}) : std::nullopt;
+    if (!(picture.scale > 0.0) || !body) return;
+    const Point to = wanted(held), from = picture.placement.pixel(body->at());
+    const Point velocity{(to.x - from.x) / picture.scale, (from.y - to.y) / picture.scale};
+    if (const auto v = body->rates(session.run().v, velocity)) commands.emplace_back(start_of(session, nullptr, &*v));
+}
+
+// What is under the mouse: the tip of the velocity, else the nearest body.
+struct Aim {
+    Holding what = Holding::world;
+    std::size_t grip = 0;
+    Point at;            // pixels
+    double reach = 0.0;  // of its ring
+};
+
+Aim aim(const Session& session, const Picture& picture, const ImVec2& mouse) {
+    const double reach = units(9.0F);
+    Aim best;
+    if (picture.bodies.empty()) return best;
+    if (session.scene().shows("velocity") && distance(picture.tip, mouse) <= reach &&
+        distance(picture.tip, pixel(picture.centers.front())) > reach)
+        return {Holding::arrow, 0, picture.tip, reach};
+    double least = 0.0;
+    for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
+        const double own = std::max(reach, picture.bodies[i].radius() * picture.placement.unit);
+        const double far = distance(picture.centers[i], mouse);
+        if (far > own || !picture.bodies[i].moves() || (best.what == Holding::body && far >= least)) continue;
+        best = {Holding::body, i, picture.centers[i], own};
+        least = far;
+    }
+    return best;
+}
+
+void take_hold(const Session& session, const Picture& picture, const Aim& aim, HeldMechanism& held) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const Point offset = aim.what == Holding::world ? Point{} : Point{aim.at.x - mouse.x, aim.at.y - mouse.y};
+    held = {aim.what, false, aim.grip, offset, picture.placement, session.trail().fastest, session.trail().strongest};
+}
+
+void drag(const Session& session, const Picture& picture, HeldMechanism& held, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
-    if ((delta.x == 0.0F && delta.y == 0.0F) || !(picture.scale > 0.0)) return;
-    const Point velocity{(mouse.x - picture.center.x) / picture.scale, (picture.center.y - mouse.y) / picture.scale};
-    if (const auto v = picture.body->rates(session.run().v, velocity))
-        commands.emplace_back(start_of(session, nullptr, &*v));
+    if (delta.x == 0.0F && delta.y == 0.0F) return;
+    if (held.what == Holding::world) {
+        if (ImGui::IsMouseDragging(ImGuiMouseButton_Left))
+            commands.emplace_back(look_again(picture, mouse, 1.0, delta));
+        return;
+    }
+    held.has_moved = true;
+    if (session.time() > 0.0) commands.emplace_back(command::Seek{0.0});  // the start is what is dragged
+    if (held.what == Holding::body) drag_body(session, picture, held, commands);
+    if (held.what == Holding::arrow) drag_arrow(session, picture, held, commands);
+}
+
+void mark_places(const Picture& picture, PanelState& state) {
+    const auto mark = [&](const std::string& name, const Point& at) {
+        state.places[name] = {static_cast<float>(at.x), static_cast<float>(at.y), 0.0F, 0.0F};
+    };
+    for (std::size_t i = 0; i < picture.centers.size(); ++i)
+        mark(i == 0 ? "body" : "body " + std::to_string(i + 1), picture.centers[i]);
+    if (!picture.centers.empty()) mark("velocity", picture.tip);
 }
 
 void use_mouse(const Session& session, const Picture& picture, PanelState& state, Commands& commands) {
-    using Hand = PanelState::Hand;
     const Rectangle& a = picture.area;
     ImGui::SetCursorScreenPos({a.x, a.y});
     ImGui::InvisibleButton("mechanism", {a.width, a.height});
     remember(state, "mechanism");
-    const auto mark = [&](const char* name, const Point& at) {
-        state.places[name] = {static_cast<float>(at.x), static_cast<float>(at.y), 0.0F, 0.0F};
-    };
-    if (picture.body) mark("body", picture.center), mark("velocity", picture.tip);
+    mark_places(picture, state);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const double reach = units(9.0F);
-    const double body_reach = picture.body ? std::max(reach, picture.body->radius() * picture.placement.unit) : 0.0;
-    const bool over_tip =
-        picture.body && session.scene().shows("velocity") && is_near(picture.tip, mouse, reach) &&
-        !is_near(picture.tip, {static_cast<float>(picture.center.x), static_cast<float>(picture.center.y)}, reach);
-    const bool over_body = picture.body && !over_tip && is_near(picture.center, mouse, body_reach);
-    if (ImGui::IsItemHovered() && ImGui::GetIO().MouseWheel != 0.0F)
+    const bool is_hovered = ImGui::IsItemHovered();
+    const Aim under = aim(session, picture, mouse);
+    if (is_hovered && ImGui::GetIO().MouseWheel != 0.0F)
         commands.emplace_back(look_again(picture, mouse, std::pow(0.85, double{ImGui::GetIO().MouseWheel}), {}));
-    if (ImGui::IsItemHovered() && (over_tip || over_body)) {
-        ImGui::GetWindowDrawList()->AddCircle({static_cast<float>(over_tip ? picture.tip.x : picture.center.x),
-                                               static_cast<float>(over_tip ? picture.tip.y : picture.center.y)},
-                                              static_cast<float>(over_tip ? reach : body_reach) + units(2.0F),
+    if (is_hovered && under.what != Holding::world) {
+        ImGui::GetWindowDrawList()->AddCircle(pixel(under.at), static_cast<float>(under.reach) + units(2.0F),
                                               packed(text_color(), 0.5F), 32, units(1.5F));
-        if (state.hand == Hand::free)
-            tooltip(over_tip ? "drag: the rates to start with" : "drag: where the run starts");
+        tooltip(under.what == Holding::arrow ? "drag: the rates to start with" : "drag: where the run starts");
     }
-    if (ImGui::IsItemActivated()) {
-        state.hand = over_tip ? Hand::arrow : over_body ? Hand::body : Hand::world;
-        if (state.hand != Hand::world && session.time() > 0.0) commands.emplace_back(command::Seek{0.0});
-    }
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.hand == Hand::world)
+    if (ImGui::IsItemActivated()) take_hold(session, picture, under, state.held);
+    if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == Holding::world)
         commands.emplace_back(command::LookAll{});
-    if (!ImGui::IsItemActive()) {
-        state.hand = Hand::free;
-        return;
-    }
-    const ImVec2 delta = ImGui::GetIO().MouseDelta;
-    if (state.hand == Hand::body) drag_body(session, picture, commands);
-    if (state.hand == Hand::arrow) drag_arrow(session, picture, commands);
-    if (state.hand == Hand::world && ImGui::IsMouseDragging(ImGuiMouseButton_Left) &&
-        (delta.x != 0.0F || delta.y != 0.0F))
-        commands.emplace_back(look_again(picture, mouse, 1.0, delta));
+    if (ImGui::IsItemActive())
+        drag(session, picture, state.held, commands);
+    else
+        state.held = {};
 }
+
+// What any system has in place of a mechanism, where it draws none or the user wants it.
+bool shows_plane(const Session& session) { return session.scene().shows("plane") || session.mechanism().is_empty(); }
 
 // What is drawn besides the mechanism, in the corner.
 void show_switches(const Session& session, const Rectangle& area, PanelState& state, Commands& commands) {
     float x = area.x + area.width - units(10.0F);
     const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
-    for (const char* what : {"force", "velocity", "trail"}) {
+    const bool plane = shows_plane(session);
+    for (const char* what : {"plane", "force", "velocity", "trail"}) {
+        // Of the plane nothing else is switched, and where nothing is drawn not even that.
+        const bool is_plane = std::string_view(what) == "plane";
+        if (is_plane ? session.mechanism().is_empty() : plane) continue;
         const bool shown = session.scene().shows(what);
         const ImVec2 size = ImGui::CalcTextSize(what);
         x -= size.x;
@@ -230,7 +328,9 @@ void show_switches(const Session& session, const Rectangle& area, PanelState& st
         ImGui::PopID();
         remember(state, std::string("show ") + what);
         const bool lit = ImGui::IsItemHovered();
-        tooltip(std::string(shown ? "hide the " : "show the ") + what);
+        tooltip(is_plane && shown ? "back to the mechanism"
+                : is_plane        ? "the configuration plane: two coordinates, where the gap is open, and the run"
+                                  : std::string(shown ? "hide the " : "show the ") + what);
         ImDrawList* list = ImGui::GetWindowDrawList();
         list->AddText({x, y}, packed(lit ? text_color() : faint_color(), shown || lit ? 1.0F : 0.6F), what);
         if (shown) list->AddLine({x, y + size.y}, {x + size.x, y + size.y}, packed(faint_color()), units(1.0F));
@@ -248,7 +348,13 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
     const float strip = show_state(session, {area.x + units(12.0F), area.y + units(8.0F)}, area.width - units(24.0F));
     const Rectangle rest{area.x, area.y + strip, area.width, area.height - strip};
     if (rest.height < 2.0F) return;
-    const Picture picture = paint_picture(session, rest);
+    if (shows_plane(session)) {
+        state.held = {};
+        const float line = ImGui::GetTextLineHeight() + units(14.0F);
+        show_plane(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - line)}, state, commands);
+        return show_switches(session, rest, state, commands);
+    }
+    const Picture picture = paint_picture(session, rest, state.held);
     show_switches(session, rest, state, commands);
     use_mouse(session, picture, state, commands);
 }

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "paint/paint.hpp"
+#include "figure/field.hpp"
+#include "paint/mechanism.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -40,6 +43,8 @@ struct EditorState {
 struct PlotMenu {
     int plot = -1;
     std::string x, y;
+    bool was_entered = false;  // what was typed is being plotted: if that is refused the menu stays
+    bool is_wrong = false;     // it was refused
 };
 
 // A value that is typed in place of its slider.
@@ -48,13 +53,52 @@ struct TypedValue {
     std::string text, as_it_was;
     std::string wrong;  // why the text was not taken; empty: it was not entered yet
     bool is_new = false;
-    std::pair<std::string, double> before;  // the slider that was pressed last, and its value then
+};
+
+// A press of a slider is a drag, a click that moves it there, or half of a double click, which types: until this is
+// known nothing moves.
+struct PressedSlider {
+    std::string id;        // that is pressed, or was last; empty: none
+    double since = 0.0;    // s, of ImGui's clock
+    double target = 0.0;   // where it was pressed, as a value
+    bool is_drag = false;  // it is one
+    std::string clicked;   // the slider that was clicked: its value is to be clicked_target when no second click comes
+    double clicked_since = 0.0, clicked_target = 0.0;
 };
 
 // A box that is being drawn in a plot.
 struct PlotBox {
     int plot = -1;
     Point from;  // pixels
+};
+
+// What a hand holds in the mechanism. Until it lets go the picture stands still: a camera or an arrow's scale that
+// follows the run would take the thing out of the hand.
+struct HeldMechanism {
+    enum class What { nothing, body, arrow, world } what = What::nothing;
+    bool has_moved = false;                 // since then the start is shown, which the hand changes
+    std::size_t grip = 0;                   // which body, of Mechanism::grips()
+    Point offset;                           // from the hand to what it holds, pixels
+    Placement placement;                    // of the picture
+    double fastest = 0.0, strongest = 0.0;  // what the arrows are measured by
+};
+
+// The configuration plane: which two coordinates, and the picture until another run takes its place.
+struct PlaneView {
+    std::size_t pair = 0;
+    bool is_held = false;  // the start, by the hand
+    Point offset;          // from the hand to it, pixels
+    std::shared_ptr<const PreparedView> view;
+    std::shared_ptr<const Model> model;  // of that
+    std::size_t view_pair = 0;
+    std::shared_ptr<const Panel> panel;
+    std::optional<Run> run;  // of that
+    double end = 0.0;
+    bool dark = false;
+    Framing framing, framed;  // as it is to be; as it was made
+    std::shared_ptr<const Field> gap;
+    std::vector<double> gap_key;  // what that depends on
+    const PreparedView* gap_of = nullptr;
 };
 
 // What belongs to the view and not to the session, so is in no journal.
@@ -64,14 +108,19 @@ struct PanelState {
     bool on_tour = false;              // one is under way: its caption has buttons
     enum class OnTour { nothing, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
     int copies = 0;                                                          // the session's, that the clipboard has
-    bool in_window = false;    // a window may show how long the run took; a picture must not
-    bool show_impacts = true;  // in the event list
+    bool in_window = false;          // a window may show how long the run took; a picture must not
+    bool show_impacts = false;       // in the event list: each, not folded into one line
+    std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
     TypedValue typed;
+    PressedSlider pressed;
     PlotMenu plot_menu;
     PlotBox box;
-    enum class Hand { free, body, arrow, world } hand = Hand::free;  // what it holds in the mechanism
-    bool changing = false;                             // a change was made that more commands may go on with
+    HeldMechanism held;
+    PlaneView plane;
+    bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
+    bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
+    bool changing = false;   // a change was made that more commands may go on with
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
     int followed = -1;                                 // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
@@ -94,6 +143,15 @@ float caption_height(const Session& session, const PanelState& state, float widt
 void show_caption(const Session& session, PanelState& state, Commands& commands);
 void show_dialogs(const Session& session, PanelState& state, Commands& commands);
 void show_mechanism(const Session& session, PanelState& state, Commands& commands);
+// Under the mechanism: every Zeno point and release, with what is proved of its time.
+void show_results(const Session& session, PanelState& state, Commands& commands);
+float results_height(float width);
+// "2.7251422 ± 7.4e-7": the time of a Zeno point to the digits that are proved, and how far the true one can be from it;
+// without a proof the time alone.
+std::string time_text(const Event& event);
+// In place of the mechanism, of any system: two coordinates, where the gap is open, the run, and its start to drag. With one
+// coordinate its phase plane.
+void show_plane(const Session& session, const Rectangle& area, PanelState& state, Commands& commands);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
@@ -121,6 +179,8 @@ void show_status(const Session& session, const PanelState& state);
 
 // Letters were typed that are no command yet: frames must go on until they are.
 bool is_typing(const PanelState& state);
+// The same of a click that may still become a double click.
+bool waits_for_click(const PanelState& state);
 // What was typed becomes a command now.
 void hand_over_text(EditorState& editor, Commands& commands);
 // Shows the editor in place of the sliders, or the sliders again.

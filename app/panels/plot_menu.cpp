@@ -107,11 +107,14 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     const Framing& framing = session.plotted().list()[plot].framing;
     show_choices(session, plot, commands);
     ImGui::Separator();
+    const bool was_entered = std::exchange(menu.was_entered, false);
+    if (was_entered) menu.is_wrong = !session.error().empty();
     bool typed = false;
     for (const auto& [name, text] : {std::pair{"y", &menu.y}, std::pair{"x", &menu.x}}) {
         label(name, units(20.0F));
         ImGui::SameLine();
         ImGui::SetNextItemWidth(units(240.0F));
+        if (was_entered && menu.is_wrong && text == &menu.y) ImGui::SetKeyboardFocusHere();
         typed =
             ImGui::InputText((std::string("##") + name).c_str(), text, ImGuiInputTextFlags_EnterReturnsTrue) || typed;
         remember(state, std::string("expression ") + name);
@@ -119,7 +122,9 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
             "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy; several curves "
             "are separated by commas. Enter plots it");
     }
+    if (menu.is_wrong && !session.error().empty()) show_message(session.error(), units(264.0F));
     if (typed) commands.emplace_back(command::PlotView{number, menu.x, split(menu.y)});
+    menu.was_entered = typed;
     for (const bool is_x : {true, false}) {
         bool on = is_x ? framing.log_x : framing.log_y;
         const char* name = is_x ? "logarithmic x" : "logarithmic y";
@@ -129,7 +134,8 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     }
     if (ImGui::Button("fit")) commands.emplace_back(command::Fit{number});
     remember(state, "fit");
-    if (typed) ImGui::CloseCurrentPopup();
+    if (was_entered && !menu.is_wrong) ImGui::CloseCurrentPopup();
+    close_by_escape();
     ImGui::EndPopup();
 }
 

@@ -140,14 +140,48 @@ void use_box(const Place& place, PanelState& state, Commands& commands) {
     commands.emplace_back(zoom_to(place.map, place.plot, left, right, top, bottom));
 }
 
+// The event whose marker is within reach of the mouse, by its number; nothing where there is none. Only events that can be
+// there are asked: over time those of a short time, else all of a run that has not too many.
+std::optional<int> event_at(const Session& session, const Place& place) {
+    constexpr std::size_t most = 3000;
+    const auto& events = session.trajectory().events;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const double reach = units(marker_reach);
+    auto first = events.begin(), last = events.end();
+    if (place.over_time) {
+        const auto at = [&](double x) {
+            return std::lower_bound(events.begin(), events.end(), place.map.x.value(x),
+                                    [](const Event& event, double t) { return event.t < t; });
+        };
+        first = at(mouse.x - reach), last = at(mouse.x + reach);
+    }
+    const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
+    const bool too_many = static_cast<std::size_t>(last - first) > most;
+    NearestEvent nearest(mouse, reach);
+    for (auto event = first; event < last; ++event) {
+        if (too_many && event->kind == Event::Kind::impact) continue;
+        const std::vector<double> values = session.values(place.plot, sample_at(*event));
+        for (std::size_t i = 1; i < values.size(); ++i)
+            if (!hidden.contains(i - 1))
+                nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, place.map.x(values[0]),
+                            place.map.y(values[i]));
+    }
+    return nearest.found();
+}
+
 void use_click(const Session& session, const Place& place, Commands& commands) {
     const int number = static_cast<int>(place.plot) + 1;
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         commands.emplace_back(command::Fit{number});
         return;
     }
+    // The left button let go where it was pressed, and not for the second time.
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
-    if (!place.over_time || !ImGui::IsItemDeactivated() || std::hypot(moved.x, moved.y) > click) return;
+    if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left) ||
+        ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] > 1 || std::hypot(moved.x, moved.y) > click)
+        return;
+    if (const auto event = event_at(session, place)) return commands.emplace_back(command::Select{*event}), void();
+    if (!place.over_time) return;
     const PanelMap& map = place.map;
     const double time = map.x.value(ImGui::GetIO().MousePos.x);
     if (time != session.time()) commands.emplace_back(command::Seek{time});
@@ -174,6 +208,9 @@ void use_mouse(const Session& session, const Place& place, PanelState& state, Co
     if (ImGui::IsItemActive()) use_drag(place, commands);
     use_click(session, place, commands);
     use_box(place, state, commands);
+    // No marker lies far outside the axes, and none is looked for while the hand is busy.
+    if (hovered && !ImGui::IsAnyMouseDown())
+        if (const auto event = event_at(session, place)) name_event(session, *event);
     if (hovered && place.over_time) state.pointed_at = place.map.x.value(ImGui::GetIO().MousePos.x);
 }
 

@@ -65,9 +65,46 @@ void paint_track(const Slider& slider, float width) {
     list->AddRectFilled({x - units(1.0F), y - units(6.0F)}, {x + units(1.0F), y + units(6.0F)}, packed(faint_color()));
 }
 
+// What a press does to the value under it, where the hand is at `target`: true when that is to be the value now. A press
+// that stays where it is may be the first of a double click, so waits as long as one may take.
+bool takes_effect(const Slider& slider, double target, PressedSlider& pressed) {
+    constexpr float slip = 3.0F;  // pixels that a hand may slip and still click
+    const ImGuiIO& io = ImGui::GetIO();
+    const double now = ImGui::GetTime();
+    const auto is_late = [&](double since) { return now - since > double{io.MouseDoubleClickTime}; };
+    if (ImGui::IsItemActivated()) {
+        pressed.id = slider.id;
+        pressed.since = now;
+        pressed.is_drag = false;
+        if (pressed.clicked == slider.id) pressed.clicked.clear();
+    }
+    if (pressed.id == slider.id && ImGui::IsItemActive()) {
+        const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+        pressed.is_drag = pressed.is_drag || std::hypot(moved.x, moved.y) > slip || is_late(pressed.since);
+        pressed.target = target;
+        return pressed.is_drag;
+    }
+    if (pressed.id == slider.id && ImGui::IsItemDeactivated() && !pressed.is_drag) {
+        pressed.clicked = slider.id;
+        pressed.clicked_since = pressed.since;
+        pressed.clicked_target = pressed.target;
+    }
+    return false;
+}
+
+// A click that was alone, after all.
+bool was_clicked(Slider& slider, PressedSlider& pressed) {
+    if (pressed.clicked != slider.id) return false;
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool late = ImGui::GetTime() - pressed.clicked_since > double{io.MouseDoubleClickTime};
+    if (!late && !ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return false;
+    pressed.clicked.clear();
+    return std::exchange(slider.value, pressed.clicked_target) != pressed.clicked_target;
+}
+
 // ImGui would write the value over the grab; ours stands beside it, so its text is hidden. Fifteen digits: ImGui takes
 // the precision of a logarithmic scale from here.
-bool dragged(Slider& slider, float width) {
+bool dragged(Slider& slider, float width, PressedSlider& pressed) {
     paint_track(slider, width);
     for (const ImGuiCol color : {ImGuiCol_FrameBg, ImGuiCol_FrameBgActive, ImGuiCol_FrameBgHovered, ImGuiCol_Text})
         ImGui::PushStyleColor(color, 0U);
@@ -78,9 +115,14 @@ bool dragged(Slider& slider, float width) {
         ("##" + slider.id).c_str(), ImGuiDataType_Double, &value, &low, &high, "%.15g",
         ImGuiSliderFlags_NoInput | (is_logarithmic(slider) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
     ImGui::PopStyleColor(4);
-    if (value == before || rounded(value, slider.digits) == before) return false;
-    slider.value = rounded(value, slider.digits) / slider.factor;
-    return true;
+    const bool stays = value == before || rounded(value, slider.digits) == before;
+    const double target = stays ? slider.value : rounded(value, slider.digits) / slider.factor;
+    const bool now = takes_effect(slider, target, pressed);
+    if (now && !stays) {
+        slider.value = target;
+        return true;
+    }
+    return was_clicked(slider, pressed);
 }
 
 void begin_typing(const Slider& slider, TypedValue& typed) {
@@ -91,18 +133,16 @@ void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.is_new = true;
 }
 
-// A double click types, and takes back what its first click moved; a right click puts the file's value back.
-bool clicked(Slider& slider, double before, TypedValue& typed) {
-    if (ImGui::IsItemActivated() && !ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))
-        typed.before = {slider.id, before};
+// A double click types; a right click puts the file's value back.
+bool clicked(Slider& slider, PanelState& state) {
     if (!ImGui::IsItemHovered()) return false;
     const double now = slider.value;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Right)) {
         slider.value = slider.original;
     } else if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) ||
                (ImGui::GetIO().KeyCtrl && ImGui::IsMouseClicked(ImGuiMouseButton_Left))) {
-        if (typed.before.first == slider.id) slider.value = typed.before.second;
-        begin_typing(slider, typed);
+        state.pressed.clicked.clear();
+        begin_typing(slider, state.typed);
     }
     return slider.value != now;
 }
@@ -156,6 +196,8 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
 
 }  // namespace
 
+bool waits_for_click(const PanelState& state) { return !state.pressed.clicked.empty(); }
+
 void mark_changed() {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     ImGui::GetWindowDrawList()->AddCircleFilled({high.x - units(9.0F), 0.5F * (low.y + high.y)}, units(2.5F),
@@ -168,16 +210,15 @@ bool moved(Slider& slider, PanelState& state) {
     label(slider.label, units(label_width));
     tooltip(about);
     if (is_changed) mark_changed();
-    const double before = slider.value;
-    const bool was_reset = clicked(slider, before, state.typed);
+    const bool was_reset = clicked(slider, state);
     ImGui::SameLine(0.0F, 0.0F);
     const float width = ImGui::GetContentRegionAvail().x;
     if (state.typed.id == slider.id) return typed_over(slider, state, width) || was_reset;
     const float track = std::floor(std::max(0.4F * width, width - units(value_width)));
-    bool changed = dragged(slider, track) || was_reset;
+    bool changed = dragged(slider, track, state.pressed) || was_reset;
     remember(state, slider.id);
     tooltip(about);
-    changed = clicked(slider, before, state.typed) || changed;
+    changed = clicked(slider, state) || changed;
     ImGui::SameLine(0.0F, 0.0F);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton(("##value of " + slider.id).c_str(),
@@ -185,7 +226,7 @@ bool moved(Slider& slider, PanelState& state) {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     remember(state, "value of " + slider.id);
     tooltip(about);
-    changed = clicked(slider, before, state.typed) || changed;
+    changed = clicked(slider, state) || changed;
     const std::string text = shown_in(width - track - units(4.0F), slider, slider.value);
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x + width - track - ImGui::CalcTextSize(text.c_str()).x),
                                          at.y + ImGui::GetStyle().FramePadding.y},

@@ -99,7 +99,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||
-        (keys && ImGui::IsKeyPressed(key::escape, false)))
+        take_escape(state))
         state.tour_wants = PanelState::OnTour::stop;
 }
 

@@ -166,6 +166,49 @@ void use_keys(const Session& session, Commands& commands) {
     if (ImGui::IsKeyPressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
+// The event whose sign is under the mouse.
+std::optional<int> event_at(const Session& session, const Track& track) {
+    const auto& events = session.trajectory().events;
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const float top = track.top + units(marks), reach = units(marker_reach);
+    NearestEvent nearest(mouse, reach);
+    const auto at = [&](float x) {
+        return std::lower_bound(events.begin(), events.end(), double{(x - track.left) / track.width} * track.end,
+                                [](const Event& event, double t) { return event.t < t; });
+    };
+    // Of impacts, whose sign is a line, the nearest before and after the mouse.
+    const float tick = std::clamp(mouse.y, top - units(7.0F), top - units(1.0F));
+    const auto here = at(mouse.x);
+    for (auto event = here, end = at(mouse.x + reach); event < end; ++event)
+        if (event->kind == Event::Kind::impact) {
+            nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, track.x(event->t), tick);
+            break;
+        }
+    for (auto event = here, end = at(mouse.x - reach); event > end;)
+        if ((--event)->kind == Event::Kind::impact) {
+            nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, track.x(event->t), tick);
+            break;
+        }
+    for (const std::size_t turn : turns(session.trajectory()))
+        nearest.ask(static_cast<int>(turn) + 1, events[turn].kind, track.x(events[turn].t), top - units(8.0F));
+    return nearest.found();
+}
+
+// A press on the sign of an event selects it; dragged from there the hand moves the time, as from anywhere else.
+void use_events(const Session& session, const Track& track, PanelState& state, Commands& commands) {
+    constexpr float slip = 4.0F;
+    const bool is_hovered = ImGui::IsItemHovered();
+    if (is_hovered && !ImGui::IsAnyMouseDown())
+        if (const auto event = event_at(session, track)) name_event(session, *event);
+    if (ImGui::IsItemActivated()) {
+        const auto event = event_at(session, track);
+        state.on_marker = event.has_value();
+        if (event) commands.emplace_back(command::Select{*event});
+    }
+    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+    if (!ImGui::IsItemActive() || std::hypot(moved.x, moved.y) > slip) state.on_marker = false;
+}
+
 }  // namespace
 
 float timeline_height() {
@@ -198,8 +241,9 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
                       std::max(session.trajectory().run.options.end_time, session.trajectory().end_time)};
     ImGui::InvisibleButton("timeline", {area.width, units(space + marks + band + axis)});
     remember(state, "timeline");
+    use_events(session, track, state, commands);
     double time = 0.0;
-    if (dragged_to(0.0, track.end, track.left, track.width, time) && time != session.time())
+    if (!state.on_marker && dragged_to(0.0, track.end, track.left, track.width, time) && time != session.time())
         commands.emplace_back(command::Seek{time});
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_phases(session, track, list);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "paint/label.hpp"
 #include "surface/interface.hpp"
@@ -52,11 +53,36 @@ void section(const char* title, float free) {
 
 void tooltip(const std::string& text) {
     if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    // While the hand works it would cover what changes.
+    if (ImGui::IsAnyMouseDown()) return;
+    constexpr float wrap = 360.0F;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(),
+                 padding = ImGui::GetStyle().WindowPadding;
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    // Over a line of a panel: below all of it, or above, so that the value beside stays in sight. Over a line of a menu:
+    // beside the menu.
+    if (high.y - low.y < units(40.0F)) {
+        const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(wrap));
+        const ImVec2 size{words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
+        const float gap = units(4.0F);
+        const bool in_menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+        ImVec2 at{low.x, high.y + gap};
+        if (in_menu) at = {ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap, low.y};
+        if (at.y + size.y > all.y) at.y = std::max(0.0F, (in_menu ? all.y : low.y - gap) - size.y);
+        at.x = std::clamp(at.x, 0.0F, std::max(0.0F, all.x - size.x));
+        ImGui::SetNextWindowPos({std::floor(at.x), std::floor(at.y)});
+    }
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(units(360.0F));
+    ImGui::PushTextWrapPos(units(wrap));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+}
+
+bool take_escape(PanelState& state) { return std::exchange(state.escape, false); }
+
+void close_by_escape() {
+    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) ImGui::CloseCurrentPopup();
 }
 
 Rectangle remaining() {
@@ -76,8 +102,27 @@ bool dragged_to(double low, double high, float left, float width, double& value)
     return true;
 }
 
+void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
+    const double distance = std::hypot(x - double{mouse_.x}, y - double{mouse_.y});
+    if (!(distance <= reach_)) return;
+    const bool is_under = kind != Event::Kind::impact && distance <= 0.75 * reach_;
+    const double cost = is_under ? distance - reach_ : distance;
+    if (found_ && cost >= least_) return;
+    found_ = number;
+    least_ = cost;
+}
+
+void name_event(const Session& session, int number) {
+    const Event& event = session.trajectory().events[static_cast<std::size_t>(number - 1)];
+    ImGui::SetTooltip("%s, event %d, t = %s s\nclick: select it",
+                      event_markers(session.theme(), event.kind).label.c_str(), number,
+                      achilles::number(event.t, "{:.9g}").c_str());
+}
+
 std::string number(double value, const char* format) {
     std::string text = fmt::format(fmt::runtime(format), value + 0.0);
+    // What is rounded to zero has no sign.
+    if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') text.erase(0, 1);
     for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
         text.replace(at, 1, "\u2212");
     return text;

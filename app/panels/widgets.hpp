@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <optional>
 #include <string>
 
 #include "figure/figure.hpp"
@@ -24,8 +25,12 @@ std::string fitted(const std::string& text, float width);
 void label(const std::string& text, float width);
 // A quiet heading over a group of widgets; so much at its right end stays free.
 void section(const char* title, float free = 0.0F);
-// A tooltip for the last item, wrapped.
+// A tooltip for the last item, wrapped; none while a mouse button is down. It covers no line of a panel that it is about.
 void tooltip(const std::string& text);
+// Whether Escape was pressed for what asks first, and for nothing in front of it: a menu, a dialog, a text field.
+bool take_escape(PanelState& state);
+// Within a menu: Escape closes it.
+void close_by_escape();
 // What is left to draw on in the current window.
 Rectangle remaining();
 // Where the last item is, under this name.
@@ -36,6 +41,23 @@ bool dragged_to(double low, double high, float left, float width, double& value)
 void show_message(const std::string& message, float width);
 float message_height(const std::string& message, float width);
 void paint_error_card(const Rectangle& area);
+// How far from a marker, in pixels at scale 1, a click is meant for it.
+constexpr float marker_reach = 8.0F;
+// Of the events that are asked, the one whose sign a hand means: the nearest within reach, but over the sign of a Zeno
+// point or a release that one, among whatever many impacts.
+class NearestEvent {
+ public:
+    NearestEvent(const ImVec2& mouse, double reach) : mouse_(mouse), reach_(reach) {}
+    void ask(int number, Event::Kind kind, double x, double y);
+    std::optional<int> found() const { return found_; }
+
+ private:
+    ImVec2 mouse_;
+    double reach_, least_ = 0.0;
+    std::optional<int> found_;
+};
+// A tooltip beside the mouse that says which event this is.
+void name_event(const Session& session, int number);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
 

@@ -20,14 +20,16 @@ Measures measures(float width, float height, float unit = 1.0F, float error = 0.
     m.bar = 32.0F * unit;
     m.status = 30.0F * unit;
     m.timeline = 92.0F * unit;
+    m.results = [unit](float) { return 54.0F * unit; };
     m.error = [error](float) { return error; };
     return m;
 }
 
 std::vector<std::pair<std::string, Rectangle>> all_of(const Arrangement& a) {
     std::vector<std::pair<std::string, Rectangle>> all{
-        {"bar", a.bar},           {"controls", a.controls}, {"error", a.error},   {"mechanism", a.mechanism},
-        {"timeline", a.timeline}, {"plots", a.plots},       {"events", a.events}, {"status", a.status}};
+        {"bar", a.bar},         {"controls", a.controls}, {"error", a.error}, {"mechanism", a.mechanism},
+        {"results", a.results}, {"timeline", a.timeline}, {"plots", a.plots}, {"events", a.events},
+        {"status", a.status}};
     for (const Arrangement::Splitter& splitter : a.splitters) all.emplace_back("splitter", splitter.area);
     std::erase_if(all, [](const auto& part) { return part.second.width < 1.0F || part.second.height < 1.0F; });
     return all;
@@ -80,7 +82,7 @@ TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
     for (const float width : {1.0F, 60.0F, 300.0F})
         for (const float height : {1.0F, 40.0F, 200.0F}) {
             const Arrangement a = arrange(Scene(), measures(width, height));
-            for (const Rectangle& r : {a.controls, a.mechanism, a.timeline, a.plots, a.events}) {
+            for (const Rectangle& r : {a.controls, a.mechanism, a.results, a.timeline, a.plots, a.events}) {
                 EXPECT_GE(r.width, 0.0F);
                 EXPECT_GE(r.height, 0.0F);
             }
@@ -120,17 +122,17 @@ TEST(Panels, are_hidden_and_shown_from_the_bar_the_menu_and_the_keyboard) {
     hands.state.places.clear();
     hands.rest(2);
     EXPECT_FALSE(hands.state.places.contains("set g"));
-    EXPECT_TRUE(hands.state.places.contains("event 1"));
+    EXPECT_TRUE(hands.state.places.contains("impacts 1"));
     hands.press_with_control('3');
     hands.state.places.clear();
     hands.rest(2);
-    EXPECT_FALSE(hands.state.places.contains("event 1"));
+    EXPECT_FALSE(hands.state.places.contains("impacts 1"));
     EXPECT_TRUE(hands.state.places.contains("mechanism"));
     const Rectangle alone = hands.state.places.at("mechanism");
     EXPECT_GT(alone.width, 1200.0F);
     for (const char* panel : {"controls", "plots", "events"}) hands.click(std::string("switch ") + panel);
     EXPECT_TRUE(hands.state.places.contains("plot 1"));
-    EXPECT_TRUE(hands.state.places.contains("event 1"));
+    EXPECT_TRUE(hands.state.places.contains("impacts 1"));
     EXPECT_LT(hands.state.places.at("mechanism").width, 0.5F * alone.width);
     EXPECT_EQ(to_text(hands.session), to_text(test::session("ball_on_sine")));
 }

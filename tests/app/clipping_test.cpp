@@ -120,6 +120,8 @@ const State states[] = {
     {"the picture alone", "swinging_leg", {"hide plots", "hide events", "hide controls"}},
     {"wide controls", "falling_rod", {"size controls 0.6", "seek 1"}},
     {"narrow panels", "ball_on_table", {"size controls 0.01", "size plots 0.9", "size events 0.01"}},
+    {"the plane", "triple_pendulum", {"show plane", "show accuracy", "seek 2"}},
+    {"a certificate of angles", "double_pendulum", {"select 11", "pin"}},
     {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},
 };
 
@@ -150,8 +152,9 @@ TEST_P(Clipping, cuts_no_letter) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Clipping,
-                         testing::Values(std::tuple(1280, 800, 1.0), std::tuple(1600, 1000, 1.0),
-                                         std::tuple(2560, 1600, 2.0), std::tuple(1600, 1000, 1.5)));
+                         testing::Values(std::tuple(1024, 700, 1.0), std::tuple(1280, 800, 1.0),
+                                         std::tuple(1600, 1000, 1.0), std::tuple(2560, 1600, 2.0),
+                                         std::tuple(1600, 1000, 1.5)));
 
 // The test itself: text too long for its window is found, sideways and downwards, and text that fits is not.
 TEST(Clipping, finds_what_is_cut) {

@@ -1,6 +1,9 @@
 // One hand on one explorer, offscreen.
 #pragma once
 
+#include <imgui.h>
+#include <imgui_internal.h>
+
 #include <cstdlib>
 
 #include "app/open.hpp"
@@ -40,6 +43,49 @@ struct Hands {
         rest(2);
         hand.left = false;
         rest(2);
+        settle();
+    }
+    // Until a click can be no half of a double click any more.
+    void settle() {
+        for (int i = 0; i < 60 && waits_for_click(state); ++i) rest(1);
+        rest(1);
+    }
+    void double_click(const std::string& place, double share = 0.5) {
+        point(place, share);
+        for (int i = 0; i < 2; ++i) {
+            hand.left = true;
+            rest(1);
+            hand.left = false;
+            rest(1);
+        }
+        rest(2);
+    }
+    void right_click(const std::string& place, double share = 0.5) {
+        point(place, share);
+        hand.right = true;
+        rest(2);
+        hand.right = false;
+        rest(2);
+    }
+    // Where a tooltip is, after another frame; of no height where there is none.
+    Rectangle tooltip() {
+        Rectangle found;
+        std::vector<Command> commands;
+        surface.step(
+            [&] {
+                commands = explorer(session, state);
+                const ImGuiWindow* window = ImGui::FindWindowByName("##Tooltip_00");
+                if (window == nullptr || !window->Active || window->Hidden) return;
+                found = {window->Pos.x, window->Pos.y, window->Size.x, window->Size.y};
+            },
+            hand);
+        for (const Command& command : commands) session.apply(command);
+        return found;
+    }
+    // Where a control is now, its middle.
+    Point middle(const std::string& place) const {
+        const Rectangle& r = state.places.at(place);
+        return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
     }
     void press(int key) {
         hand.keys = {key};

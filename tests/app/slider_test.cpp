@@ -6,23 +6,10 @@
 namespace achilles {
 namespace {
 
+// With the section of the sliders that is folded at first.
 struct SliderHand : test::Hands {
-    using Hands::Hands;
-    void double_click(const std::string& place, double share = 0.5) {
-        point(place, share);
-        for (int i = 0; i < 2; ++i) {
-            hand.left = true;
-            rest(1);
-            hand.left = false;
-            rest(1);
-        }
-        rest(2);
-    }
-    void right_click(const std::string& place) {
-        point(place);
-        hand.right = true;
-        rest(2);
-        hand.right = false;
+    explicit SliderHand(const std::string& system) : Hands(system) {
+        session.apply(command::Show{"accuracy", true});
         rest(2);
     }
 };
@@ -33,6 +20,7 @@ TEST(Slider, a_double_click_types_a_value_and_moves_nothing) {
         hands.double_click(place, 0.9);
         EXPECT_EQ(hands.session.run().parameters[1], 1.0) << "the first click moved it, the second took that back";
         EXPECT_EQ(hands.state.typed.id, "set g");
+        EXPECT_TRUE(hands.all.empty()) << "it moved, be it there and back";
         hands.type("9.806650001");
         hands.press(key::enter);
         EXPECT_EQ(hands.session.run().parameters[1], 9.806650001) << place;
@@ -126,6 +114,7 @@ TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
          {"set m1", "value of set theta1", "set theta2'", "tolerance", "end", "eps q", "value of eps v", "eps t"}) {
         hands.all.clear();
         hands.right_click(place);
+        std::erase(hands.all, Command(command::Done{}));  // of the slider before
         EXPECT_EQ(hands.all.size(), 1U) << place;
     }
     const auto now = hands.session.run();
@@ -139,6 +128,7 @@ TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
     EXPECT_EQ(now.options.truncation.eps_t, file.options.truncation.eps_t);
     hands.all.clear();
     hands.right_click("set m1");
+    std::erase(hands.all, Command(command::Done{}));
     EXPECT_TRUE(hands.all.empty()) << "it is the file's already";
 }
 
@@ -212,6 +202,93 @@ TEST(Slider, two_drags_of_one_slider_are_two_changes) {
     EXPECT_EQ(e(), second);
     hands.press_with_control('Z');
     EXPECT_EQ(e(), first);
+}
+
+TEST(Slider, a_click_moves_it_once_it_is_no_double_click) {
+    SliderHand hands("ball_on_sine");
+    hands.point("set g", 0.8);
+    hands.hand.left = true;
+    hands.rest(2);
+    hands.hand.left = false;
+    hands.rest(2);
+    EXPECT_TRUE(hands.all.empty());
+    EXPECT_TRUE(waits_for_click(hands.state)) << "a window must not fall asleep now";
+    hands.settle();
+    EXPECT_FALSE(waits_for_click(hands.state));
+    EXPECT_GT(*hands.session.value("g"), 1.0);
+    ASSERT_EQ(hands.all.size(), 1U);
+    // Two sliders clicked in haste are both moved.
+    for (const char* place : {"set e", "set m"}) {
+        hands.point(place, 0.9);
+        hands.hand.left = true;
+        hands.rest(1);
+        hands.hand.left = false;
+        hands.rest(1);
+    }
+    hands.settle();
+    EXPECT_GT(*hands.session.value("e"), 0.5);
+    EXPECT_GT(*hands.session.value("m"), 1.0);
+    // One that is held where it was pressed moves, too.
+    hands.point("set g", 0.1);
+    hands.hand.left = true;
+    hands.rest(30);
+    EXPECT_LT(*hands.session.value("g"), 1.0);
+}
+
+TEST(Slider, every_undo_takes_something_back) {
+    SliderHand hands("ball_on_sine");
+    std::vector<std::vector<double>> moments{values(hands.session)};
+    const auto done = [&] { moments.push_back(values(hands.session)); };
+    hands.click("set g", 0.8), done();
+    hands.double_click("value of set e");  // typed: nothing
+    hands.press(key::escape);
+    hands.click("set e", 0.3), done();
+    hands.right_click("set e"), done();  // a change of its own
+    hands.double_click("value of set y");
+    hands.type("3");
+    hands.press(key::enter), done();
+    // There and back again is nothing to undo.
+    hands.point("set m");
+    hands.hand.left = true;
+    hands.rest(1);
+    for (const double step : {6.0, 6.0, -6.0, -6.0}) {
+        hands.hand.mouse_x += step;
+        hands.rest(1);
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    hands.session.apply(command::Set{"m", 1.0});
+    hands.session.apply(command::Done{});
+    hands.session.apply(command::Fit{1});
+    hands.click("set x'", 0.9), done();
+    hands.hand.mouse_y = -1e6;
+    hands.rest(1);
+    ASSERT_EQ(moments.size(), 6U);
+    for (std::size_t i = moments.size() - 1; i-- > 0;) {
+        EXPECT_NE(moments[i], moments[i + 1]);
+        hands.press_with_control('Z');
+        EXPECT_EQ(values(hands.session), moments[i]) << i;
+    }
+    EXPECT_FALSE(hands.session.can_undo());
+}
+
+// A tooltip tells of a value beside it, and is away while the value changes.
+TEST(Slider, no_tooltip_covers_the_value) {
+    SliderHand hands("ball_on_sine");
+    for (const char* place : {"set g", "value of set g", "end"}) {
+        hands.point(place, 0.4);
+        hands.rest(2);
+        const Rectangle row = hands.state.places.at(place), tip = hands.tooltip();
+        ASSERT_GT(tip.height, 0.0F) << place;
+        EXPECT_TRUE(tip.y >= row.y + row.height || tip.y + tip.height <= row.y) << place;
+        hands.hand.left = true;
+        hands.rest(1);
+        hands.hand.mouse_x += 6.0;
+        hands.rest(2);
+        EXPECT_EQ(hands.tooltip().height, 0.0F) << place;
+        hands.hand.left = false;
+        hands.rest(2);
+    }
 }
 
 TEST(Slider, a_changed_value_is_marked) {

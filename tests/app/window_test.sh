@@ -111,6 +111,10 @@ timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobo
 await grep -q "^open $folder/dropped.toml" "$folder/journal" || fail "a system that is dropped is not opened"
 timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
 await grep -q '^grid 3 2' "$folder/journal" || fail "a journal that is dropped is not replayed"
+"$build/achilles" screenshot impact_oscillator --do "seek 3" --size 700x500 --out "$folder/dropped.png"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
+await grep -q '^open impact_oscillator' "$folder/journal" || fail "a picture that is dropped is not opened as a session"
+await grep -q '^seek 3' "$folder/journal" || fail "a picture that is dropped does not lead to what it shows"
 "$build/achilles" screenshot --journal "$folder/journal" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
 "$build/x11_hand" close "$window"

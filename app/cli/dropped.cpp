@@ -1,0 +1,149 @@
+#include "cli/dropped.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/assets.hpp"
+#include "cli/commands/common.hpp"
+#include "journal/journal.hpp"
+#include "model/model.hpp"
+#include "model/read_system.hpp"
+#include "pictures/origin.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::size_t largest_picture = std::size_t{1} << 28;  // bytes
+
+// What of a picture's command line leads to what it shows; how large it was drawn does not.
+struct Asked {
+    std::string kind, system, journal;
+    std::vector<std::string> settings, views, steps;
+    OptionOverrides overrides;
+};
+
+Asked parsed(const std::string& command_line) {
+    std::vector<std::string> words = words_of(command_line);
+    Asked asked;
+    if (words.empty()) throw std::runtime_error("its origin names no command");
+    asked.kind = words.front();
+    words.erase(words.begin());
+    CLI::App command;
+    command.allow_extras();
+    command.add_option("SYSTEM", asked.system);
+    command.add_option("--journal", asked.journal);
+    add_view_option(command, asked.views, "");
+    add_step_option(command, asked.steps);
+    add_run_options(command, asked.settings, asked.overrides);
+    // Known, so that their values are not taken for the system.
+    std::string ignored;
+    for (const char* flag : {"--size", "--scale", "--columns", "--format", "--fps", "--speed", "--record"})
+        command.add_option(flag, ignored);
+    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+    try {
+        command.parse(words);
+    } catch (const CLI::ParseError& error) {
+        throw std::runtime_error(std::string("its command cannot be read here: ") + error.what());
+    }
+    return asked;
+}
+
+const Source* carried(const Origin& origin, Source::Kind kind, const std::string& name) {
+    for (const Source& source : origin.sources)
+        if (source.kind == kind && (name.empty() || source.name == name)) return &source;
+    return nullptr;
+}
+
+std::string held_by(const std::string& system) {
+    try {
+        return read_text(find_system(system));
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+// Opens what the picture knows under this name.
+void open(const Source& source, std::vector<Command>& commands) {
+    if (held_by(source.name) == source.text) {
+        commands.emplace_back(command::Open{source.name});
+        return;
+    }
+    commands.emplace_back(command::New{});
+    commands.emplace_back(command::Text{source.text});
+}
+
+// The run and the plots that a command line asks for.
+void ask(const Asked& asked, const Source& source, std::vector<Command>& commands) {
+    const SystemDescription description = parse_system(source.text, source.name);
+    Run run = asked_run(description, asked.settings, asked.overrides);
+    command::Start start;
+    for (const std::string& setting : asked.settings) {
+        std::string name = setting.substr(0, setting.find('='));
+        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+        if (const double* value = find_value(description, run, name)) start.values.emplace_back(name, *value);
+    }
+    if (!start.values.empty()) commands.emplace_back(start);
+    for (const auto group : options_by_command())
+        if (std::any_of(group.begin(), group.end(),
+                        [&](const Option& option) { return asked.overrides.given(option) != nullptr; }))
+            commands.emplace_back(command::UseOption(group[0], run.options));
+    if (asked.views.empty()) return;
+    const std::vector<ViewDescription> views = views_of(description, asked.views);
+    const int columns = views.size() > 2 ? 2 : 1;
+    commands.emplace_back(command::Grid{columns, (static_cast<int>(views.size()) + columns - 1) / columns});
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        command::PlotView plot{static_cast<int>(i) + 1, views[i].x.text, {}};
+        for (const ::achilles::Text& y : views[i].y) plot.y.push_back(y.text);
+        commands.emplace_back(plot);
+    }
+}
+
+// The commands of a journal, with what they read taken from the picture. They write nothing, and play nothing again.
+void replay(const std::vector<Command>& journal, const Origin& origin, std::vector<Command>& commands) {
+    for (const Command& command : journal) {
+        if (const auto* opened = std::get_if<command::Open>(&command)) {
+            if (const Source* source = carried(origin, Source::Kind::system, opened->system)) open(*source, commands);
+            continue;
+        }
+        if (std::holds_alternative<command::Save>(command) || std::holds_alternative<command::Export>(command) ||
+            std::holds_alternative<command::Replay>(command) || std::holds_alternative<command::Copy>(command))
+            continue;
+        commands.push_back(command);
+    }
+}
+
+std::vector<Command> session_of(const Origin& origin) {
+    const Asked asked = parsed(origin.command);
+    if (asked.kind == "paper") throw std::runtime_error("a picture of the paper shows no session");
+    const Source* source = carried(origin, Source::Kind::system, asked.system);
+    if (source == nullptr) throw std::runtime_error("it carries no system");
+    std::vector<Command> commands;
+    open(*source, commands);
+    ask(asked, *source, commands);
+    if (const Source* journal = carried(origin, Source::Kind::journal, asked.journal);
+        !asked.journal.empty() && journal != nullptr)
+        replay(parse_journal(journal->text, journal->name), origin, commands);
+    replay(parse_steps(asked.steps), origin, commands);
+    return commands;
+}
+
+}  // namespace
+
+bool is_picture(const std::string& path) {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    return ending == ".png" || ending == ".svg" || ending == ".PNG" || ending == ".SVG";
+}
+
+std::vector<Command> session_in(const std::string& picture) {
+    try {
+        return session_of(origin_of(read_text(picture, largest_picture)));
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::runtime_error& problem) {
+        throw InputError(picture, {}, problem.what());
+    }
+}
+
+}  // namespace achilles

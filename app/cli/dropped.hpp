@@ -1,0 +1,19 @@
+// What a file that is dropped on the window stands for, as commands.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "session/command.hpp"
+
+namespace achilles {
+
+// Whether a path names a picture by its ending: .png or .svg.
+bool is_picture(const std::string& path);
+
+// The commands that lead to the session a picture shows, from what it carries: its system as the file of that name if
+// that still holds the same text, else as a new text that belongs to no file. What its journal would write is left out.
+// Throws InputError for a file that is no picture of Achilles, or shows no session.
+std::vector<Command> session_in(const std::string& picture);
+
+}  // namespace achilles

@@ -1,0 +1,171 @@
+// Under the mechanism: what came out of the run, in a line or two. Every Zeno point and release is pressed to go there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "output/output.hpp"
+#include "paint/marker.hpp"
+#include "panels/turns.hpp"
+#include "panels/widgets.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr float padding = 6.0F, sign_width = 18.0F, between = 14.0F;
+// Always so many lines in this width: nothing moves where another run has more results.
+int lines_in(float width) { return width < units(360.0F) ? 3 : 2; }
+
+struct Result {
+    std::size_t event = 0;
+    std::string text;
+    float x = 0.0F, width = 0.0F;  // pixels
+    int line = 0;
+};
+
+// A certificate in its symbols; the sentence itself is plain text, for terminals.
+std::string typeset_sentence(const Certificate& certificate) {
+    std::string text = sentence(certificate);
+    for (const auto& [plain, symbol] :
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
+          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, std::string_view(plain).size(), symbol);
+    return text;
+}
+
+std::string explanation(const Event& event) {
+    if (event.kind == Event::Kind::release)
+        return fmt::format("release at t = {:.10g} s: the contact force falls through zero. Click: why", event.t);
+    const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
+    return fmt::format("Zeno point at t = {:.10g} s after {} impacts. {}", event.t, event.impacts, proof);
+}
+
+// In lines as wide as there is room, each with the gap before it.
+std::vector<Result> results_of(const Trajectory& trajectory, float width) {
+    constexpr std::size_t most = 400;  // more than anybody reads, and a frame has no time for
+    std::vector<Result> results;
+    int zeno = 0, line = 0;
+    float x = 0.0F;
+    for (const std::size_t turn : turns(trajectory)) {
+        if (results.size() == most) break;
+        const Event& event = trajectory.events[turn];
+        const std::string name = event.kind == Event::Kind::zeno ? fmt::format("Zeno {}", ++zeno) : "release";
+        Result result{turn, name + "  " + time_text(event)};
+        result.width = units(sign_width) + ImGui::CalcTextSize(result.text.c_str()).x;
+        if (x > 0.0F && x + result.width > width) x = 0.0F, ++line;
+        result.x = x;
+        result.line = line;
+        x += result.width + units(between);
+        results.push_back(result);
+    }
+    return results;
+}
+
+// The first line to show: that of the chosen event, or of the last one that the present has reached, stands among those
+// that are seen.
+int first_line(const Session& session, const std::vector<Result>& results, int lines_shown) {
+    int line = 0;
+    for (const Result& result : results) {
+        const bool is_chosen = session.selected() == static_cast<int>(result.event) + 1;
+        if (is_chosen || (session.selected() == 0 && session.trajectory().events[result.event].t <= session.time()))
+            line = result.line;
+    }
+    return std::clamp(line - lines_shown + 1, 0, std::max(0, results.back().line - lines_shown + 1));
+}
+
+void show_result(const Session& session, const Result& result, ImVec2 at, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[result.event];
+    const int number = static_cast<int>(result.event) + 1;
+    const float height = ImGui::GetTextLineHeightWithSpacing(), line = ImGui::GetTextLineHeight();
+    ImGui::SetCursorScreenPos(at);
+    ImGui::PushID(number);
+    const bool pressed = ImGui::InvisibleButton("result", {result.width, height});
+    ImGui::PopID();
+    remember(state, "result " + std::to_string(number));
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const bool is_chosen = session.selected() == number;
+    if (is_chosen || ImGui::IsItemHovered())
+        list->AddRectFilled({at.x - units(4.0F), at.y}, {at.x + result.width + units(4.0F), at.y + height},
+                            is_chosen ? ImGui::GetColorU32(ImGuiCol_Header) : packed(text_color(), 0.06F), units(3.0F));
+    const float top = at.y + 0.5F * (height - line);
+    paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), top + 0.5F * line},
+                 units(1.0F));
+    list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()), result.text.c_str());
+    tooltip(explanation(event));
+    if (pressed) commands.emplace_back(command::Select{is_chosen ? 0 : number});
+}
+
+void show_none(const Session& session, ImVec2 at, float width) {
+    const Trajectory& trajectory = session.trajectory();
+    const auto impacts = trajectory.statistics.impacts;
+    const std::string text = fmt::format("{}, no Zeno point until t = {:.6g} s",
+                                         impacts == 0   ? std::string("no impact")
+                                         : impacts == 1 ? std::string("one impact")
+                                                        : fmt::format("{} impacts", impacts),
+                                         trajectory.end_time);
+    ImGui::GetWindowDrawList()->AddText({at.x, at.y + units(1.0F)}, packed(faint_color()), fitted(text, width).c_str());
+}
+
+// To two digits, and not below what it was.
+std::string rounded_up(double bound) {
+    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
+    std::string text = fmt::format("{:.2g}", std::ceil(bound / unit) * unit);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
+}  // namespace
+
+std::string time_text(const Event& event) {
+    const bool is_proved = event.certificate && event.certificate->certified;
+    const double low = is_proved ? event.certificate->zeno_low : 0.0,
+                 high = is_proved ? event.certificate->zeno_high : 0.0;
+    const double half = 0.5 * (high - low);
+    if (!is_proved || !(half > 0.0)) return number(event.t, "{:.6f}");
+    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(half))), 0, 12);
+    const std::string text = fmt::format("{:.{}f}", event.t, digits);
+    const double value = std::strtod(text.c_str(), nullptr);
+    return text + " \u00b1 " + rounded_up(std::max(high - value, value - low));
+}
+
+float results_height(float width) {
+    return static_cast<float>(lines_in(width)) * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
+}
+
+void show_results(const Session& session, PanelState& state, Commands& commands) {
+    const Rectangle area = remaining();
+    ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
+                                              packed(session.theme().background), units(4.0F));
+    const float left = area.x + units(12.0F), width = area.width - units(24.0F);
+    const float height = ImGui::GetTextLineHeightWithSpacing();
+    const std::vector<Result> results = results_of(session.trajectory(), width);
+    if (results.empty()) return show_none(session, {left, area.y + units(padding)}, width);
+    const auto fitting = static_cast<int>((area.height - 2.0F * units(padding)) / height);
+    const int lines_shown = std::min(lines_in(area.width), fitting);
+    if (lines_shown < 1) return;
+    const int first = first_line(session, results, lines_shown);
+    // Results that are not shown: the last line has a word of them where it has room.
+    std::size_t hidden = turns(session.trajectory()).size() - results.size();
+    float end = left;
+    for (const Result& result : results) {
+        if (result.line < first || result.line >= first + lines_shown) {
+            ++hidden;
+            continue;
+        }
+        const float x = left + result.x;
+        show_result(session, result, {x, area.y + units(padding) + height * static_cast<float>(result.line - first)},
+                    state, commands);
+        end = x + result.width + units(between);
+    }
+    const std::string more = fmt::format("{} more", hidden);
+    if (hidden == 0 || end + ImGui::CalcTextSize(more.c_str()).x > left + width) return;
+    ImGui::SetCursorScreenPos(
+        {end, area.y + units(padding) + height * static_cast<float>(lines_shown - 1) + units(2.0F)});
+    ImGui::TextDisabled("%s", more.c_str());
+    tooltip("the list of events has them all");
+}
+
+}  // namespace achilles

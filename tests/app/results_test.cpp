@@ -1,0 +1,190 @@
+// The answer first: the strip of results, the list of events, the section Accuracy, and the configuration plane.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "app/hands.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+// Every event that is no impact can be pressed, and its text holds what is proved.
+TEST(Results, tell_every_time_and_how_well_it_is_known) {
+    Hands hands("ball_on_sine");
+    const auto& events = hands.session.trajectory().events;
+    for (std::size_t i = 0; i < events.size(); ++i)
+        EXPECT_EQ(hands.state.places.contains("result " + std::to_string(i + 1)), events[i].kind != Event::Kind::impact)
+            << i;
+    for (const char* system : {"ball_on_sine", "double_pendulum", "cart_pendulum", "ball_on_floor"}) {
+        const Session session = test::session(system);
+        for (const Event& event : session.trajectory().events) {
+            if (event.kind != Event::Kind::zeno) continue;
+            const std::string text = time_text(event);
+            const std::size_t sign = text.find(" \u00b1 ");
+            ASSERT_NE(sign, std::string::npos) << text;
+            const double value = std::strtod(text.c_str(), nullptr),
+                         off = std::strtod(text.c_str() + sign + 4, nullptr);
+            EXPECT_LE(value - off, event.certificate->zeno_low) << text;
+            EXPECT_GE(value + off, event.certificate->zeno_high) << text;
+            EXPECT_LT(off, 2.0 * (event.certificate->zeno_high - event.certificate->zeno_low) + 1e-12) << text;
+        }
+    }
+}
+
+TEST(Results, select_and_show_the_proof) {
+    Hands hands("ball_on_sine");
+    const auto& events = hands.session.trajectory().events;
+    std::size_t zeno = events.size();
+    while (events[--zeno].kind != Event::Kind::zeno) {
+    }
+    const std::string place = "result " + std::to_string(zeno + 1);
+    hands.point(place);
+    EXPECT_GT(hands.tooltip().height, 30.0F) << "the proof, in several lines";
+    EXPECT_TRUE(hands.all.empty());
+    hands.click(place);
+    EXPECT_EQ(hands.all, std::vector<Command>{command::Select{static_cast<int>(zeno) + 1}});
+    EXPECT_EQ(hands.session.time(), events[zeno].t);
+    hands.click(place);
+    EXPECT_EQ(hands.session.selected(), 0);
+}
+
+TEST(EventList, folds_impacts_until_a_click_opens_them) {
+    Hands hands("ball_on_sine");
+    EXPECT_FALSE(hands.state.places.contains("event 1"));
+    ASSERT_TRUE(hands.state.places.contains("impacts 1"));
+    EXPECT_TRUE(hands.state.places.contains("event 10"));
+    hands.click("impacts 1");
+    EXPECT_TRUE(hands.state.places.contains("event 1"));
+    EXPECT_TRUE(hands.all.empty()) << "that is no matter of the session";
+    hands.click("impacts 1");
+    hands.state.places.erase("event 1");
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("event 1"));
+    // An impact that is chosen elsewhere is seen.
+    hands.session.apply(command::Select{3});
+    hands.rest(3);
+    EXPECT_TRUE(hands.state.places.contains("event 3"));
+    hands.session.apply(command::Select{0});
+    hands.click("impacts", 0.1);
+    hands.rest(2);
+    EXPECT_TRUE(hands.state.places.contains("event 1"));
+}
+
+TEST(EventList, is_copied_as_a_table) {
+    Hands hands("double_pendulum");
+    hands.click("copy events");
+    std::string text;
+    hands.surface.step([&] {
+        text = ImGui::GetClipboardText();
+        explorer(hands.session, hands.state);
+    });
+    const auto& events = hands.session.trajectory().events;
+    std::vector<std::string> lines;
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1)
+        lines.push_back(text.substr(at, text.find('\n', at) - at));
+    ASSERT_EQ(lines.size(), events.size() + 1);
+    const auto tabs = [](const std::string& line) { return std::count(line.begin(), line.end(), '\t'); };
+    EXPECT_EQ(lines[0], "#\tevent\tt\timpact speed\ttheta1\ttheta2\ttheta1'\ttheta2'");
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        EXPECT_EQ(tabs(lines[i + 1]), tabs(lines[0]));
+        EXPECT_NE(lines[i + 1].find("\t" + fmt::format("{}", events[i].t) + "\t"), std::string::npos) << "every digit";
+    }
+}
+
+TEST(Accuracy, is_one_line_until_it_is_opened) {
+    Hands hands("ball_on_sine");
+    for (const char* place : {"eps", "tolerance", "conditions paper"}) EXPECT_FALSE(hands.state.places.contains(place));
+    EXPECT_TRUE(hands.state.places.contains("end"));
+    hands.click("accuracy");
+    for (const char* place : {"eps", "tolerance", "conditions paper"}) EXPECT_TRUE(hands.state.places.contains(place));
+    EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"accuracy", true})});
+}
+
+// At the least size that is promised, every number of the certificate is inside the card, and no scroll bar is needed.
+TEST(Card, shows_the_whole_certificate_in_a_small_window) {
+    for (const char* system : {"ball_on_sine", "double_pendulum"}) {
+        Hands hands(system, test::surface(1024, 700));
+        const auto& events = hands.session.trajectory().events;
+        std::size_t zeno = 0;
+        while (events[zeno].kind != Event::Kind::zeno) ++zeno;
+        hands.session.apply(command::Select{static_cast<int>(zeno) + 1});
+        hands.rest(3);
+        float hidden = -1.0F, beside = -1.0F;
+        hands.surface.step([&] {
+            explorer(hands.session, hands.state);
+            for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+                if (std::string(window->Name).find("/card_") != std::string::npos)
+                    hidden = window->ScrollMax.y, beside = window->ScrollMax.x;
+        });
+        EXPECT_EQ(hidden, 0.0F) << system;
+        EXPECT_EQ(beside, 0.0F) << system;
+    }
+}
+
+TEST(Plane, stands_in_place_of_a_drawing_and_of_any_mechanism) {
+    for (const char* system : {"double_pendulum", "ball_on_floor", "falling_rod", "ball_on_sine"}) {
+        Hands hands(system);
+        EXPECT_FALSE(hands.state.places.contains("plane"));
+        hands.click("show plane");
+        hands.rest(2);
+        EXPECT_TRUE(hands.state.places.contains("plane")) << system;
+        EXPECT_TRUE(hands.session.scene().shows("plane"));
+    }
+    // A text without a drawing has it from the beginning.
+    Hands hands("double_pendulum");
+    std::string text = hands.session.document().text;
+    text.erase(text.find("[[drawing]]"), text.find("[[view]]") - text.find("[[drawing]]"));
+    hands.session.apply(command::Text{text});
+    ASSERT_TRUE(hands.session.document().problems.empty());
+    hands.rest(2);
+    EXPECT_TRUE(hands.state.places.contains("plane"));
+}
+
+TEST(Plane, has_the_start_under_the_hand_at_every_step) {
+    for (const char* system : {"double_pendulum", "ball_on_sine", "ball_on_floor"}) {
+        Hands hands(system);
+        hands.session.apply(command::Show{"plane", true});
+        hands.rest(3);
+        hands.point("start");
+        hands.hand.left = true;
+        hands.rest(1);
+        for (int i = 0; i < 8; ++i) {
+            hands.hand.mouse_x -= 5.0;
+            hands.hand.mouse_y += 2.0;
+            hands.rest(2);
+            ASSERT_EQ(hands.session.error(), "") << system;
+            const Point start = hands.middle("start");
+            EXPECT_LT(std::hypot(start.x - hands.hand.mouse_x, start.y - hands.hand.mouse_y), 1.0) << system;
+        }
+        hands.hand.left = false;
+        hands.rest(2);
+        EXPECT_TRUE(hands.session.can_undo());
+        hands.hand.mouse_y = -1e6;
+        hands.rest(1);
+        hands.press_with_control('Z');
+        EXPECT_FALSE(hands.session.can_undo()) << "one change";
+    }
+}
+
+TEST(Plane, shades_where_the_gap_is_open) {
+    const Field field({{}, -2.0, 2.0, -1.0, 3.0}, [](const Point& p) { return p.y - p.x * p.x; });
+    double area = 0.0;
+    for (const std::vector<Point>& part : field.not_negative())
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const Point &a = part[i], &b = part[(i + 1) % part.size()];
+            area += 0.5 * (a.x * b.y - b.x * a.y);
+            EXPECT_GE(a.y - a.x * a.x, -1e-3);
+        }
+    // Between the parabola and y = 3: 4 sqrt(3).
+    EXPECT_NEAR(area, 4.0 * std::sqrt(3.0), 5e-3);
+    for (const Point& p : field.zero_line()) {
+        if (!std::isfinite(p.x)) continue;
+        EXPECT_NEAR(p.y, p.x * p.x, 1e-3);
+    }
+}
+
+}  // namespace
+}  // namespace achilles

@@ -1,0 +1,322 @@
+// The hand in the window: what it holds stays under it, a press on a mark means the event, Escape closes what is in front.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+#include "cli/dropped.hpp"
+#include "figure/axes.hpp"
+#include "output/output.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+Point mouse(const Hands& hands) { return {hands.hand.mouse_x, hands.hand.mouse_y}; }
+
+// Drags what is at a place along a way; at every step it must be where the hand is. Returns the largest distance.
+double follow(Hands& hands, const std::string& place, const std::vector<Point>& steps) {
+    hands.point(place);
+    hands.hand.left = true;
+    hands.rest(1);
+    double worst = 0.0;
+    for (const Point& step : steps) {
+        hands.hand.mouse_x += step.x;
+        hands.hand.mouse_y += step.y;
+        hands.rest(2);  // it is drawn where the last frame moved it
+        EXPECT_EQ(hands.session.error(), "");
+        worst = std::max(worst, distance(hands.middle(place), mouse(hands)));
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    return worst;
+}
+
+const std::vector<Point> up(12, Point{6.0, -9.0});
+
+TEST(Held, what_is_dragged_stays_under_the_hand_at_every_step) {
+    for (const char* system : {"ball_on_sine", "ball_in_bowl", "ball_on_floor"})
+        for (const double time : {0.0, 1.0}) {
+            Hands hands(system);
+            hands.session.apply(command::Seek{time});
+            hands.rest(2);
+            EXPECT_LT(follow(hands, "body", up), 1.0) << system << " at " << time;
+            EXPECT_EQ(hands.session.time(), 0.0);
+        }
+    // The tip of the velocity: twelve steps make it many times as long as it was.
+    for (const char* system : {"ball_on_sine", "ball_in_bowl"}) {
+        Hands hands(system);
+        EXPECT_LT(follow(hands, "velocity", std::vector<Point>(12, Point{9.0, -3.0})), 1.0) << system;
+    }
+}
+
+TEST(Held, every_body_of_a_mechanism_can_be_dragged) {
+    Hands hands("double_pendulum");
+    const double theta1 = *hands.session.value("theta1"), theta2 = *hands.session.value("theta2");
+    // The lower end, which both angles move, and then the knee, which one does.
+    ASSERT_TRUE(hands.state.places.contains("body 2"));
+    std::string lowest = "body";
+    for (const auto& [name, place] : hands.state.places)
+        if (name.rfind("body", 0) == 0 && place.y > hands.state.places.at(lowest).y) lowest = name;
+    EXPECT_LT(follow(hands, lowest, std::vector<Point>(8, Point{-2.0, -4.0})), 1.0);
+    EXPECT_NE(*hands.session.value("theta2"), theta2);
+    const double before = *hands.session.value("theta2");
+    follow(hands, "body", std::vector<Point>(4, Point{2.0, -1.0}));
+    EXPECT_NE(*hands.session.value("theta1"), theta1);
+    EXPECT_NEAR(*hands.session.value("theta2"), before, 1e-12);
+}
+
+TEST(Held, the_picture_moves_only_after_the_hand_lets_go) {
+    Hands hands("ball_on_sine");
+    hands.point("body");
+    hands.hand.left = true;
+    hands.rest(1);
+    for (int i = 0; i < 10; ++i) {
+        hands.hand.mouse_y -= 12.0;
+        hands.rest(1);
+    }
+    const Placement held = hands.state.held.placement;
+    hands.rest(3);
+    EXPECT_EQ(hands.state.held.placement.unit, held.unit);
+    const double y = hands.middle("body").y;
+    hands.hand.left = false;
+    hands.rest(3);
+    EXPECT_EQ(hands.state.held.what, HeldMechanism::What::nothing);
+    EXPECT_GT(std::abs(hands.middle("body").y - y), 5.0) << "all of the higher flight is seen";
+}
+
+TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
+    Hands hands("ball_on_sine");
+    const auto& events = hands.session.trajectory().events;
+    const auto index = [&](Event::Kind kind) {
+        std::size_t i = 0;
+        while (events[i].kind != kind) ++i;
+        return i;
+    };
+    const Rectangle line = hands.state.places.at("timeline");
+    const double end = hands.session.run().options.end_time;
+    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
+        for (const double slip : {-5.0, 0.0, 5.0}) {
+            const std::size_t wanted = index(kind);
+            hands.session.apply(command::Select{0});
+            hands.all.clear();
+            hands.hand.mouse_x = line.x + 8.0 + events[wanted].t / end * (line.width - 16.0) + slip;
+            hands.hand.mouse_y = line.y + 6.0 + 18.0 - (kind == Event::Kind::impact ? 4.0 : 8.0);
+            hands.rest(2);
+            EXPECT_GT(hands.tooltip().height, 0.0F) << "hovering names it";
+            hands.hand.left = true;
+            hands.rest(2);
+            hands.hand.left = false;
+            hands.rest(2);
+            EXPECT_EQ(hands.session.selected(), static_cast<int>(wanted) + 1) << slip;
+            EXPECT_EQ(hands.session.time(), events[wanted].t);
+            EXPECT_EQ(hands.all.size(), 1U) << "it is no seek";
+        }
+    // In a plot over time, and in a path: where the curve is at that event.
+    hands.session.apply(command::Select{0});
+    hands.rest(2);
+    for (const std::size_t plot : {1U, 3U})
+        for (const std::size_t wanted : {std::size_t{0}, index(Event::Kind::zeno), index(Event::Kind::release)}) {
+            hands.session.apply(command::Select{0});
+            hands.all.clear();
+            const PanelMap map(hands.session.plots()[plot], hands.state.places.at("plot " + std::to_string(plot)));
+            const auto values = hands.session.values(plot, sample_at(events[wanted]));
+            hands.hand.mouse_x = map.x(values[0]) + 4.0;
+            hands.hand.mouse_y = map.y(values[1]) - 3.0;
+            hands.rest(2);
+            EXPECT_GT(hands.tooltip().height, 0.0F);
+            hands.hand.left = true;
+            hands.rest(2);
+            hands.hand.left = false;
+            hands.rest(2);
+            EXPECT_EQ(hands.session.selected(), static_cast<int>(wanted) + 1) << plot;
+        }
+    // Far from every mark it seeks, as ever.
+    hands.session.apply(command::Select{0});
+    hands.click("timeline", 0.5);
+    EXPECT_EQ(hands.session.selected(), 0);
+    EXPECT_NEAR(hands.session.time(), 10.0, 0.1);
+}
+
+TEST(Marks, the_right_button_seeks_nothing_and_a_double_click_once) {
+    Hands hands("ball_on_sine");
+    hands.right_click("plot 1", 0.45);
+    EXPECT_EQ(hands.session.time(), 0.0);
+    hands.all.clear();
+    hands.double_click("plot 1", 0.45);
+    int seeks = 0, fits = 0;
+    for (const Command& command : hands.all) {
+        seeks += std::holds_alternative<command::Seek>(command) ? 1 : 0;
+        fits += std::holds_alternative<command::Fit>(command) ? 1 : 0;
+    }
+    EXPECT_EQ(seeks, 1);
+    EXPECT_EQ(fits, 1);
+}
+
+TEST(Escape, belongs_to_what_is_in_front) {
+    Hands hands("ball_on_sine");
+    hands.click("pin");
+    hands.press_with_control('O');
+    ASSERT_EQ(hands.state.editor.asking, EditorState::Asking::open);
+    hands.press(key::escape);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::nothing);
+    EXPECT_NE(hands.session.pinned(), nullptr) << "the dialog had it";
+    hands.double_click("value of set g");
+    hands.press(key::escape);
+    EXPECT_NE(hands.session.pinned(), nullptr) << "the field had it";
+    hands.press(key::escape);
+    EXPECT_EQ(hands.session.pinned(), nullptr);
+    // The lens first, then the card.
+    hands.session.apply(command::Select{10});
+    hands.session.apply(command::Show{"lens", true});
+    hands.rest(2);
+    hands.press(key::escape);
+    EXPECT_FALSE(hands.session.scene().shows("lens"));
+    EXPECT_EQ(hands.session.selected(), 10);
+    hands.press(key::escape);
+    EXPECT_EQ(hands.session.selected(), 0);
+}
+
+TEST(Escape, closes_menus) {
+    Hands hands("ball_on_sine");
+    for (const auto& [open, line] : {std::pair{"menu File", "menu Save"},
+                                     {"menu View", "menu Plots"},
+                                     {"systems", "open double_pendulum"},
+                                     {"menu of plot 1", "expression y"}}) {
+        hands.state.places.erase(line);
+        hands.click(open);
+        ASSERT_TRUE(hands.state.places.contains(line)) << open;
+        hands.press(key::escape);
+        hands.state.places.erase(line);
+        hands.rest(2);
+        EXPECT_FALSE(hands.state.places.contains(line)) << open;
+    }
+    EXPECT_TRUE(hands.all.empty());
+}
+
+TEST(PlotMenu, keeps_what_was_mistyped) {
+    Hands hands("ball_on_sine");
+    hands.click("menu of plot 2");
+    hands.click("expression y");
+    hands.press_with_control('A');
+    hands.type("y, max_y");
+    hands.press(key::enter);
+    EXPECT_NE(hands.session.error(), "");
+    EXPECT_EQ(hands.state.plot_menu.y, "y, max_y");
+    hands.state.places.erase("expression y");
+    hands.rest(2);
+    ASSERT_TRUE(hands.state.places.contains("expression y")) << "the menu is closed";
+    // The field has the hand still: it is mended at once, and the menu closes.
+    hands.press_with_control('A');
+    hands.type("y, gap");
+    hands.press(key::enter);
+    EXPECT_EQ(hands.session.error(), "");
+    EXPECT_EQ(hands.session.plotted().list()[1].view.y.size(), 2U);
+    hands.state.places.erase("expression y");
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.contains("expression y"));
+}
+
+TEST(Plots, no_grid_shows_a_plot_twice) {
+    for (const char* system : {"ball_on_sine", "double_pendulum", "ball_on_floor", "impact_oscillator", "falling_rod"})
+        for (const char* grid : {"grid 3 3", "grid 4 4"}) {
+            Session session = test::session(system);
+            // Nor one that the user has put there.
+            for (const char* line : {"grid 1 1", "plot 1 t energy", grid}) session.apply(parse_command(line));
+            ASSERT_EQ(session.error(), "");
+            std::set<std::string> shown;
+            for (const Plot& plot : session.plotted().list()) {
+                std::string text = plot.view.x.text;
+                for (const Text& y : plot.view.y) text += " " + y.text;
+                EXPECT_TRUE(shown.insert(text).second) << system << ", " << grid << ": " << text;
+            }
+        }
+}
+
+TEST(Plots, hues_are_of_curves_and_dashes_of_phases) {
+    Session session = test::session("ball_on_sine");
+    for (const char* theme : {"theme light", "theme dark"}) {
+        session.apply(parse_command(theme));
+        session.apply(parse_command("plot 1 t x y"));
+        const std::vector<Curve>& curves = session.plots()[0].curves;
+        for (std::size_t i = 0; i < 4; ++i) {
+            EXPECT_EQ(curves[i].stroke.dash.empty(), i % 2 == 1);
+            EXPECT_EQ(curves[i].stroke.color, curves[i - i % 2].stroke.color);
+            for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained})
+                EXPECT_NE(curves[i].stroke.color, phase_color(session.theme(), kind));
+        }
+    }
+}
+
+TEST(Pinned, goes_with_its_system) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Pin{true});
+    session.apply(command::Set{"e", 0.3});
+    ASSERT_NE(session.pinned(), nullptr);
+    session.apply(command::Open{"double_pendulum"});
+    EXPECT_EQ(session.pinned(), nullptr);
+}
+
+TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {
+    const test::Folder folder;
+    SystemSource library = test::library();
+    library.folder = folder.path().string();
+    Session session("ball_on_sine", test::system("ball_on_sine"), library);
+    const auto here = std::filesystem::current_path();
+    std::filesystem::current_path(folder.path());
+    session.apply(command::Export{"mine.svg", false});
+    std::filesystem::current_path(here);
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.notice(), (folder.path() / "mine.svg").string() + " is written");
+
+    Hands hands("ball_on_sine");
+    hands.click("menu File");
+    hands.click("menu Save as\u2026");
+    hands.press_with_control('A');
+    hands.type((folder.path() / "mine").string());
+    hands.press(key::enter);
+    EXPECT_EQ(hands.session.error(), "");
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "mine.toml"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "mine"));
+}
+
+// Dropped on the window, a picture leads to the session that it shows.
+TEST(Dropped, a_picture_opens_as_a_session) {
+    const test::Folder folder;
+    const std::string picture = (folder.path() / "a.png").string(), figure = (folder.path() / "b.svg").string();
+    ASSERT_EQ(
+        folder
+            .run(
+                "screenshot double_pendulum --set g=2 --end 9 --do 'grid 1 1' --do 'seek 2' --size 700x500 --out a.png")
+            .status,
+        0);
+    ASSERT_TRUE(is_picture(picture));
+    Session session = test::session("ball_on_sine");
+    for (const Command& command : session_in(picture)) session.apply(command);
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.description().title, test::system("double_pendulum").title);
+    EXPECT_EQ(*session.value("g"), 2.0);
+    EXPECT_EQ(session.run().options.end_time, 9.0);
+    EXPECT_EQ(session.time(), 2.0);
+    EXPECT_EQ(session.plotted().list().size(), 1U);
+    // A system that no file holds any more comes as a text without a file.
+    const std::string own = (folder.path() / "own.toml").string();
+    std::filesystem::copy_file(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_floor.toml", own);
+    ASSERT_EQ(folder.run("figure ./own.toml --set e=0.3 --view height --out b.svg").status, 0);
+    std::filesystem::remove(own);
+    Session other = test::session("ball_on_sine");
+    for (const Command& command : session_in(figure)) other.apply(command);
+    EXPECT_EQ(other.error(), "");
+    EXPECT_EQ(other.document().file, "");
+    EXPECT_EQ(*other.value("e"), 0.3);
+    EXPECT_EQ(other.plotted().list().size(), 1U);
+    EXPECT_THROW(session_in(ACHILLES_SOURCE_DIR "/README.md"), InputError);
+}
+
+}  // namespace
+}  // namespace achilles
