@@ -133,6 +133,30 @@ void show_heading(const Session& session, const std::vector<Axes>& all, const Re
     paint_label(list, left, row.y, meaning, faint_color(), size);
 }
 
+// The event whose marker is under the mouse, by its number; of a run with very many, no impact.
+std::optional<int> event_at(const Session& session, const Axes& axes, const PanelMap& map, const PlaneView& plane) {
+    constexpr std::size_t most = 20000;
+    const auto& events = session.trajectory().events;
+    const auto& quantities = plane.view->quantities();
+    NearestEvent nearest(ImGui::GetIO().MousePos, units(marker_reach));
+    for (std::size_t i = 0; i < events.size(); ++i) {
+        if (events.size() > most && events[i].kind == Event::Kind::impact) continue;
+        State state = sample_at(events[i]).state;
+        nearest.ask(static_cast<int>(i) + 1, events[i].kind, map.x(axes.first.of(state) * quantities[0].factor),
+                    map.y(axes.second.of(state) * quantities[1].factor));
+    }
+    return nearest.found();
+}
+
+// As in a plot: a click on a marker selects that event.
+void use_events(const Session& session, const Axes& axes, const PanelMap& map, const PlaneView& plane,
+                Commands& commands) {
+    if (ImGui::IsItemHovered() && !ImGui::IsAnyMouseDown())
+        if (const auto event = event_at(session, axes, map, plane)) name_event(session, *event);
+    if (!ImGui::IsItemActivated()) return;
+    if (const auto event = event_at(session, axes, map, plane)) commands.emplace_back(command::Select{*event});
+}
+
 // The start under the hand: what it holds stays there, and the axes stand still until it lets go.
 void use_mouse(const Session& session, const Axes& axes, const Panel& panel, const PanelMap& map, const Point& start,
                PanelState& state, Commands& commands) {
@@ -143,6 +167,7 @@ void use_mouse(const Session& session, const Axes& axes, const Panel& panel, con
         ImGui::GetWindowDrawList()->AddCircle(pixel(start), units(11.0F), packed(text_color(), 0.5F), 32, units(1.5F));
         tooltip("drag: where the run starts");
     }
+    if (!is_near && !plane.is_held) use_events(session, axes, map, plane, commands);
     if (ImGui::IsItemActivated() && is_near) {
         plane.is_held = true;
         plane.offset = {start.x - mouse.x, start.y - mouse.y};

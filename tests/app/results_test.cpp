@@ -5,6 +5,8 @@
 #include <cstdlib>
 
 #include "app/hands.hpp"
+#include "figure/axes.hpp"
+#include "number/angle.hpp"
 
 namespace achilles {
 namespace {
@@ -166,6 +168,28 @@ TEST(Plane, has_the_start_under_the_hand_at_every_step) {
         hands.rest(1);
         hands.press_with_control('Z');
         EXPECT_FALSE(hands.session.can_undo()) << "one change";
+    }
+}
+
+TEST(Plane, selects_the_event_that_is_clicked) {
+    Hands hands("double_pendulum");
+    hands.session.apply(command::Show{"plane", true});
+    hands.rest(3);
+    const auto& events = hands.session.trajectory().events;
+    for (std::size_t wanted = 0; wanted < events.size(); ++wanted) {
+        if (events[wanted].kind != Event::Kind::release) continue;
+        const PanelMap map(*hands.state.plane.panel, hands.state.places.at("plane"));
+        hands.hand.mouse_x = map.x(degrees(events[wanted].q[0])) + 3.0;
+        hands.hand.mouse_y = map.y(degrees(events[wanted].q[1])) - 3.0;
+        hands.hand.left = true;
+        hands.rest(2);
+        hands.hand.left = false;
+        hands.rest(2);
+        ASSERT_GT(hands.session.selected(), 0);
+        const auto found = static_cast<std::size_t>(hands.session.selected() - 1);
+        EXPECT_EQ(events[found].kind, Event::Kind::release);
+        EXPECT_EQ(hands.session.time(), events[found].t);
+        EXPECT_EQ(*hands.session.value("theta1"), hands.session.file_run().q[0]) << "the start stays";
     }
 }
 
