@@ -29,8 +29,9 @@ struct Result {
 std::string typeset_sentence(const Certificate& certificate) {
     std::string text = sentence(certificate);
     for (const auto& [plain, symbol] :
-         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "},
-          std::pair{"e-0", "e\u22120"}, std::pair{"e-1", "e\u22121"}})
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},
+          std::pair{"; ", "\n"}, std::pair{" - ", " \u2212 "}, std::pair{"e-0", "e\u22120"},
+          std::pair{"e-1", "e\u22121"}})
         for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
             text.replace(at, std::string_view(plain).size(), symbol);
     return text;
@@ -40,7 +41,7 @@ std::string explanation(const Event& event) {
     if (event.kind == Event::Kind::release)
         return fmt::format("release at t = {:.10g} s: the contact force falls through zero. Click: why", event.t);
     const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
-    return fmt::format("Zeno point at t = {:.10g} s after {} impacts. {}", event.t, event.impacts, proof);
+    return fmt::format("Zeno point at t = {:.10g} s after {} impacts\n{}", event.t, event.impacts, proof);
 }
 
 // In lines as wide as there is room, each with the gap before it.
@@ -76,7 +77,8 @@ int first_line(const Session& session, const std::vector<Result>& results, int l
     return std::clamp(line - lines_shown + 1, 0, std::max(0, results.back().line - lines_shown + 1));
 }
 
-void show_result(const Session& session, const Result& result, ImVec2 at, PanelState& state, Commands& commands) {
+void show_result(const Session& session, const Result& result, ImVec2 at, const Rectangle& strip, PanelState& state,
+                 Commands& commands) {
     const Event& event = session.trajectory().events[result.event];
     const int number = static_cast<int>(result.event) + 1;
     const float height = ImGui::GetTextLineHeightWithSpacing(), line = ImGui::GetTextLineHeight();
@@ -94,7 +96,7 @@ void show_result(const Session& session, const Result& result, ImVec2 at, PanelS
     paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), top + 0.5F * line},
                  units(1.0F));
     list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()), result.text.c_str());
-    tooltip(explanation(event));
+    tooltip(explanation(event), {at.x, strip.y, result.width, strip.height});  // the other results stay in sight
     if (pressed) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
 
@@ -157,7 +159,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
         }
         const float x = left + result.x;
         show_result(session, result, {x, area.y + units(padding) + height * static_cast<float>(result.line - first)},
-                    state, commands);
+                    area, state, commands);
         end = x + result.width + units(between);
     }
     const std::string more = fmt::format("{} more", hidden);

@@ -51,32 +51,58 @@ void section(const char* title, float free) {
     ImGui::GetWindowDrawList()->AddLine({high.x + units(8.0F), y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Border));
 }
 
-void tooltip(const std::string& text) {
-    if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
-    // While the hand works it would cover what changes.
-    if (ImGui::IsAnyMouseDown()) return;
-    constexpr float wrap = 360.0F;
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(),
-                 padding = ImGui::GetStyle().WindowPadding;
-    const ImVec2 all = ImGui::GetIO().DisplaySize;
-    // Over a line of a panel: below all of it, or above, so that the value beside stays in sight. Over a line of a menu:
-    // beside the menu.
-    if (high.y - low.y < units(40.0F)) {
-        const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(wrap));
-        const ImVec2 size{words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
-        const float gap = units(4.0F);
-        const bool in_menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-        ImVec2 at{low.x, high.y + gap};
-        if (in_menu) at = {ImGui::GetWindowPos().x + ImGui::GetWindowWidth() + gap, low.y};
-        if (at.y + size.y > all.y) at.y = std::max(0.0F, (in_menu ? all.y : low.y - gap) - size.y);
-        at.x = std::clamp(at.x, 0.0F, std::max(0.0F, all.x - size.x));
-        ImGui::SetNextWindowPos({std::floor(at.x), std::floor(at.y)});
-    }
+namespace {
+
+constexpr float tooltip_width = 360.0F;
+
+bool wants_tooltip(const std::string& text) {
+    // While the hand works, or letters are typed, it would cover what changes.
+    return !text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !ImGui::IsAnyMouseDown() &&
+           !ImGui::IsItemActive();
+}
+
+void show_tooltip(const std::string& text) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(units(wrap));
+    ImGui::PushTextWrapPos(units(tooltip_width));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
+}
+
+ImVec2 tooltip_size(const std::string& text) {
+    const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(tooltip_width));
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    return {words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
+}
+
+// The next tooltip's corner, as near to this as the surface has room.
+void place_tooltip(const ImVec2& at, const ImVec2& size) {
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({std::floor(std::clamp(at.x, 0.0F, std::max(0.0F, all.x - size.x))),
+                             std::floor(std::clamp(at.y, 0.0F, std::max(0.0F, all.y - size.y)))});
+}
+
+}  // namespace
+
+void tooltip(const std::string& text, const Rectangle& clear) {
+    if (!wants_tooltip(text)) return;
+    const ImVec2 size = tooltip_size(text), all = ImGui::GetIO().DisplaySize;
+    const float gap = units(4.0F), below = clear.y + clear.height + gap;
+    place_tooltip({clear.x, below + size.y <= all.y ? below : clear.y - gap - size.y}, size);
+    show_tooltip(text);
+}
+
+void tooltip(const std::string& text) {
+    if (!wants_tooltip(text)) return;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // where the mouse is
+    const bool in_menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (!in_menu) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});
+    // Beside the menu: it covers no other line.
+    const ImVec2 size = tooltip_size(text), window = ImGui::GetWindowPos();
+    const float gap = units(4.0F), right = window.x + ImGui::GetWindowWidth() + gap;
+    place_tooltip({right + size.x <= ImGui::GetIO().DisplaySize.x ? right : window.x - gap - size.x, low.y}, size);
+    show_tooltip(text);
 }
 
 bool take_escape(PanelState& state) { return std::exchange(state.escape, false); }
@@ -114,9 +140,13 @@ void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
 
 void name_event(const Session& session, int number) {
     const Event& event = session.trajectory().events[static_cast<std::size_t>(number - 1)];
-    ImGui::SetTooltip("%s, event %d, t = %s s\nclick: select it",
-                      event_markers(session.theme(), event.kind).label.c_str(), number,
-                      achilles::number(event.t, "{:.9g}").c_str());
+    const std::string text =
+        fmt::format("{}, event {}, t = {} s\nclick: select it", event_markers(session.theme(), event.kind).label,
+                    number, achilles::number(event.t, "{:.9g}"));
+    const ImVec2 size = tooltip_size(text), mouse = ImGui::GetIO().MousePos;
+    const float above = mouse.y - size.y - units(12.0F);
+    place_tooltip({mouse.x + units(12.0F), above >= 0.0F ? above : mouse.y + units(20.0F)}, size);
+    show_tooltip(text);
 }
 
 std::string number(double value, const char* format) {

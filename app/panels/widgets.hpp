@@ -27,6 +27,8 @@ void label(const std::string& text, float width);
 void section(const char* title, float free = 0.0F);
 // A tooltip for the last item, wrapped; none while a mouse button is down. It covers no line of a panel that it is about.
 void tooltip(const std::string& text);
+// The same, below or above this part of the surface, none of which it covers.
+void tooltip(const std::string& text, const Rectangle& clear);
 // Whether Escape was pressed for what asks first, and for nothing in front of it: a menu, a dialog, a text field.
 bool take_escape(PanelState& state);
 // Within a menu: Escape closes it.
