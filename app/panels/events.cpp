@@ -33,8 +33,10 @@ class Rows {
     };
     Rows(const Session& session, const PanelState& state) {
         const Trajectory& trajectory = session.trajectory();
+        const std::vector<std::size_t> all_turns = turns(trajectory);
+        folds_ = !state.show_impacts && !all_turns.empty();  // where there are only impacts each is seen
         std::size_t next = 0;
-        for (const std::size_t turn : turns(trajectory)) {
+        for (const std::size_t turn : all_turns) {
             add_impacts(session, state, next, turn - next);
             add({turn, 1, false, false, 0});
             next = turn + 1;
@@ -75,11 +77,12 @@ class Rows {
         if (count == 0) return;
         const auto chosen = static_cast<std::size_t>(std::max(session.selected() - 1, 0));
         const bool has_chosen = session.selected() > 0 && chosen >= first && chosen < first + count;
-        add({first, count, count > 1 && !state.show_impacts, has_chosen || state.unfolded.contains(first), 0});
+        add({first, count, count > 1 && folds_, has_chosen || state.unfolded.contains(first), 0});
     }
 
     std::vector<Part> parts_;
     std::size_t count_ = 0;
+    bool folds_ = true;
 };
 
 // The index of the event that the user chose, which is shown with its reasons; or none.

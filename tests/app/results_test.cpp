@@ -75,6 +75,14 @@ TEST(EventList, folds_impacts_until_a_click_opens_them) {
     EXPECT_TRUE(hands.state.places.contains("event 1"));
 }
 
+TEST(EventList, shows_every_impact_where_there_is_nothing_else) {
+    Hands hands("ball_on_floor");
+    EXPECT_FALSE(hands.state.places.contains("event 1"));
+    hands.session.apply(command::Set{"e", 0.999});
+    hands.rest(3);
+    EXPECT_TRUE(hands.state.places.contains("event 1"));
+}
+
 TEST(EventList, is_copied_as_a_table) {
     Hands hands("double_pendulum");
     hands.click("copy events");
