@@ -214,8 +214,10 @@ void drag_body(const Session& session, const Picture& picture, const HeldMechani
     auto grips = session.mechanism().grips(session.run().parameters);
     if (held.grip >= grips.size()) return;
     const Point place = picture.placement.world(wanted(held));
-    if (const auto q = held_at(grips[held.grip], {session.run().q, session.run().v}, place))
-        commands.emplace_back(start_of(session, &*q, nullptr));
+    if (const auto wanted_q = held_at(grips[held.grip], {session.run().q, session.run().v}, place)) {
+        const Vector q = start_towards(session, *wanted_q);
+        commands.emplace_back(start_of(session, &q, nullptr));
+    }
 }
 
 void drag_arrow(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {

@@ -182,8 +182,12 @@ void use_mouse(const Session& session, const Axes& axes, const Panel& panel, con
     if (session.time() > 0.0) commands.emplace_back(command::Seek{0.0});
     const Point to = map.data({mouse.x + plane.offset.x, mouse.y + plane.offset.y});
     const auto& quantities = plane.view->quantities();
-    commands.emplace_back(command::Start{
-        {{axes.first.name, to.x / quantities[0].factor}, {axes.second.name, to.y / quantities[1].factor}}});
+    State wanted{session.run().q, session.run().v};
+    axes.first.of(wanted) = to.x / quantities[0].factor;
+    axes.second.of(wanted) = to.y / quantities[1].factor;
+    wanted.q = start_towards(session, wanted.q);
+    commands.emplace_back(
+        command::Start{{{axes.first.name, axes.first.of(wanted)}, {axes.second.name, axes.second.of(wanted)}}});
 }
 
 }  // namespace

@@ -60,6 +60,9 @@ class NearestEvent {
 };
 // A tooltip beside the mouse that says which event this is.
 void name_event(const Session& session, int number);
+// On the way from the start that there is to this one, as far as a run can start: a hand that pushes a body into the ground
+// holds it on the surface.
+Vector start_towards(const Session& session, const Vector& q);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
 

@@ -71,6 +71,28 @@ TEST(Held, every_body_of_a_mechanism_can_be_dragged) {
     EXPECT_NEAR(*hands.session.value("theta2"), before, 1e-12);
 }
 
+TEST(Held, a_body_that_is_pushed_into_the_ground_stays_on_it) {
+    for (const char* place : {"body", "start"}) {
+        Hands hands("ball_on_floor");
+        if (std::string(place) == "start") hands.session.apply(command::Show{"plane", true});
+        hands.rest(3);
+        hands.point(place);
+        hands.hand.left = true;
+        hands.rest(1);
+        for (int i = 0; i < 40; ++i) {
+            hands.hand.mouse_y += 12.0;
+            hands.rest(1);
+            ASSERT_EQ(hands.session.error(), "") << place;
+        }
+        const double radius = *hands.session.value("r");
+        EXPECT_GE(*hands.session.value("y"), radius - 1e-12) << place;
+        EXPECT_LT(*hands.session.value("y"), radius + 1e-6) << place;
+        hands.hand.mouse_y -= 480.0;  // and up again: under the hand
+        hands.rest(2);
+        EXPECT_NEAR(*hands.session.value("y"), 1.0, 0.02) << place;
+    }
+}
+
 TEST(Held, the_picture_moves_only_after_the_hand_lets_go) {
     Hands hands("ball_on_sine");
     hands.point("body");
