@@ -182,11 +182,11 @@ TEST(Description, columns_count_characters_not_bytes) {
 
 TEST(Description, columns_inside_an_expression_count_characters) {
     std::string text = title + least;
-    text.replace(text.find("\"x\"\n[[c"), 3, "\"x*\xCE\xB8 + # y\"");
+    text.replace(text.find("\"x\"\n[[c"), 3, "\"x*\xC3\xA9 + # y\"");
     EXPECT_EQ(message_of(text).substr(0, 25), "f.toml:8:16: unexpected '");
-    text = title + coordinate + energies + "[[constraint]]\ngap = \"x\"\nrestitution = \"1 \xCE\xB8\"\n";
+    text = title + coordinate + energies + "[[constraint]]\ngap = \"x\"\nrestitution = \"1 \xC3\xA9\"\n";
     EXPECT_EQ(message_of(text),
-              "f.toml:11:18: unexpected '\xCE\xB8'\n    restitution = \"1 \xCE\xB8\"\n                     ^");
+              "f.toml:11:18: unexpected '\xC3\xA9'\n    restitution = \"1 \xC3\xA9\"\n                     ^");
 }
 
 TEST(Description, expressions_know_where_they_start) {
