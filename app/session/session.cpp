@@ -131,6 +131,8 @@ void Session::begin_document(Document document) {
         placed_.reset();
         pinned_.reset();  // a run of another system is nothing to compare with
         change_system(system, Plots(system->model), run);
+        for (const std::string& told : outside_ranges(description, run))
+            notice_ += (notice_.empty() ? "" : "; ") + told;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
         scene_.perform(command::Show{"editor", true});

@@ -83,6 +83,13 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
               "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg");
     session.apply(parse_command("set m1 2"));
     EXPECT_EQ(session.notice(), "") << "it was told once";
+    // A file that is opened with such a value is no other case.
+    const test::Folder folder;
+    std::string text = read_text(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
+    text.replace(text.find("range = ["), 9, "range = [1, 2] # ");
+    folder.put("outside.toml", text);
+    session.apply(command::Open{(folder.path() / "outside.toml").string()});
+    EXPECT_EQ(session.notice(), "x = 0 m is outside its range, 1 to 2");
 }
 
 TEST(Session, options_change_the_run) {
