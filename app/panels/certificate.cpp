@@ -78,8 +78,8 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
 std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
-    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high) + " s");
-    lines.push_back(fmt::format("from the cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
+    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
+    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
                                 bound_text(c.velocity_bound)));
     if (c.uniform_position)
         lines.push_back(fmt::format("drawn until \u03c4\u221e: q true to {}", bound_text(*c.uniform_position)));
