@@ -40,12 +40,18 @@ std::vector<fs::path> files_in(const char* folder, const char* extension) {
     return files;
 }
 
+bool is_path(const fs::path& path, const char* extension) {
+    std::error_code problem;
+    return path.has_parent_path() || path.extension() == extension || fs::is_regular_file(path, problem);
+}
+
+constexpr const char *of_systems = ".toml", *of_journals = ".journal";
+
 // A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
 // to tell.
 fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const char* kind, const char* extension) {
-    std::error_code problem;
     const fs::path path{std::string(wanted)};
-    if (path.has_parent_path() || path.extension() == extension || fs::is_regular_file(path, problem)) return path;
+    if (is_path(path, extension)) return path;
     std::vector<std::string> names;
     for (const fs::path& file : files) {
         if (file.stem() == path) return file;
@@ -58,9 +64,9 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
 
 }  // namespace
 
-std::vector<fs::path> system_files() { return files_in("systems", ".toml"); }
+std::vector<fs::path> system_files() { return files_in("systems", of_systems); }
 
-std::vector<fs::path> journal_files() { return files_in("journals", ".journal"); }
+std::vector<fs::path> journal_files() { return files_in("journals", of_journals); }
 
 std::vector<fs::path> manual_files() { return files_in("manual", ".md"); }
 
@@ -70,8 +76,12 @@ std::vector<std::string> system_names() {
     return names;
 }
 
-fs::path find_system(std::string_view system) { return find(system, system_files(), "system", ".toml"); }
+bool is_system_path(std::string_view system) { return is_path(std::string(system), of_systems); }
 
-fs::path find_journal(std::string_view journal) { return find(journal, journal_files(), "journal", ".journal"); }
+bool is_journal_path(std::string_view journal) { return is_path(std::string(journal), of_journals); }
+
+fs::path find_system(std::string_view system) { return find(system, system_files(), "system", of_systems); }
+
+fs::path find_journal(std::string_view journal) { return find(journal, journal_files(), "journal", of_journals); }
 
 }  // namespace achilles

@@ -25,6 +25,10 @@ std::filesystem::path find_journal(std::string_view journal);
 // The pages of the manual.
 std::vector<std::filesystem::path> manual_files();
 
+// Whether SYSTEM or JOURNAL is a path, there or not, rather than the name of one of the assets.
+bool is_system_path(std::string_view system);
+bool is_journal_path(std::string_view journal);
+
 // The file of SYSTEM, a path or a name. Throws InputError with the nearest name and the list of names.
 std::filesystem::path find_system(std::string_view system);
 

@@ -1,8 +1,11 @@
 // The explorer's two surfaces: a window that lives by the clock, and a picture that knows no clock.
 #include "cli/explore.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -123,11 +126,15 @@ class Clock {
 class Explorer {
  public:
     Explorer(Session& session, Window& window, const ExploreOptions& options)
-        : session_(session), window_(window), state_(panel_state(true)) {
+        : session_(session),
+          window_(window),
+          state_(panel_state(true)),
+          trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
     }
 
+    // What is done at the start, at a tour's pace: journals that the command line names, and what it says itself.
     void begin(const std::vector<Command>& journal) {
         tour_.begin(journal);
         session_.set_patience({});  // a journal tells what was done after each run: every run is waited for
@@ -141,8 +148,12 @@ class Explorer {
         pass_time();
         std::vector<Command> commands = explorer(session_, state_);
         for (Command& command : dropped(window_, session_, state_)) commands.push_back(std::move(command));
-        if (!commands.empty()) lead_on(PanelState::OnTour::stop);  // the hand takes over
+        if (!commands.empty()) {
+            lead_on(PanelState::OnTour::stop);  // the hand takes over
+            replayed_ = 0;
+        }
         for (const Command& command : commands) take(command);
+        take_answer();
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
         // A run that is under way is asked now and then how far it is.
@@ -156,11 +167,11 @@ class Explorer {
 
  private:
     void pass_time() {
-        if (!session_.playing() && !tour_.runs()) return clock_.stop();
+        if ((!session_.playing() && !tour_.runs()) || state_.journal_question) return clock_.stop();
         const double seconds = clock_.elapsed();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (!tour_.runs()) return play_on(session_, seconds);
-        for (const Command& command : tour_.advance(seconds)) take(command);
+        for (const Command& command : tour_.advance(seconds)) take_from_tour(command);
         if (!tour_.runs()) stop_tour();
     }
 
@@ -172,17 +183,54 @@ class Explorer {
             return;
         }
         try {
-            begin(is_picture(replay->journal) ? session_in(replay->journal)
-                                              : read_journal(find_journal(replay->journal)));
+            if (is_picture(replay->journal))
+                begin(session_in(replay->journal));
+            else
+                replay_file(find_journal(replay->journal));
         } catch (const InputError& problem) {
-            stop_tour();
-            session_.refuse(problem);
+            give_up(problem);
         }
+    }
+
+    // A journal saves no text that is no system.
+    void take_from_tour(const Command& command) {
+        if (std::holds_alternative<command::Save>(command) && !session_.document().problems.empty())
+            return give_up(session_.document().problems.front());
+        take(command);
+    }
+
+    void give_up(const InputError& problem) {
+        stop_tour();
+        session_.refuse(problem);
+    }
+
+    // What it wants of files is asked once. Those that one journal replays were named by it, and are asked about as well.
+    void replay_file(const std::filesystem::path& file) {
+        const auto answer = answers_.find(std::filesystem::absolute(file));
+        Trust trust = trust_;
+        if (answer != answers_.end() && answer->second) trust.files = Trust::Files::allowed;
+        try {
+            const std::vector<Command> journal = parse_trusted(journal_file(file), file.string(), trust);
+            replayed_ += journal.size();
+            if (replayed_ > most_replayed)
+                throw Forbidden(file.string(), {}, fmt::format("a session replays at most {} commands", most_replayed));
+            begin(journal);
+        } catch (const Forbidden& problem) {
+            if (problem.wants.empty() || answer != answers_.end()) throw;
+            state_.journal_question = JournalQuestion{file.string(), problem.wants, {}};
+        }
+    }
+
+    void take_answer() {
+        if (!state_.journal_question || !state_.journal_question->answer) return;
+        const JournalQuestion question = *std::exchange(state_.journal_question, std::nullopt);
+        answers_[std::filesystem::absolute(question.journal)] = *question.answer;
+        take(command::Replay{question.journal});
     }
 
     void lead_on(PanelState::OnTour wanted) {
         if (wanted == PanelState::OnTour::next)
-            for (const Command& command : tour_.next()) take(command);
+            for (const Command& command : tour_.next()) take_from_tour(command);
         if (wanted == PanelState::OnTour::stop && tour_.runs()) {
             stop_tour();
             take(command::Say{""});
@@ -213,6 +261,9 @@ class Explorer {
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
+    Trust trust_;
+    std::map<std::filesystem::path, bool> answers_;  // whether a journal may use files
+    std::size_t replayed_ = 0;                       // commands of journals since the hand did something
     Clock clock_;
     double waited_ = 0.0;
 };
@@ -220,16 +271,17 @@ class Explorer {
 }  // namespace
 
 int explore(const ExploreOptions& options) {
-    std::vector<Command> journal;
-    if (!options.journal.empty()) journal = read_journal(find_journal(options.journal));
-    const std::vector<Command> more = parse_steps(options.steps);
-    journal.insert(journal.end(), more.begin(), more.end());
+    std::vector<Command> journal = parse_steps(options.steps);
+    if (!options.journal.empty()) {
+        read_journal(find_journal(options.journal));  // its mistakes are told before there is a window
+        journal.insert(journal.begin(), command::Replay{options.journal});
+    }
+    if (!options.record.empty()) refuse_record(options.record);
     const std::string name = options.system ? *options.system : first_system();
     SystemSource library;
     library.find = find_system;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
-    library.journal = [](const std::string& wanted) { return journal_file(find_journal(wanted)); };
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window(surface_options(options), "Achilles");
@@ -245,16 +297,26 @@ int explore(const ExploreOptions& options) {
 }
 
 int screenshot(const ScreenshotOptions& options, PictureJob& job) {
+    job.check_size(options.width, options.height);
     job.add(options.out);
+    if (!options.record.empty() && !job.reproduces()) {
+        refuse_record(options.record);
+        job.add(options.record);
+    }
     Inputs& inputs = job.inputs();
     std::vector<Command> journal;
-    if (!options.journal.empty()) journal = parse_journal(inputs.journal(options.journal), options.journal);
+    inputs.trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal}));
+    if (!options.journal.empty()) journal = inputs.journal(options.journal);
     const std::string name = options.system     ? *options.system
                              : job.reproduces() ? inputs.first_system()
                                                 : first_system();
     Session session = open_session(name, inputs.system(name), options.settings, options.overrides, source_of(job), {});
+    std::vector<Command> record = opening(session, options);
+    const std::vector<Command> more = inputs.steps(options.steps);
+    journal.insert(journal.end(), more.begin(), more.end());
+    record.insert(record.end(), journal.begin(), journal.end());
     for (const Command& command : journal) session.apply(command);
-    for (const Command& command : parse_steps(options.steps)) session.apply(command);
+    if (!options.record.empty()) job.put_text(options.record, journal_text(record));
     PanelState state = panel_state(false);
     job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
         Offscreen surface(surface_options(options));

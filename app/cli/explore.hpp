@@ -16,6 +16,7 @@ struct ExploreOptions {
     OptionOverrides overrides;          // --end and its kin; they hold for every system that is opened
     std::string journal;                // replayed at the start, a path or a name; empty: none
     std::vector<std::string> steps;     // --do COMMAND, after the journal
+    bool allow_files = false;           // journals may use files unasked
     std::string record;                 // where the session is written as a journal; empty: nowhere
     int width = 1600, height = 1000;    // pixels
     double scale = 1.0;                 // of text and strokes

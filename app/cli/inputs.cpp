@@ -1,9 +1,10 @@
 #include "cli/inputs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "cli/assets.hpp"
-#include "journal/journal.hpp"
 #include "model/read_system.hpp"
 
 namespace achilles {
@@ -35,7 +36,7 @@ std::string Inputs::text(const std::string& name) {
         return source.text;
     }
     try {
-        kept_.push_back({Source::Kind::system, name, read_text(find_system(name))});
+        kept_.push_back({Source::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
     } catch (const InputError& error) {
         kept_.push_back({Source::Kind::refusal, name, error.what()});
         throw;
@@ -47,10 +48,34 @@ std::string Inputs::text(const std::string& name) {
 // where the assets are.
 SystemDescription Inputs::system(const std::string& name) { return parse_system(text(name), name); }
 
-std::string Inputs::journal(const std::string& path) {
+std::string Inputs::journal_text(const std::string& path) {
     if (from_picture_) return next(path, true).text;
-    kept_.push_back({Source::Kind::journal, path, journal_file(find_journal(path))});
+    kept_.push_back({Source::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
     return kept_.back().text;
+}
+
+std::vector<Command> Inputs::journal(const std::string& path) {
+    std::vector<Command> commands = parse_trusted(journal_text(path), path, trust_);
+    count(path, commands);
+    return commands;
+}
+
+std::vector<Command> Inputs::steps(const std::vector<std::string>& lines) {
+    std::vector<Command> commands = parse_steps(lines);
+    if (from_picture_) count("--do", commands);
+    return commands;
+}
+
+// Every command that is done was counted when it was read, so journals that replay one another come to an end.
+void Inputs::count(const std::string& name, const std::vector<Command>& commands) {
+    replayed_ += commands.size();
+    if (replayed_ > most_replayed)
+        throw Forbidden(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
+    changes_ += static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), [](const Command& command) {
+        return change_of(command) == command::Change::together || change_of(command) == command::Change::alone;
+    }));
+    if (from_picture_ && changes_ > most_changes)
+        throw Forbidden(name, {}, fmt::format("a picture is made again with at most {} changes", most_changes));
 }
 
 std::string Inputs::first_system() const {

@@ -7,9 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "journal/journal.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
+
+// A change may make another run: those of a stranger's picture are fewer than what a session may replay.
+constexpr std::size_t most_changes = 1000;
 
 struct Source {
     enum class Kind { system, journal, refusal };  // refusal: what was said instead of a system that could not be read
@@ -21,22 +25,38 @@ struct Source {
 class Inputs {
  public:
     Inputs() = default;
-    explicit Inputs(std::vector<Source> kept) : kept_(std::move(kept)), from_picture_(true) {}
+    explicit Inputs(std::vector<Source> kept)
+        : kept_(std::move(kept)), from_picture_(true), trust_{Trust::Files::imagined, {}} {}
+
+    // What the journals may do with files: nothing, until this is said. A picture's have no file to lose.
+    void trust(const Trust& trust) {
+        if (!from_picture_) trust_ = trust;
+    }
 
     // The text of a system by path or name, and read. What a name stands for may change while a journal saves files:
     // every time it is asked for counts. Throw InputError.
     std::string text(const std::string& name);
     SystemDescription system(const std::string& name);
-    std::string journal(const std::string& path);
+    // The commands of a journal. Throws Forbidden for what it may not, and where all of them together are too many.
+    std::vector<Command> journal(const std::string& path);
+    // Commands that are no journal's; those of a picture count, too.
+    std::vector<Command> steps(const std::vector<std::string>& lines);
     // The first that was asked for: where a command line names none, a picture tells.
     std::string first_system() const;
     const std::vector<Source>& kept() const { return kept_; }
+    // From the disk.
+    const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
 
  private:
     const Source& next(const std::string& name, bool is_journal);
+    std::string journal_text(const std::string& path);
+    void count(const std::string& name, const std::vector<Command>& commands);
 
     std::vector<Source> kept_;
+    std::vector<std::filesystem::path> files_read_;
     bool from_picture_ = false;
+    Trust trust_;
+    std::size_t replayed_ = 0, changes_ = 0;                     // commands, and those of them that make another run
     std::map<std::pair<std::string, bool>, std::size_t> asked_;  // how often, of a picture
 };
 

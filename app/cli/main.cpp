@@ -10,6 +10,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/terminal.hpp"
 #include "expression/nearest.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
@@ -79,7 +80,7 @@ int run(std::vector<std::string> words) {
         return status;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);
-        fmt::print(stderr, "achilles: {}\n", told(error, program));
+        print_clean(stderr, "achilles: {}\n", told(error, program));
     }
     return bad_input;
 }
@@ -93,11 +94,11 @@ int main(int argc, char** argv) {
         return achilles::run({argv + 1, argv + argc});
     } catch (const achilles::InputError& error) {
         // A message about a place in a file starts with that place, so that editors find it.
-        fmt::print(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
+        achilles::print_clean(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
     } catch (const std::bad_alloc&) {
         std::fputs("achilles: there is not enough memory for this\n", stderr);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "achilles: {}\n", error.what());
+        achilles::print_clean(stderr, "achilles: {}\n", error.what());
     }
     return achilles::bad_input;
 }

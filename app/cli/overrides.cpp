@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cli/terminal.hpp"
 #include "model/model.hpp"
 #include "system/input_error.hpp"
 
@@ -95,7 +96,7 @@ void warn(const SystemDescription& description, const Run& run, const Run* told)
     const std::vector<std::string> before = told != nullptr ? all_of(*told) : std::vector<std::string>{};
     for (const std::string& warning : all_of(run))
         if (std::find(before.begin(), before.end(), warning) == before.end())
-            fmt::print(stderr, "achilles: warning: {}\n", warning);
+            print_clean(stderr, "achilles: warning: {}\n", warning);
 }
 
 }  // namespace achilles

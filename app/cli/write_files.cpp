@@ -2,11 +2,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "system/description.hpp"
@@ -22,8 +25,8 @@ namespace {
                      fmt::format("the file cannot be written: {}", std::strerror(reason)));
 }
 
-// Writes and closes; standard output stays open.
-void write_all(int descriptor, const std::string& path, const std::string& content) {
+// Writes and closes; standard output stays open. A temporary file is on disk then.
+void write_all(int descriptor, const std::string& path, const std::string& content, bool to_disk = false) {
     if (descriptor < 0) fail(path, errno);
     int problem = 0;
     for (std::size_t done = 0; done < content.size() && problem == 0;) {
@@ -33,8 +36,35 @@ void write_all(int descriptor, const std::string& path, const std::string& conte
         else if (errno != EINTR)
             problem = errno;
     }
+    if (to_disk && problem == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) problem = errno;
     if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0 && problem == 0) problem = errno;
     if (problem != 0) fail(path, problem);
+}
+
+// A name that was given away stays so when the power fails. A folder that cannot be opened is not worth a loss.
+void keep_names(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    ::fsync(descriptor);
+    ::close(descriptor);
+}
+
+// A link is followed: what it points at is replaced or made, not the link.
+fs::path place_of(const std::string& path) {
+    std::error_code problem;
+    fs::path place = fs::absolute(path, problem);
+    constexpr int most_links = 40;
+    for (int i = 0; i < most_links && !fs::exists(place, problem) && fs::is_symlink(place, problem); ++i)
+        place = place.parent_path() / fs::read_symlink(place, problem);
+    const fs::path whole = fs::weakly_canonical(place, problem);
+    return problem ? fs::path(path) : whole;
+}
+
+// What a new file may have: all but what the process masks.
+mode_t usual_mode() {
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    return 0666 & ~mask;
 }
 
 }  // namespace
@@ -42,34 +72,70 @@ void write_all(int descriptor, const std::string& path, const std::string& conte
 OutputFiles::~OutputFiles() {
     for (const File& file : files_) {
         std::error_code ignored;
-        if (file.written) fs::remove(file.temporary, ignored);
+        if (!file.temporary.empty()) fs::remove(file.temporary, ignored);
     }
 }
 
-int OutputFiles::open_temporary(const File& file) {
-    return ::open(file.temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+std::optional<OutputFiles::Identity> OutputFiles::identity_of(const std::string& path) {
+    struct stat there {};
+    const int problem = path == "-" ? ::fstat(STDOUT_FILENO, &there) : ::stat(path.c_str(), &there);
+    if (problem != 0 || !S_ISREG(there.st_mode)) return std::nullopt;
+    return Identity{there.st_dev, there.st_ino};
+}
+
+void OutputFiles::spare(const fs::path& input) {
+    if (const auto identity = identity_of(input.string())) spared_.emplace_back(input, *identity);
+    refuse_inputs();
+}
+
+void OutputFiles::refuse_inputs() const {
+    for (const File& file : files_)
+        for (const auto& [input, identity] : spared_)
+            if (file.identity == identity)
+                throw InputError(file.path == "-" ? "standard output" : file.path, {},
+                                 fmt::format("this output would destroy {}, which was read", input.string()),
+                                 "write to another file");
+}
+
+int OutputFiles::open_temporary(File& file) {
+    std::string name = file.target.string() + ".partXXXXXX";
+    const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+    if (descriptor < 0) return descriptor;
+    file.temporary = name;
+    struct stat there {};
+    const bool is_there = ::stat(file.target.c_str(), &there) == 0;
+    mode_t mode = is_there ? there.st_mode & 07777 : usual_mode();
+    // Where it cannot keep its owner, what it could do in that name is not for another.
+    if (is_there && ::fchown(descriptor, there.st_uid, there.st_gid) != 0) mode &= 0777;
+    if (::fchmod(descriptor, mode) != 0) ::fchmod(descriptor, mode & 0777);  // some file systems know no modes
+    return descriptor;
 }
 
 void OutputFiles::add(const std::string& path) {
     File file;
     file.path = path;
     std::error_code problem;
-    // A link is followed: what it points at is replaced, not the link.
-    file.target = fs::weakly_canonical(fs::absolute(path), problem);
-    if (problem) file.target = path;
-    for (const File& other : files_)
-        if (other.target == file.target) throw InputError(path, {}, "two outputs cannot go to the same place");
+    file.target = place_of(path);
+    file.identity = identity_of(path);
+    refuse_output(path);
     const fs::file_status status = fs::status(file.target, problem);
     if (fs::is_directory(status) && path != "-") fail(path, EISDIR);
-    const bool in_place = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
+    file.in_place = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
     if (fs::exists(status) && path != "-" && ::access(file.target.c_str(), W_OK) != 0) fail(path, errno);
-    if (!in_place) {
-        file.temporary = file.target;
-        file.temporary += fmt::format(".part{}", ::getpid());
+    if (!file.in_place) {
         write_all(open_temporary(file), path, {});
-        fs::remove(file.temporary, problem);
+        fs::remove(std::exchange(file.temporary, {}), problem);
     }
     files_.push_back(file);
+    refuse_inputs();
+}
+
+void OutputFiles::refuse_output(const std::string& path) const {
+    const fs::path target = place_of(path);
+    const auto identity = identity_of(path);
+    for (const File& other : files_)
+        if (other.target == target || (identity && other.identity == identity))
+            throw InputError(path, {}, "two outputs cannot go to the same place");
 }
 
 void OutputFiles::put(const std::string& path, std::string content) {
@@ -80,25 +146,49 @@ void OutputFiles::put(const std::string& path, std::string content) {
         }
 }
 
+// The temporary file takes the target's name. Where the file system can, what was there stays until all have theirs.
+void OutputFiles::take_name(File& file) {
+    const char *from = file.temporary.c_str(), *to = file.target.c_str();
+    std::error_code problem;
+    const fs::file_status there = fs::symlink_status(file.target, problem);
+    if (fs::is_directory(there)) fail(file.path, EISDIR);
+    file.swapped = fs::exists(there) && ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0;
+    if (file.swapped) return;
+    if (::rename(from, to) != 0) fail(file.path, errno);
+    file.made = !fs::exists(there);
+    file.temporary.clear();
+}
+
+void OutputFiles::give_back(File& file) {
+    if (file.swapped)
+        ::renameat2(AT_FDCWD, file.temporary.c_str(), AT_FDCWD, file.target.c_str(), RENAME_EXCHANGE);
+    else if (file.made)
+        ::unlink(file.target.c_str());
+}
+
 void OutputFiles::commit() {
-    for (File& file : files_) {
-        if (file.temporary.empty()) continue;
-        const int descriptor = open_temporary(file);
-        file.written = descriptor >= 0;
-        write_all(descriptor, file.path, file.content);
-    }
+    refuse_inputs();
+    for (File& file : files_)
+        if (!file.in_place) write_all(open_temporary(file), file.path, file.content, true);
     // A device can be full: it comes before the names, which cannot fail for lack of room.
     for (const File& file : files_) {
-        if (!file.temporary.empty()) continue;
+        if (!file.in_place) continue;
         const bool standard = file.path == "-";
         write_all(standard ? STDOUT_FILENO : ::open(file.target.c_str(), O_WRONLY | O_CLOEXEC), file.path,
                   file.content);
     }
-    for (File& file : files_) {
-        if (file.temporary.empty()) continue;
-        if (::rename(file.temporary.c_str(), file.target.c_str()) != 0) fail(file.path, errno);
-        file.written = false;
+    std::set<fs::path> folders;
+    try {
+        for (File& file : files_) {
+            if (file.in_place) continue;
+            take_name(file);
+            folders.insert(file.target.parent_path());
+        }
+    } catch (const InputError&) {
+        for (File& file : files_) give_back(file);
+        throw;
     }
+    for (const fs::path& folder : folders) keep_names(folder);
 }
 
 }  // namespace achilles

@@ -1,14 +1,20 @@
 // Output files that are there whole or not at all.
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace achilles {
 
 // A set of files. Whether each can be written is tried when it is added, before the work; nothing stays behind if the
-// work is interrupted. At the end all are written under temporary names and then get their own. "-" is standard output.
+// work is interrupted. At the end all are written under temporary names, which no other process uses, are on disk, and
+// then get their own. A file that is replaced keeps its mode and, where that may be given away, its owner. "-" is
+// standard output.
 class OutputFiles {
  public:
     OutputFiles() = default;
@@ -16,21 +22,34 @@ class OutputFiles {
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
 
-    // Throws InputError if the file cannot be written, or was added before.
+    // A file that was read: no output may be it, by whatever name. Throws InputError where one is.
+    void spare(const std::filesystem::path& input);
+    // Throws InputError if the file cannot be written, or was added or is spared.
     void add(const std::string& path);
+    // Throws InputError where somebody else would write to a file that was added.
+    void refuse_output(const std::string& path) const;
     // What an added file will hold.
     void put(const std::string& path, std::string content);
-    // Writes all. Throws InputError (the disk is full); then no file has changed.
+    // Writes all. Throws InputError (the disk is full); then every file is as it was.
     void commit();
 
  private:
+    using Identity = std::pair<dev_t, ino_t>;
     struct File {
         std::string path, content;                // as given
-        std::filesystem::path target, temporary;  // no temporary: written in place (a device, standard output)
-        bool written = false;                     // the temporary is there
+        std::filesystem::path target, temporary;  // no temporary: none is written now
+        std::optional<Identity> identity;         // of what is there
+        bool in_place = false;                    // a device, standard output
+        bool swapped = false;                     // the target has its content, the temporary what was there
+        bool made = false;                        // the target has its content, and there was none
     };
-    static int open_temporary(const File& file);
+    static std::optional<Identity> identity_of(const std::string& path);
+    void refuse_inputs() const;
+    static int open_temporary(File& file);
+    static void take_name(File& file);
+    static void give_back(File& file);
     std::vector<File> files_;
+    std::vector<std::pair<std::filesystem::path, Identity>> spared_;
 };
 
 }  // namespace achilles

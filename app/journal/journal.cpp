@@ -1,19 +1,105 @@
 #include "journal/journal.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "cli/assets.hpp"
 #include "journal/words.hpp"
 
 namespace achilles {
 
-std::vector<Command> parse_journal(std::string_view text, const std::string& name) {
-    std::vector<Command> commands;
-    int number = 0;
-    while (!text.empty()) {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Calls what(command, number, line) for every command of a journal.
+template <class What>
+void for_each_command(std::string_view text, const std::string& name, const What& what) {
+    for (int number = 1; !text.empty(); ++number) {
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
-        ++number;
-        if (!is_blank(line)) commands.push_back(parse_command(line, name, number));
+        if (!is_blank(line)) what(parse_command(line, name, number), number, line);
         text.remove_prefix(std::min(end + 1, text.size()));
     }
+}
+
+// The file that a command writes, or reads by its path; empty: none.
+struct FileUse {
+    std::string path;
+    bool writes = false;
+};
+
+FileUse file_use(const Command& command) {
+    if (const auto* save = std::get_if<command::Save>(&command)) return {save->file, true};
+    if (const auto* taken = std::get_if<command::Export>(&command)) return {taken->file, true};
+    if (const auto* open = std::get_if<command::Open>(&command); open != nullptr && is_system_path(open->system))
+        return {open->system};
+    const auto* replay = std::get_if<command::Replay>(&command);
+    if (replay != nullptr && is_journal_path(replay->journal)) return {replay->journal};
+    return {};
+}
+
+bool is_named(const std::string& path, const Trust& trust) {
+    return std::any_of(trust.named.begin(), trust.named.end(), [&](const fs::path& file) {
+        std::error_code problem;
+        return fs::equivalent(file, path, problem);
+    });
+}
+
+// Why a command of a journal must not have the file; empty: it may.
+std::string against(const FileUse& use, const Trust& trust) {
+    std::error_code problem;
+    if (use.path.empty() || trust.files == Trust::Files::imagined) return {};
+    if (trust.files == Trust::Files::refused && !(is_named(use.path, trust) && !use.writes))
+        return fmt::format("this journal would {} {}", use.writes ? "write" : "read", use.path);
+    if (use.writes && fs::exists(use.path, problem))
+        return fmt::format("there is a file {} already, and a journal overwrites nothing", use.path);
+    return {};
+}
+
+void drop_overwrite(Command& command) {
+    if (auto* save = std::get_if<command::Save>(&command)) save->overwrite = false;
+    if (auto* taken = std::get_if<command::Export>(&command)) taken->overwrite = false;
+}
+
+}  // namespace
+
+std::vector<Command> parse_journal(std::string_view text, const std::string& name) {
+    std::vector<Command> commands;
+    for_each_command(text, name,
+                     [&](Command command, int, std::string_view) { commands.push_back(std::move(command)); });
+    return commands;
+}
+
+Trust trust_of(bool allow_files, std::vector<fs::path> named) {
+    return {allow_files ? Trust::Files::allowed : Trust::Files::refused, std::move(named)};
+}
+
+std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust) {
+    const bool may_allow = trust.files == Trust::Files::refused;
+    std::vector<Command> commands;
+    std::optional<Forbidden> refused;
+    for_each_command(text, name, [&](Command command, int number, std::string_view line) {
+        const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
+        if (commands.size() == most_replayed)
+            throw Forbidden(name, at, fmt::format("a session replays at most {} commands", most_replayed));
+        const FileUse use = file_use(command);
+        if (const std::string reason = against(use, trust); !reason.empty()) {
+            if (!refused)
+                refused.emplace(name, at, reason,
+                                may_allow ? "if you trust it: --allow-files" : "save or export to another file",
+                                std::string(line));
+            std::error_code problem;
+            const fs::path path = fs::absolute(use.path, problem).lexically_normal();
+            if (may_allow) refused->wants.push_back((use.writes ? "write " : "read ") + path.string());
+        }
+        drop_overwrite(command);
+        commands.push_back(std::move(command));
+    });
+    if (refused) throw Forbidden(*refused);
     return commands;
 }
 
@@ -40,7 +126,17 @@ std::string journal_text(const std::vector<Command>& commands) {
     return text;
 }
 
-JournalFile::JournalFile(const std::filesystem::path& file) : path_(file), stream_(file, std::ios::binary) {
+void refuse_record(const fs::path& file) {
+    std::error_code problem;
+    const fs::file_status there = fs::symlink_status(file, problem);
+    if (fs::exists(there) && !fs::is_character_file(there))
+        throw InputError(file.string(), {}, "there is a file already, and a record overwrites nothing",
+                         "record under another name");
+}
+
+JournalFile::JournalFile(const fs::path& file) : path_(file) {
+    refuse_record(file);
+    stream_.open(file, std::ios::binary);
     if (!stream_) throw InputError(file.string(), {}, "the journal cannot be written");
 }
 

@@ -16,16 +16,45 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
 std::string journal_file(const std::filesystem::path& file);  // its text
 std::vector<Command> read_journal(const std::filesystem::path& file);
 
+// What a journal may do with files. Journals are passed on, and a stranger's is no program: unless the user says
+// otherwise it opens and replays the assets alone, by their names.
+struct Trust {
+    enum class Files {
+        refused,   // but those that are `named`
+        allowed,   // it reads and writes where it says (--allow-files), but over nothing that is there
+        imagined,  // in a picture that is made again, which carries what is read and writes nothing
+    };
+    Files files = Files::refused;
+    std::vector<std::filesystem::path> named;  // by the user: these may be read
+};
+Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named);
+
+// The commands of all journals that one session replays are counted: one that replays itself ends.
+constexpr std::size_t most_replayed = 10000;
+
+// A journal wants what it may not. No command of it has been done. Unlike a command that is refused, it ends what makes
+// a picture.
+struct Forbidden : InputError {
+    using InputError::InputError;
+    std::vector<std::string> wants;  // "write /home/me/a.toml", where it is about files that somebody may allow
+};
+// parse_journal() of a journal that may come from anybody. `overwrite` in it counts for nothing. Throws Forbidden, and
+// InputError as there.
+std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust);
+
 // Of a command line: --do "seek 3.2". Each is a line of its own; blank ones do nothing.
 std::vector<Command> parse_steps(const std::vector<std::string>& lines);
 
 std::string journal_text(const std::vector<Command>& commands);
 
+// Throws InputError where a record of a session would take the place of a file.
+void refuse_record(const std::filesystem::path& file);
+
 // A journal that grows while things happen; every line is on disk before the next command runs, so that a journal tells
 // what led to a crash.
 class JournalFile {
  public:
-    // Starts the file anew. Throws InputError if it cannot be written.
+    // Begins a file. Throws InputError if it cannot be written, or there is one.
     explicit JournalFile(const std::filesystem::path& file);
     void append(const Command& command);
 

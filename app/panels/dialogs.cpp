@@ -178,6 +178,25 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     if (button("Cancel", state) || is_escape()) give_up(editor);
 }
 
+// A journal may come from anybody: nothing is allowed by Enter.
+void journal_dialog(PanelState& state) {
+    constexpr std::size_t most_shown = 8;
+    JournalQuestion& question = *state.journal_question;
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(fmt::format("The journal {} would", question.journal).c_str());
+    for (std::size_t i = 0; i < std::min(question.wants.size(), most_shown); ++i)
+        ImGui::TextUnformatted(("    " + question.wants[i]).c_str());
+    if (question.wants.size() > most_shown)
+        ImGui::TextUnformatted(fmt::format("    and {} more", question.wants.size() - most_shown).c_str());
+    ImGui::TextUnformatted("Allow it only if you know who wrote it. It writes over no file.");
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    if (button("Allow", state)) question.answer = true;
+    ImGui::SameLine();
+    if (button("Refuse", state) || is_escape()) question.answer = false;
+    if (question.answer) ImGui::CloseCurrentPopup();
+}
+
 // What waited for the changes to be saved is done once they are; if that failed, it is not.
 void go_on_if_saved(const Session& session, EditorState& editor, Commands& commands) {
     if (!std::exchange(editor.has_saved, false)) return;
@@ -246,6 +265,15 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
                                                          {Asking::take_away, "Take it away"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    constexpr const char* about_journal = "A journal wants files";
+    if (state.journal_question && editor.asking == Asking::nothing && !ImGui::IsPopupOpen(about_journal))
+        ImGui::OpenPopup(about_journal);
+    dialog(about_journal, [&] {
+        if (state.journal_question)
+            journal_dialog(state);
+        else
+            ImGui::CloseCurrentPopup();
+    });
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
     dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });

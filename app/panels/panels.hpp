@@ -39,6 +39,13 @@ struct EditorState {
     bool may_close = false;          // now nothing is lost by it
 };
 
+// What a journal that is replayed wants of files, and what the user says to it.
+struct JournalQuestion {
+    std::string journal;
+    std::vector<std::string> wants;  // "write /home/me/a.toml"
+    std::optional<bool> answer;      // whether it may
+};
+
 // The menu of one plot: what is typed there.
 struct PlotMenu {
     int plot = -1;
@@ -112,6 +119,7 @@ struct PanelState {
     bool show_impacts = false;       // in the event list: each, not folded into one line
     std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
+    std::optional<JournalQuestion> journal_question;  // asked until it is answered
     TypedValue typed;
     PressedSlider pressed;
     PlotMenu plot_menu;

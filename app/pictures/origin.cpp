@@ -96,7 +96,9 @@ std::string shell_word(const std::string& word) {
 namespace {
 
 // Where a picture goes and how it is worked at, rather than what it shows.
-bool is_where(const std::string& option) { return option == "--out" || option == "--jobs" || option == "--overwrite"; }
+bool is_where(const std::string& option) {
+    return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite";
+}
 
 }  // namespace
 

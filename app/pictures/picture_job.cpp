@@ -1,5 +1,6 @@
 #include "pictures/picture_job.hpp"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include "cli/assets.hpp"
@@ -15,8 +16,20 @@ PictureJob::PictureJob(const std::vector<std::string>& words) : command_(command
 PictureJob::PictureJob(const Origin& origin)
     : inputs_(origin.sources), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
+void PictureJob::check_size(int width, int height) const {
+    constexpr double most_pixels = 32e6;  // some seconds and 400 MB
+    if (reproduces_ && double{1} * width * height > most_pixels)
+        throw InputError({}, {},
+                         fmt::format("a picture of {} x {} pixels is too large to be made again", width, height),
+                         fmt::format("at most {:.0f} million pixels are drawn for a picture that may be anybody's; its "
+                                     "command makes it without this limit:\n{}",
+                                     most_pixels / 1e6, command_));
+}
+
 void PictureJob::add(const std::string& path) {
-    if (!reproduces_) files_.add(path);
+    if (reproduces_) return;
+    for (const auto& file : inputs_.files_read()) files_.spare(file);
+    files_.add(path);
 }
 
 Notes PictureJob::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
@@ -38,8 +51,12 @@ void PictureJob::put_text(const std::string& path, const std::string& text) {
 }
 
 void PictureJob::commit() {
-    if (!reproduces_) files_.commit();
+    if (reproduces_) return;
+    for (const auto& file : inputs_.files_read()) files_.spare(file);
+    files_.commit();
 }
+
+void PictureJob::refuse_output(const std::string& path) const { files_.refuse_output(path); }
 
 namespace {
 

@@ -27,13 +27,17 @@ class PictureJob {
     // What such a picture carries.
     Notes notes_of(const std::string& picture, const std::vector<Shown>& runs) const;
 
+    // A stranger's picture is made again up to a size. Throws InputError for so many pixels.
+    void check_size(int width, int height) const;
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end. Throws InputError.
     void add(const std::string& path);
     // What the file will hold. `make` is not called for a picture nobody asked for.
     using Make = std::function<std::string(const Notes&)>;
     void put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs, const Make& make);
     void put_text(const std::string& path, const std::string& text);
-    // Writes all, or nothing.
+    // Throws InputError where a path is that of a file that was added: it cannot be written for another reason as well.
+    void refuse_output(const std::string& path) const;
+    // Writes all, or nothing. What was read is no output.
     void commit();
 
     // What `reproduce` wants: nothing if the command made no such picture.

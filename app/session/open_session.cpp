@@ -39,6 +39,8 @@ SystemSource source_of(PictureJob& job) {
     };
     library.journal = [&job](const std::string& name) { return job.inputs().journal(name); };
     library.exports = !job.reproduces();
+    library.saves_any_text = false;
+    library.before_writing = [&job](const std::string& file) { job.refuse_output(file); };
     if (job.reproduces())
         library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
     return library;

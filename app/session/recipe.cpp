@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "cli/assets.hpp"
 #include "cli/overrides.hpp"
 #include "model/model.hpp"
 
@@ -119,11 +120,9 @@ std::vector<Command> sight_steps(const Session& session) {
 }  // namespace
 
 std::string name_anywhere(const std::string& system) {
-    const fs::path path(system);
+    if (!is_system_path(system)) return system;  // one of the assets
     std::error_code problem;
-    const bool is_path = path.has_parent_path() || path.extension() == ".toml" || fs::is_regular_file(path, problem);
-    if (!is_path) return system;  // one of the assets
-    const fs::path absolute = fs::absolute(path, problem);
+    const fs::path absolute = fs::absolute(system, problem);
     return problem ? system : absolute.lexically_normal().string();
 }
 

@@ -9,6 +9,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "journal/journal.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "session/refusal.hpp"
@@ -56,6 +57,8 @@ void Session::apply(const Command& command) {
         if (!changes_nothing) error_.clear();
         if (changes_nothing) notice_ = noticed;
         history_.remember(command, before, moment());
+    } catch (const Forbidden&) {
+        throw;
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
@@ -146,6 +149,9 @@ void Session::perform(const command::Text& command) {
 
 void Session::perform(const command::Save& command) {
     const std::string before = document_.source;
+    if (!library_.saves_any_text && !document_.problems.empty())
+        throw refusal("the text is no system, and is not saved", document_.problems.front().what());
+    if (library_.before_writing) library_.before_writing(command.file);
     if (library_.save)
         library_.save(document_, command.file, command.overwrite);
     else
@@ -314,6 +320,7 @@ void Session::perform(const command::Step& command) {
     const auto& events = trajectory().events;
     double time = time_;
     for (int i = 0; i < std::abs(command.events); ++i) {
+        if (time == (command.events > 0 ? trajectory().end_time : 0.0)) break;
         const auto later = std::upper_bound(events.begin(), events.end(), time,
                                             [](double t, const Event& event) { return t < event.t; });
         const auto here = std::lower_bound(events.begin(), events.end(), time,

@@ -28,9 +28,11 @@ struct SystemSource {
     std::function<void(Options&)> finish{};  // what the command line puts over those of a file; may be empty
     std::function<Document(const std::string& system)> open{};                                // empty: from its file
     std::function<void(Document& document, const std::string& file, bool overwrite)> save{};  // empty: to the disk
-    std::function<std::string(const std::string& journal)> journal{};  // the text of one; empty: there are none
+    std::function<std::vector<Command>(const std::string& journal)> journal{};  // what is in one; empty: there are none
     std::string folder{};  // where paths without one begin, for messages of what is written; empty: they do not tell
     bool exports = true;   // false: `export` writes nothing
+    std::function<void(const std::string& file)> before_writing{};  // `save` and `export`; may be empty
+    bool saves_any_text = true;                                     // false: only one that is a system
 };
 
 // Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
@@ -47,7 +49,7 @@ class Session {
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
-    // text is no system.
+    // text is no system. Throws Forbidden: a journal wants what it may not.
     void apply(const Command& command);
 
     // A mistake that is no command's: error() tells it until the next command.

@@ -1,7 +1,6 @@
 // What a session gives away, and the journals that it replays.
 #include <fmt/format.h>
 
-#include "journal/journal.hpp"
 #include "pictures/take_away.hpp"
 #include "session/refusal.hpp"
 #include "session/session.hpp"
@@ -27,6 +26,7 @@ void Session::perform(const command::Export& command) {
     // Until then the result on the screen is of another run than the sliders say, or of none.
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
         throw refusal("the run is still under way", "export again when it is there");
+    if (library_.before_writing) library_.before_writing(command.file);
     if (library_.exports) take_away(*this, command.file, command.overwrite);
     const std::filesystem::path file(command.file);
     notice_ =
@@ -47,7 +47,7 @@ void Session::perform(const command::Wait& command) { play_on(*this, command.sec
 void Session::perform(const command::Replay& command) {
     if (!library_.journal) throw refusal("there are no journals here");
     if (replaying_ >= deepest) throw refusal("journals that replay journals that replay journals: this has no end");
-    const std::vector<Command> journal = parse_journal(library_.journal(command.journal), command.journal);
+    const std::vector<Command> journal = library_.journal(command.journal);
     ++replaying_;
     std::string first_error;
     for (const Command& step : journal) {

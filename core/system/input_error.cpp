@@ -22,15 +22,24 @@ std::size_t character_size(std::string_view text) {
     return size;
 }
 
+// A terminal obeys it: C0 and C1 control characters, DEL, and U+202A to 202E, U+2066 to 2069, which turn the direction.
+bool steers_terminal(std::string_view character) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7F;
+    if (character.size() == 2) return byte(0) == 0xC2 && byte(1) < 0xA0;
+    if (character.size() != 3 || byte(0) != 0xE2) return false;
+    return (byte(1) == 0x80 && byte(2) >= 0xAA && byte(2) <= 0xAE) ||
+           (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);
+}
+
 // One printable character each: a tab is a space so that a caret below stays in step, what cannot be shown is '?'.
 std::vector<std::string> characters(std::string_view text) {
     std::vector<std::string> list;
     while (!text.empty()) {
         const std::size_t size = character_size(text);
-        const bool control = static_cast<unsigned char>(text[0]) < 0x20 || text[0] == 0x7F;
         if (text[0] == '\t') {
             list.emplace_back(" ");
-        } else if (size == 0 || control) {
+        } else if (size == 0 || steers_terminal(text.substr(0, size))) {
             list.emplace_back("?");
         } else {
             list.emplace_back(text.substr(0, size));
@@ -39,6 +48,21 @@ std::vector<std::string> characters(std::string_view text) {
     }
     return list;
 }
+
+}  // namespace
+
+std::string printable(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const std::size_t size = character_size(text);
+        const bool stays = text[0] == '\n' || text[0] == '\t' || (size > 0 && !steers_terminal(text.substr(0, size)));
+        result += stays ? text.substr(0, size) : "?";
+        text.remove_prefix(std::max<std::size_t>(1, size));
+    }
+    return result;
+}
+
+namespace {
 
 // The line and a caret under the column. Of a long line, what is near the caret.
 std::string with_caret(std::string_view line, int column) {

@@ -16,6 +16,10 @@ std::size_t byte_of_column(std::string_view line, int column);
 // characters stay.
 std::string shown(std::string_view text);
 
+// Text from a file, a journal or a picture, fit for a terminal: what would steer it becomes '?' (control characters but
+// the line break and the tab, broken UTF-8, marks that turn the direction of reading). The rest stays.
+std::string printable(std::string_view text);
+
 // What is wrong with a subnormal parameter, and what would be right.
 std::string subnormal_parameter(std::string_view name, double value);
 inline constexpr const char* subnormal_hint = "0, or at least 2.3e-308 in size: choose units in which it is larger";

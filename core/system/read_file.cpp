@@ -1,4 +1,8 @@
 // Reading from disk.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -13,14 +17,19 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     const auto refuse = [&](const std::string& why) { return InputError(name, {}, "cannot read the file: " + why); };
     const auto reason = [] { return std::generic_category().message(errno); };
 
-    std::error_code ignored;
-    if (std::filesystem::is_directory(file, ignored)) throw refuse("it is a directory");
     struct Close {
         void operator()(std::FILE* open) const { std::fclose(open); }
     };
-    const std::unique_ptr<std::FILE, Close> open(std::fopen(name.c_str(), "rb"));
-    if (!open && errno == ENOENT) throw InputError(name, {}, "there is no such file");
+    // Without waiting: whoever opens a pipe that nobody writes to waits for ever.
+    const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor < 0 && errno == ENOENT) throw InputError(name, {}, "there is no such file");
+    if (descriptor < 0) throw refuse(reason());
+    const std::unique_ptr<std::FILE, Close> open(::fdopen(descriptor, "rb"));
     if (!open) throw refuse(reason());
+    struct stat status {};
+    if (::fstat(descriptor, &status) != 0) throw refuse(reason());
+    if (S_ISDIR(status.st_mode)) throw refuse("it is a directory");
+    if (S_ISFIFO(status.st_mode)) throw refuse("it is a pipe");
     std::string text;
     char block[1 << 16];
     while (const std::size_t count = std::fread(block, 1, sizeof block, open.get())) {

@@ -127,7 +127,7 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     folder.put("tour.journal",
                "open ./drop.toml\r\nset g 2 # Gr\xC3\xB6\xC3\x9F"
                "e\nopen nowhere\nopen none.toml\nseek 0.4\n");
-    ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal --allow-files --size 1000x700 --out s.png").status, 0);
     std::filesystem::remove(folder.path() / "drop.toml");
     std::filesystem::remove(folder.path() / "tour.journal");
     std::filesystem::create_directory(folder.path() / "assets");
@@ -150,7 +150,8 @@ TEST(Reproduce, AJournalThatSavesWritesNothing) {
     folder.put("other.toml", "mine");
     folder.put("tour.journal",
                "open ./drop.toml\nopen drop.toml\nsave copy.toml\nsave other.toml overwrite\nopen copy.toml\n");
-    ASSERT_EQ(folder.run("screenshot --journal tour.journal --size 1000x700 --out s.png").status, 0);
+    std::filesystem::remove(folder.path() / "other.toml");
+    ASSERT_EQ(folder.run("screenshot --journal tour.journal --allow-files --size 1000x700 --out s.png").status, 0);
     EXPECT_EQ(content(folder.path() / "other.toml"), falling_ball);
     folder.put("other.toml", "mine");
     std::filesystem::remove(folder.path() / "copy.toml");

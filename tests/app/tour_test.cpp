@@ -109,12 +109,12 @@ TEST(Tour, a_journal_in_a_journal_comes_first) {
 // Offscreen a session replays by itself, what the journals replay too, and one that names itself comes to an end.
 TEST(Tour, sessions_replay_journals) {
     SystemSource library = test::library();
-    library.journal = [](const std::string& name) -> std::string {
-        if (name == "inner") return "set e 0.25\n";
-        if (name == "outer") return "replay inner\nseek 2\n";
-        if (name == "wrong") return "set nothing 1\nseek 3\n";
-        if (name == "unreadable") return "sett e 1\n";
-        return "replay endless\n";
+    library.journal = [](const std::string& name) {
+        return parse_journal(name == "inner"        ? "set e 0.25\n"
+                             : name == "outer"      ? "replay inner\nseek 2\n"
+                             : name == "wrong"      ? "set nothing 1\nseek 3\n"
+                             : name == "unreadable" ? "sett e 1\n"
+                                                    : "replay endless\n");
     };
     Session session("ball_on_sine", test::system("ball_on_sine"), library);
     session.apply(command::Replay{"outer"});

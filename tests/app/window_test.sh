@@ -84,38 +84,44 @@ close_window
 # A file is opened by its path, the window changes its size, a tour is taken and left, a file is exported; then whoever
 # manages windows asks it to close.
 printf 'unpin\nopen double_pendulum\nsay "First."\nwait 600\nsay "Second."\nwait 600\n' > "$folder/tour.journal"
-"$build/achilles" explore ball_on_sine --size 1280x800 --journal "$folder/tour.journal" --record "$folder/journal" &
+"$build/achilles" explore ball_on_sine --size 1280x800 --journal "$folder/tour.journal" --record "$folder/second" &
 explorer=$!
 await xdotool search --onlyvisible --class achilles || fail "no window appears for a tour"
 window=$(xdotool search --onlyvisible --class achilles | head -1)
 xdotool windowfocus --sync "$window" || true
-await grep -q '^say "First' "$folder/journal" || fail "the tour does not begin"
-grep -q 'Second' "$folder/journal" && fail "the tour does not wait"
+await grep -q '^say "First' "$folder/second" || fail "the tour does not begin"
+grep -q 'Second' "$folder/second" && fail "the tour does not wait"
 xdotool sleep 0.5 key Return
-await grep -q '^say "Second' "$folder/journal" || fail "Enter does not lead the tour on"
-grep -q '^wait [1-9]' "$folder/journal" || fail "the record does not tell how long the tour waited"
+await grep -q '^say "Second' "$folder/second" || fail "Enter does not lead the tour on"
+grep -q '^wait [1-9]' "$folder/second" || fail "the record does not tell how long the tour waited"
 xdotool sleep 0.3 key Escape
-await grep -q '^say ""' "$folder/journal" || fail "Escape does not end the tour"
+await grep -q '^say ""' "$folder/second" || fail "Escape does not end the tour"
 xdotool windowsize --sync "$window" 1000 700 sleep 0.5
 xdotool key ctrl+o sleep 0.5
 xdotool type --delay 40 "$folder/mine.toml"
 xdotool sleep 0.3 key Return
-await grep -q "^open $folder/mine.toml" "$folder/journal" || fail "Ctrl+O does not open a file"
+await grep -q "^open $folder/mine.toml" "$folder/second" || fail "Ctrl+O does not open a file"
 xdotool sleep 0.5 key Right sleep 0.3 key End sleep 0.3 key ctrl+z
-await grep -q '^undo' "$folder/journal" || fail "Ctrl+Z does not undo"
-grep -q '^step 1' "$folder/journal" || fail "the right arrow does not step"
+await grep -q '^undo' "$folder/second" || fail "Ctrl+Z does not undo"
+grep -q '^step 1' "$folder/second" || fail "the right arrow does not step"
 # Files dropped on the window: a system is opened, a journal is replayed.
 cp "$folder/mine.toml" "$folder/dropped.toml"
 printf 'grid 3 2\n' > "$folder/dropped.journal"
 timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
-await grep -q "^open $folder/dropped.toml" "$folder/journal" || fail "a system that is dropped is not opened"
+await grep -q "^open $folder/dropped.toml" "$folder/second" || fail "a system that is dropped is not opened"
 timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
-await grep -q '^grid 3 2' "$folder/journal" || fail "a journal that is dropped is not replayed"
+await grep -q '^grid 3 2' "$folder/second" || fail "a journal that is dropped is not replayed"
 "$build/achilles" screenshot impact_oscillator --do "seek 3" --size 700x500 --out "$folder/dropped.png"
 timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
-await grep -q '^open impact_oscillator' "$folder/journal" || fail "a picture that is dropped is not opened as a session"
-await grep -q '^seek 3' "$folder/journal" || fail "a picture that is dropped does not lead to what it shows"
-"$build/achilles" screenshot --journal "$folder/journal" --size 1000x700 --out "$folder/replayed.png" ||
+await grep -q '^open impact_oscillator' "$folder/second" || fail "a picture that is dropped is not opened as a session"
+await grep -q '^seek 3' "$folder/second" || fail "a picture that is dropped does not lead to what it shows"
+# A journal that wants to write files is asked about first; Escape refuses.
+printf 'save %s/stolen.toml\n' "$folder" > "$folder/greedy.journal"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
+xdotool sleep 1 key Return sleep 0.5 key Escape sleep 0.5
+[ ! -e "$folder/stolen.toml" ] || fail "a journal that is dropped writes a file unasked"
+xdotool key End sleep 0.5 key Home
+"$build/achilles" screenshot --allow-files --journal "$folder/second" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
 "$build/x11_hand" close "$window"
 status=0

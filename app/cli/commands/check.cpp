@@ -1,16 +1,16 @@
 #include "check/check.hpp"
+#include "cli/assets.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/common.hpp"
+#include "cli/terminal.hpp"
+#include "cli/write_files.hpp"
+#include "model/model.hpp"
+#include "model/read_system.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
-
-#include "cli/assets.hpp"
-#include "cli/commands/commands.hpp"
-#include "cli/commands/common.hpp"
-#include "cli/write_files.hpp"
-#include "model/model.hpp"
-#include "model/read_system.hpp"
 
 namespace achilles {
 
@@ -35,11 +35,11 @@ int check(const CheckArguments& arguments) {
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;
     OutputFiles files;
     files.add("-");
-    files.put("-", check_report(model, run, deriving.count(), notation, disagreement));
+    files.put("-", printable(check_report(model, run, deriving.count(), notation, disagreement)));
     files.commit();
     // 50 digits and steps of 1e-11 leave less than 1e-15 where the system is as smooth as it should be.
     if (disagreement <= 1e-9) return reached_end;
-    fmt::print(stderr, "achilles: the derived equations disagree with differences of L by {:.1e}\n", disagreement);
+    print_clean(stderr, "achilles: the derived equations disagree with differences of L by {:.1e}\n", disagreement);
     return stopped_early;
 }
 

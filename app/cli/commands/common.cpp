@@ -121,7 +121,9 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     }
 }
 
-void add_step_option(CLI::App& command, std::vector<std::string>& steps) {
+void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files) {
+    command.add_flag("--allow-files", allow_files,
+                     "trust the journal: it may write files, and read those that it names by a path");
     command.add_option("--do", steps, "a command as in a journal, --do \"seek 3.2\"; may be given again")
         ->type_name("COMMAND")
         ->expected(1)

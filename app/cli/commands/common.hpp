@@ -28,9 +28,9 @@ std::vector<ViewDescription> views_of(const SystemDescription& description, cons
 // --set and everything that goes over a system's options.
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
 
+// --do COMMAND, a line of a journal; may be given again. --allow-files.
+void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files);
 // --scale S.
-// --do COMMAND, a line of a journal; may be given again.
-void add_step_option(CLI::App& command, std::vector<std::string>& steps);
 void add_scale_option(CLI::App& command, double& scale, const std::string& about = "of text and strokes (default 1)");
 
 // --size WxH and --scale S. `about` replaces what they say of themselves.

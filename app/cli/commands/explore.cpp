@@ -14,7 +14,7 @@ void add_options(CLI::App& command, ExploreOptions& options) {
         ->type_name("");
     command.add_option("--journal", options.journal, "a journal to replay first: a path, or the name of a tour")
         ->type_name("F");
-    add_step_option(command, options.steps);
+    add_step_option(command, options.steps, options.allow_files);
     command.add_option("--record", options.record, "where to keep a journal of this session")->type_name("F");
     add_size_options(command, options.width, options.height, options.scale);
     add_run_options(command, options.settings, options.overrides);

@@ -5,6 +5,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
+#include "cli/terminal.hpp"
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
@@ -21,6 +22,7 @@ struct FigureArguments {
     std::string system, out, format;
     std::vector<std::string> views, settings, steps;
     std::string journal;
+    bool allow_files = false;
     OptionOverrides overrides;
     PublicationStyle style;
     PictureSize size;
@@ -45,7 +47,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Fi
             [&](const Notes& notes) { return as_svg ? svg_of(figure, size, notes) : png_of(figure, size, notes); });
     job.commit();
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
 }
 
@@ -55,8 +57,9 @@ int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job)
         throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
     std::vector<Command> steps;
-    if (!arguments.journal.empty()) steps = parse_journal(job.inputs().journal(arguments.journal), arguments.journal);
-    const std::vector<Command> more = parse_steps(arguments.steps);
+    job.inputs().trust(trust_of(arguments.allow_files, {arguments.system, arguments.journal}));
+    if (!arguments.journal.empty()) steps = job.inputs().journal(arguments.journal);
+    const std::vector<Command> more = job.inputs().steps(arguments.steps);
     steps.insert(steps.end(), more.begin(), more.end());
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
                                    arguments.overrides, source_of(job), {});
@@ -76,6 +79,7 @@ int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job)
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
     const bool as_svg = wants_svg(arguments);
+    if (!as_svg) job.check_size(arguments.size.width, arguments.size.height);
     if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, job);
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
@@ -110,7 +114,7 @@ void add_figure(CLI::App& program, int& status, PictureJob& job) {
         ->add_option("--journal", arguments->journal,
                      "a journal to replay in the explorer first: then its plots are drawn")
         ->type_name("F");
-    add_step_option(*command, arguments->steps);
+    add_step_option(*command, arguments->steps, arguments->allow_files);
     add_format_option(*command, arguments->format, "where the name of --out does not tell");
     command
         ->add_option_function<std::string>(

@@ -7,6 +7,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
+#include "cli/terminal.hpp"
 #include "figure/animation.hpp"
 #include "model/model.hpp"
 #include "paint/mechanism.hpp"
@@ -74,13 +75,13 @@ class Painter {
 void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept) {
     const std::filesystem::path folder = std::filesystem::absolute(arguments.out);
     const StillSize& size = arguments.size;
-    fmt::print("{} frames of {}x{} in {}{}\n", count, size.width, size.height, folder.string(),
-               kept > 0 ? fmt::format(" ({} were there)", kept) : "");
+    print_clean(stdout, "{} frames of {}x{} in {}{}\n", count, size.width, size.height, folder.string(),
+                kept > 0 ? fmt::format(" ({} were there)", kept) : "");
     // Players want even numbers of pixels.
     const bool odd = size.width % 2 != 0 || size.height % 2 != 0;
-    fmt::print("ffmpeg -framerate {} -i {} {}-pix_fmt yuv420p {}.mp4\n", arguments.fps,
-               shell_word((folder / "frame_%05d.png").string()), odd ? "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' " : "",
-               shell_word(std::filesystem::path(arguments.system).stem().string()));
+    print_clean(stdout, "ffmpeg -framerate {} -i {} {}-pix_fmt yuv420p {}.mp4\n", arguments.fps,
+                shell_word((folder / "frame_%05d.png").string()), odd ? "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' " : "",
+                shell_word(std::filesystem::path(arguments.system).stem().string()));
 }
 
 // Draws what is not there yet. Returns the exit status.
@@ -102,10 +103,10 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
         outcome = share_work(numbers.size(), arguments.jobs, begin, [&](std::size_t done) { progress.show(done); });
     }
     if (outcome.done < numbers.size()) {
-        fmt::print(stderr,
-                   "achilles: a process that drew was ended by signal {}: {} of {} frames are missing\n"
-                   "the same command draws those that are\n",
-                   outcome.signal, numbers.size() - outcome.done, count);
+        print_clean(stderr,
+                    "achilles: a process that drew was ended by signal {}: {} of {} frames are missing\n"
+                    "the same command draws those that are\n",
+                    outcome.signal, numbers.size() - outcome.done, count);
         return stopped_early;
     }
     tell(arguments, count, count - numbers.size());
@@ -113,6 +114,7 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
 }
 
 int draw_frames(const FramesArguments& arguments, PictureJob& job) {
+    job.check_size(arguments.size.width, arguments.size.height);
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
@@ -137,7 +139,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
                            [&](const std::string& name) { return job.notes_of(name, shown); });
     }
     if (status != reached_end || trajectory.outcome.kind == Outcome::Kind::end_time) return status;
-    fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/terminal.hpp"
 #include "model/read_system.hpp"
 #include "system/description.hpp"
 
@@ -23,7 +24,8 @@ void list() {
         } catch (const InputError& error) {
             title = fmt::format("(cannot be read: {})", error.message);
         }
-        fmt::print("{:<{}}  {}\n", file.stem().string(), width, title);
+        std::replace(title.begin(), title.end(), '\n', ' ');
+        print_clean(stdout, "{:<{}}  {}\n", file.stem().string(), width, title);
     }
 }
 

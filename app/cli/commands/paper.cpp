@@ -1,18 +1,18 @@
 #include "pictures/paper.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/common.hpp"
+#include "cli/terminal.hpp"
+#include "figure/publication.hpp"
+#include "model/model.hpp"
+#include "pictures/output_folder.hpp"
+#include "pictures/picture_job.hpp"
+#include "simulate/simulate.hpp"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <optional>
-
-#include "cli/commands/commands.hpp"
-#include "cli/commands/common.hpp"
-#include "figure/publication.hpp"
-#include "model/model.hpp"
-#include "pictures/output_folder.hpp"
-#include "pictures/picture_job.hpp"
-#include "simulate/simulate.hpp"
 
 namespace achilles {
 
@@ -39,6 +39,7 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
     for (const NamedFigure& figure : figures) {
         const PictureSize size{static_cast<int>(std::lround(figure.width * scale)),
                                static_cast<int>(std::lround(figure.height * scale)), scale * publication_scale};
+        if (format != "svg") job.check_size(size.width, size.height);
         job.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
                 [&](const Notes& notes) {
                     return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
@@ -48,12 +49,12 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
     job.commit();
     if (job.reproduces()) return reached_end;
 
-    fmt::print("{}\n", table);
-    for (const NamedFigure& figure : figures) fmt::print("{}\n", fs::absolute(file_of(figure)).string());
-    fmt::print("{}\n", fs::absolute(table_file).string());
+    print_clean(stdout, "{}\n", table);
+    for (const NamedFigure& figure : figures) print_clean(stdout, "{}\n", fs::absolute(file_of(figure)).string());
+    print_clean(stdout, "{}\n", fs::absolute(table_file).string());
     for (const Trajectory* trajectory : {&ball, &pendulum}) {
         if (trajectory->outcome.kind == Outcome::Kind::end_time) continue;
-        fmt::print(stderr, "achilles: a run stopped early: {}\n", trajectory->outcome.message);
+        print_clean(stderr, "achilles: a run stopped early: {}\n", trajectory->outcome.message);
         return stopped_early;
     }
     return reached_end;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cli/commands/commands.hpp"
+#include "cli/terminal.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
 #include "system/description.hpp"
@@ -13,6 +14,7 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
+constexpr std::size_t most_words = 2000;                       // of the command that made it
 
 // What is wrong with a picture is told with its name.
 template <class Work>
@@ -33,6 +35,9 @@ int run_again(const std::string& picture, const Origin& origin, bool png, Pictur
     int status = bad_input;
     add_pictures(program, status, job);
     std::vector<std::string> words = words_of(origin.command);
+    if (words.size() > most_words)
+        throw InputError(picture, {},
+                         fmt::format("its command has {} words; at most {} are run here", words.size(), most_words));
     words.insert(words.end(), {"--out", png ? "picture.png" : "picture.svg"});
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
     try {
@@ -47,6 +52,7 @@ int run_again(const std::string& picture, const Origin& origin, bool png, Pictur
 
 int reproduce(const std::string& picture, const std::string& out) {
     OutputFiles files;
+    files.spare(picture);
     if (!out.empty()) files.add(out);
     const std::string before = read_text(picture, largest_picture);
     if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
@@ -56,11 +62,11 @@ int reproduce(const std::string& picture, const std::string& out) {
     const std::string& after = *job.made();
     if (!out.empty()) files.put(out, after);
     files.commit();
-    if (out != "-") fmt::print("{}\n", origin.command);
+    if (out != "-") print_clean(stdout, "{}\n", origin.command);
     if (after == before) return status;
     const std::string here = "Achilles " + version();
-    fmt::print(stderr, "achilles: {}: made again it has other bytes{}\n", picture,
-               origin.software == here ? "" : fmt::format(" (it was made by {}, this is {})", origin.software, here));
+    print_clean(stderr, "achilles: {}: made again it has other bytes{}\n", picture,
+                origin.software == here ? "" : fmt::format(" (it was made by {}, this is {})", origin.software, here));
     return made_differently;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
+#include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
@@ -71,6 +72,7 @@ int run(const SimulateArguments& arguments) {
     warn(description, run);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
+    files.spare(find_system(arguments.system));
     if (!arguments.json.empty()) files.add(arguments.json);
     if (!arguments.csv.empty()) files.add(arguments.csv);
 
@@ -80,15 +82,15 @@ int run(const SimulateArguments& arguments) {
         files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
     if (arguments.json.empty() && arguments.csv.empty()) {
         files.add("-");
-        files.put("-", summary(trajectory));
+        files.put("-", printable(summary(trajectory)));
     }
     files.commit();
     // Not in the files: the same run gives the same bytes.
     if (arguments.verbose)
-        fmt::print(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
-                   trajectory.statistics.certificate_seconds);
+        print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
+                    trajectory.statistics.certificate_seconds);
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    fmt::print(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
     return stopped_early;
 }
 

@@ -3,6 +3,7 @@
 #include "model/read_system.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -344,6 +345,11 @@ TEST(Description, unreadable_files_say_why) {
     EXPECT_EQ(reading_error("no/such.toml"), "no/such.toml: there is no such file");
     EXPECT_EQ(reading_error("/"), "/: cannot read the file: it is a directory");
     EXPECT_EQ(reading_error("/dev/zero"), "/dev/zero: it is larger than 4 MB");
+    // Nobody will ever write to it.
+    const std::string pipe = (std::filesystem::temp_directory_path() / "achilles_description_test.toml").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(reading_error(pipe), pipe + ": cannot read the file: it is a pipe");
+    std::filesystem::remove(pipe);
 }
 
 }  // namespace

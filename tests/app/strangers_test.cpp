@@ -1,0 +1,202 @@
+// Journals, pictures and system files come from anybody: what they may not do, and what they cannot make a terminal do.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+#include "image/png_notes.hpp"
+#include "journal/journal.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles::test {
+namespace {
+
+const std::string drop = R"(title = "A ball dropped on the floor"
+[[coordinate]]
+name = "y"
+start = 1.0
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)";
+
+const std::string small = " --size 640x480 --end 0.1 ";
+
+class Strangers : public testing::Test {
+ protected:
+    // The picture of a journal.
+    Answer screenshot(const std::string& journal, const std::string& options = {}) const {
+        folder.put("x.journal", journal);
+        return folder.run("screenshot --journal x.journal --out a.png" + small + options);
+    }
+    bool has(const std::string& name) const { return std::filesystem::exists(folder.path() / name); }
+    std::string held_by(const std::string& name) const { return content(folder.path() / name); }
+
+    const Folder folder;
+};
+
+// Told with file and line before a command of it is done; nothing is read, written or drawn.
+TEST_F(Strangers, journals_use_no_files) {
+    folder.put("victim", "mine");
+    folder.put("secret.toml", "password");
+    folder.put("inner.journal", "grid 1 1\n");
+    const std::pair<std::string, std::string> cases[] = {
+        {"save ./victim overwrite", "write ./victim"},
+        {"save new.toml", "write new.toml"},
+        {"export victim.svg overwrite", "write"},
+        {"export new.journal", "write new.journal"},
+        {"open ./secret.toml", "read ./secret.toml"},
+        {"open secret.toml", "read secret.toml"},
+        {"open victim", "read victim"},
+        {"open /etc/passwd", "read /etc/passwd"},
+        {"replay ./inner.journal", "read ./inner"},
+        {"replay inner.journal", "read inner.journal"},
+        {"replay victim", "read victim"},
+    };
+    const std::size_t before = folder.files().size() + 1;
+    for (const auto& [line, wants] : cases) {
+        for (const char* command : {"screenshot", "figure ball_on_sine"}) {
+            folder.put("x.journal", "# a tour\ngrid 2 2\n  " + line + "\n");
+            const Answer answer = folder.run(std::string(command) + " --journal x.journal --out a.png");
+            EXPECT_EQ(answer.status, 2) << line;
+            EXPECT_EQ(answer.err.find("x.journal:3:3: this journal would " + wants), 0U) << answer.err;
+            EXPECT_NE(answer.err.find("--allow-files"), std::string::npos) << answer.err;
+            EXPECT_EQ(folder.files().size(), before) << line;
+        }
+    }
+    EXPECT_EQ(held_by("victim"), "mine");
+}
+
+TEST_F(Strangers, journals_may_name_assets_and_what_the_command_line_names) {
+    EXPECT_EQ(screenshot("open ball_on_floor\nreplay the_ball\n").status, 0);
+    folder.put("mine.toml", drop);
+    EXPECT_EQ(screenshot("open ./mine.toml\n", "mine.toml").status, 0);
+    EXPECT_EQ(screenshot("open ./mine.toml\ntext \"x\"\nsave ./mine.toml\n", "mine.toml").status, 2);
+    EXPECT_EQ(held_by("mine.toml"), drop);
+    EXPECT_EQ(folder.run("screenshot --do 'open mine.toml' --do 'save b.toml' --out b.png" + small).status, 0);
+    EXPECT_EQ(held_by("b.toml"), drop);
+}
+
+// What the user allows writes where nothing is.
+TEST_F(Strangers, a_journal_that_is_trusted_overwrites_nothing) {
+    folder.put("victim.toml", "mine");
+    folder.put("mine.toml", drop);
+    EXPECT_EQ(screenshot("open mine.toml\nsave copy.toml overwrite\nsave copy.toml\n", "--allow-files").status, 0);
+    EXPECT_EQ(held_by("copy.toml"), drop);
+    for (const std::string line : {"save victim.toml overwrite", "save mine.toml", "export a.svg overwrite"}) {
+        folder.put("a.svg", "mine");
+        const Answer answer = screenshot("open mine.toml\n" + line + "\n", "--allow-files");
+        EXPECT_EQ(answer.status, 2) << line;
+        EXPECT_NE(answer.err.find("x.journal:2:1: "), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("a journal overwrites nothing"), std::string::npos) << answer.err;
+    }
+    EXPECT_EQ(held_by("victim.toml") + held_by("a.svg"), "minemine");
+}
+
+TEST_F(Strangers, a_text_that_is_no_system_is_not_saved) {
+    EXPECT_EQ(screenshot("text \"alias ls=rm\"\nsave .bashrc\n", "--allow-files").status, 0);
+    EXPECT_FALSE(has(".bashrc"));
+    const Answer answer = folder.run("figure ball_on_sine --do 'text \"x\"' --do 'save b.toml' --out b.svg");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_FALSE(has("b.toml"));
+}
+
+// A picture is made again from what it carries, and asks for no more than so much work.
+TEST_F(Strangers, work_has_a_limit) {
+    std::string twelve, many;
+    for (int i = 0; i < 12; ++i) twelve += "replay x.journal\n";
+    const Answer nested = screenshot(twelve, "--allow-files");
+    EXPECT_EQ(nested.status, 2);
+    EXPECT_NE(nested.err.find("at most 10000 commands"), std::string::npos) << nested.err;
+    for (int i = 0; i < 10001; ++i) many += "done\n";
+    EXPECT_EQ(screenshot(many).err.find("x.journal:10001:1: a session replays at most 10000 commands"), 0U);
+    EXPECT_EQ(screenshot("step 1000000000\nstep -1000000000\n").status, 0);
+    const auto refused = [&](const std::string& command, const std::string& journal, const std::string& message) {
+        const std::string bare = held_by("a.png");
+        const std::string head = bare.substr(0, 33) + bare.substr(bare.find("IDAT") - 4);
+        folder.put("p.png", with_notes(head, {{"Achilles Command", "achilles " + command},
+                                              {"Achilles System", "./s.toml\n" + drop},
+                                              {"Achilles Journal", "j\n" + journal}}));
+        const auto begin = std::chrono::steady_clock::now();
+        const Answer answer = folder.run("reproduce p.png");
+        EXPECT_EQ(answer.status, 2) << message;
+        EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)) << message;
+    };
+    std::string replays, sets, words;
+    for (int i = 0; i < 12; ++i) replays += "replay j\n";
+    for (int i = 0; i < 1001; ++i) sets += "set y 1\n", words += " --set y=1";
+    refused("screenshot ./s.toml --journal j", sets, "at most 1000 changes");
+    refused("screenshot ./s.toml --size 16384x16384 --scale 8", "", "16384 x 16384 pixels is too large");
+    refused("figure ./s.toml --size 8000x8000", "", "too large");
+    refused("frames ./s.toml --size 8000x8000", "", "too large");
+    refused("figure ./s.toml" + words, "", "2004 words");
+    refused("screenshot ./s.toml --journal j", replays, "at most 10000 commands");
+}
+
+// In a window the user is asked, once, and Enter says nothing.
+TEST(JournalQuestion, is_asked_and_answered) {
+    Hands hands("ball_on_sine");
+    for (const bool allowed : {false, true}) {
+        hands.state.journal_question = JournalQuestion{"a.journal", {"write /home/me/a.toml", "read /b.toml"}, {}};
+        hands.rest(3);
+        hands.press(key::enter);
+        ASSERT_TRUE(hands.state.journal_question);
+        EXPECT_FALSE(hands.state.journal_question->answer);
+        hands.click(allowed ? "dialog Allow" : "dialog Refuse");
+        EXPECT_EQ(hands.state.journal_question->answer, allowed);
+        hands.state.journal_question.reset();
+        hands.rest(3);
+    }
+    EXPECT_TRUE(hands.all.empty());
+}
+
+// An escape sequence in a title, a source, a command, a name or a refusal reaches no terminal.
+TEST_F(Strangers, text_steers_no_terminal) {
+    EXPECT_EQ(printable("a\x1b[31m\tb\n\x07\r\xC2\x9B"
+                        "c\x7F\xE2\x80\xAE\xFF\xC3\xA9"),
+              "a?[31m\tb\n???c???\xC3\xA9");
+    const auto clean = [](const Answer& answer) {
+        for (const char c : answer.out + answer.err)
+            if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t') return false;
+        return (answer.out + answer.err).find("\xC2\x9B") == std::string::npos;
+    };
+    const std::string evil = "source = \"\\u001b]0;x\\u0007\"\n" + [] {
+        std::string text = drop;
+        return text.replace(text.find("A ball"), 6, "\\u001b[2J\\u009b");
+    }();
+    std::filesystem::create_directories(folder.path() / "assets/systems");
+    folder.put("evil.toml", evil);
+    folder.put("assets/systems/evil.toml", evil);
+    for (const std::string command : {"simulate evil.toml", "check evil.toml", "check evil.toml --latex"}) {
+        const Answer answer = folder.run(command);
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        EXPECT_TRUE(clean(answer)) << answer.out;
+    }
+    const Answer list = folder.run("list", "ACHILLES_ASSETS=assets");
+    EXPECT_NE(list.out.find("evil"), std::string::npos);
+    EXPECT_TRUE(clean(list));
+    EXPECT_TRUE(clean(screenshot("open \"./\x1b[2J\"\n")));
+    EXPECT_TRUE(clean(screenshot("\x1b[2J\n")));
+    ASSERT_EQ(screenshot("").status, 0);
+    const std::string png = held_by("a.png"), bare = png.substr(0, 33) + png.substr(png.find("IDAT") - 4);
+    for (const std::string command : {"achilles figure './s\x1b[2J.toml'", "achilles figure ./s.toml --do '\x1b[2J'",
+                                      "achilles figure ./s.toml '--set=\x1b[2J=1'"}) {
+        folder.put("p.png",
+                   with_notes(bare, {{"Achilles Command", command}, {"Achilles System", "./s.toml\n" + evil}}));
+        EXPECT_TRUE(clean(folder.run("reproduce p.png"))) << command;
+    }
+    folder.put("p.png", with_notes(bare, {{"Achilles Command", "achilles figure ./s.toml '--view=\x1b[2J'"},
+                                          {"Achilles System", "./s.toml\n" + evil}}));
+    EXPECT_TRUE(clean(folder.run("reproduce p.png")));
+}
+
+}  // namespace
+}  // namespace achilles::test

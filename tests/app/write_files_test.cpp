@@ -1,0 +1,140 @@
+// Files that are written are there whole or as they were, and no output destroys what was read.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "app/program.hpp"
+#include "cli/write_files.hpp"
+#include "system/description.hpp"
+
+namespace achilles::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string drop = R"(title = "A ball dropped on the floor"
+[[coordinate]]
+name = "y"
+start = 1.0
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)";
+
+mode_t mode_of(const fs::path& file) {
+    struct stat there {};
+    return ::stat(file.c_str(), &there) == 0 ? there.st_mode & 07777 : 0;
+}
+
+void write(const std::string& file, const std::string& text) {
+    OutputFiles files;
+    files.add(file);
+    files.put(file, text);
+    files.commit();
+}
+
+TEST(OutputFiles, keep_the_mode_and_follow_links) {
+    const Folder folder;
+    const fs::path file = folder.path() / "a.toml", link = folder.path() / "link", dangling = folder.path() / "to_new";
+    folder.put("a.toml", "old");
+    ::chmod(file.c_str(), 0640);
+    fs::create_symlink("a.toml", link);
+    fs::create_symlink("new.toml", dangling);
+    write(link, "new");
+    EXPECT_TRUE(fs::is_symlink(link));
+    EXPECT_EQ(content(file), "new");
+    EXPECT_EQ(mode_of(file), 0640U);
+    const mode_t mask = ::umask(0027);
+    write(dangling, "made");
+    ::umask(mask);
+    EXPECT_TRUE(fs::is_symlink(dangling));
+    EXPECT_EQ(content(folder.path() / "new.toml"), "made");
+    EXPECT_EQ(mode_of(folder.path() / "new.toml"), 0640U);
+    EXPECT_EQ(folder.files().size(), 4U);
+}
+
+// What a process left that was killed, be its number ours.
+TEST(OutputFiles, parts_of_the_dead_are_not_in_the_way) {
+    const Folder folder;
+    folder.put("a.json.part" + std::to_string(::getpid()), "half");
+    write(folder.path() / "a.json", "whole");
+    EXPECT_EQ(content(folder.path() / "a.json"), "whole");
+}
+
+TEST(OutputFiles, are_all_there_or_as_they_were) {
+    const Folder folder;
+    const std::string one = folder.path() / "one", two = folder.path() / "two", three = folder.path() / "three";
+    folder.put("one", "old");
+    OutputFiles files;
+    for (const std::string& file : {one, two, three}) {
+        files.add(file);
+        files.put(file, "new");
+    }
+    fs::create_directory(three);  // meanwhile: it cannot get its name
+    EXPECT_THROW(files.commit(), InputError);
+    EXPECT_EQ(content(one), "old");
+    EXPECT_FALSE(fs::exists(two));
+}
+
+TEST(OutputFiles, are_no_inputs_and_no_others) {
+    const Folder folder;
+    folder.put("in.toml", drop);
+    fs::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
+    fs::create_symlink("in.toml", folder.path() / "soft.toml");
+    folder.put("a", "old");
+    fs::create_hard_link(folder.path() / "a", folder.path() / "b");
+    folder.put("j.journal", "seek 0\n");
+    ASSERT_EQ(folder.run("figure in.toml --out p.svg").status, 0);
+    const std::string picture = content(folder.path() / "p.svg");
+    const std::size_t before = folder.files().size();
+    for (const std::string command :
+         {"simulate in.toml --json in.toml", "simulate in.toml --csv hard.toml", "simulate soft.toml --json ./in.toml",
+          "simulate in.toml --json a --csv b", 
+          "figure in.toml --out in.toml --format svg",
+          "screenshot in.toml --size 640x480 --out in.toml",
+          "screenshot --journal j.journal --size 640x480 --out j.journal",
+          "screenshot in.toml --size 640x480 --out c.png --record c.png", "screenshot in.toml --record a --out c.png",
+          "reproduce p.svg --out p.svg", "figure in.toml --do 'save c.svg' --out c.svg",
+          "figure in.toml --do 'export c.svg' --out c.svg"}) {
+        const Answer answer = folder.run(command);
+        EXPECT_EQ(answer.status, 2) << command;
+        EXPECT_NE(answer.err, "") << command;
+        EXPECT_EQ(content(folder.path() / "in.toml"), drop) << command;
+        EXPECT_EQ(content(folder.path() / "a"), "old") << command;
+        EXPECT_EQ(content(folder.path() / "j.journal"), "seek 0\n") << command;
+        EXPECT_EQ(content(folder.path() / "p.svg"), picture) << command;
+        EXPECT_EQ(folder.files().size(), before) << command;
+    }
+}
+
+// What a screenshot was told leads to the same picture.
+TEST(Record, is_written_by_a_screenshot) {
+    const Folder folder;
+    folder.put("j.journal", "# told\nset e 0.4\n");
+    const std::string size = " --size 640x480";
+    const Answer made = folder.run(
+        "screenshot ball_on_sine --end 5 --set x=1 --journal j.journal --do 'seek 2' --record "
+        "r.journal --out a.png" +
+        size);
+    ASSERT_EQ(made.status, 0) << made.err;
+    EXPECT_EQ(content(folder.path() / "r.journal"), "open ball_on_sine\nend 5\nset x 1\nset e 0.4\nseek 2\n");
+    ASSERT_EQ(folder.run("screenshot double_pendulum --journal r.journal --out b.png" + size).status, 0);
+    const auto pixels = [&](const char* name) {
+        const std::string bytes = content(folder.path() / name);
+        return bytes.substr(bytes.find("IDAT"));
+    };
+    EXPECT_TRUE(pixels("a.png") == pixels("b.png"));
+    EXPECT_EQ(folder.run("reproduce a.png").status, 0);
+    const Answer again = folder.run("screenshot --record r.journal --out c.png" + size);
+    EXPECT_EQ(again.status, 2);
+    EXPECT_EQ(again.err.find("r.journal: there is a file already"), 0U) << again.err;
+}
+
+}  // namespace
+}  // namespace achilles::test
