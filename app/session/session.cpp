@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 #include "expression/nearest.hpp"
@@ -290,7 +291,15 @@ void Session::rerun(const Run& run) {
 
 void Session::receive(Patience patience) {
     if (watch_ == nullptr) return;
-    const auto motion = worker_.take(patience);
+    std::optional<std::shared_ptr<Simulated>> motion;
+    try {
+        motion = worker_.take(patience);
+    } catch (const std::bad_alloc&) {  // where there is no run to go on with, there is no session
+        if (simulated_ == nullptr) throw;
+        watch_.reset();
+        asked_ = simulated_->trajectory.run;
+        error_ = "there is not enough memory for this run; the last one stays";
+    }
     if (!motion) return;
     simulated_ = *motion;
     watch_.reset();

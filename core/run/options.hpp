@@ -42,6 +42,7 @@ struct Options {
     Method method = Method::taylor;  // the faster one from any tolerance on that is worth asking for
     int max_impacts = 200000;        // over the run; then Outcome "too many impacts"
     int max_steps = 2000000;         // of the integration, over the run: all are kept; then Outcome "too many steps"
+    double memory = 1e9;             // bytes, of what is kept of the run; then Outcome "out of memory"
     Truncation truncation;
 
     friend bool operator==(const Options&, const Options&) = default;

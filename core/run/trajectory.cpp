@@ -61,6 +61,8 @@ std::string_view to_text(Outcome::Kind kind) {
             return "too many impacts";
         case Outcome::Kind::too_many_steps:
             return "too many steps";
+        case Outcome::Kind::out_of_memory:
+            return "out of memory";
         case Outcome::Kind::not_a_number:
             return "not a number";
         case Outcome::Kind::left_the_domain:

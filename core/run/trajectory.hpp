@@ -98,6 +98,7 @@ struct Outcome {
         end_time,
         too_many_impacts,
         too_many_steps,
+        out_of_memory,
         not_a_number,
         left_the_domain,
         step_too_small,

@@ -101,6 +101,12 @@ const StepRequest* Execution::next() {
         stop(Outcome::Kind::too_many_steps,
              fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time",
                          record_.steps(), next_.t));
+    } else if (record_.bytes() >= run_.options.memory) {
+        stop(Outcome::Kind::out_of_memory,
+             fmt::format(
+                 "{} steps and {} impacts by t = {:.9g} take the {:.4g} MB that the run may have: it may have more "
+                 "(memory), or end earlier",
+                 record_.steps(), record_.impacts(), next_.t, run_.options.memory / 1e6));
     } else if (stalled_ > most_stalled) {
         // Steps of the resolution of time, one after the other, round back to the same state for ever.
         stop_at(StepFailure::step_too_small);
@@ -235,6 +241,11 @@ void Execution::fail_projection() {
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
+
+void Execution::run_out_of_memory() {
+    stop(Outcome::Kind::out_of_memory,
+         fmt::format("{} steps by t = {:.9g}, and the system has no memory for more", record_.steps(), next_.t));
+}
 
 Trajectory Execution::finish() {
     Trajectory trajectory = record_.finish(next_.t, next_.state, std::move(*outcome_), evaluations_);

@@ -56,6 +56,8 @@ class Execution {
 
     // What was recorded, once next() has nothing left to ask.
     Trajectory finish();
+    // There is no memory for what comes next: the run ends with what was recorded.
+    void run_out_of_memory();
 
  private:
     // Where a stretch of motion began.

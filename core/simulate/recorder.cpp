@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 namespace achilles {
 
@@ -20,6 +21,36 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.events.reserve(64);
     trajectory_.pieces.reserve(128);
     trajectory_.coefficients.reserve(8192);
+}
+
+namespace {
+
+// Room for so many more elements. A vector that grows is for a moment there twice. A large one takes address space for
+// all that the run may keep instead, of which the system gives memory only to what is written.
+template <class Element>
+void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes) {
+    constexpr std::size_t large = std::size_t{8} << 20;  // bytes
+    if (vector.capacity() - vector.size() >= more) return;
+    const std::size_t doubled = 2 * vector.size() + more;
+    if (doubled * sizeof(Element) > large && vector.size() * sizeof(Element) < large) {
+        try {
+            constexpr double most_address_space = 1e12;
+            const double elements = std::min(most_bytes, most_address_space) / sizeof(Element);
+            return vector.reserve(std::max(doubled, static_cast<std::size_t>(elements) + more));
+        } catch (const std::bad_alloc&) {  // the process may not have that much: piece by piece
+        }
+    }
+    vector.reserve(doubled);
+}
+
+}  // namespace
+
+double Recorder::bytes() const {
+    const auto n = static_cast<std::size_t>(trajectory_.run.q.size());
+    const std::size_t event = sizeof(Event) + 3 * (n * sizeof(double) + 2 * sizeof(void*));
+    return static_cast<double>(trajectory_.coefficients.size() * sizeof(double) +
+                               trajectory_.pieces.size() * sizeof(Piece) + trajectory_.events.size() * event +
+                               trajectory_.phases.size() * sizeof(Phase));
 }
 
 void Recorder::go_back(const Mark& mark) {
@@ -62,6 +93,11 @@ void Recorder::step(const Flow& flow, double gap) {
     steps(1, gap);
     if (keep_ == Keep::end) return;
     Statistics& statistics = trajectory_.statistics;
+    // More orders than any step has.
+    const std::size_t most_coefficients = 128 * static_cast<std::size_t>(trajectory_.run.q.size());
+    const double memory = trajectory_.run.options.memory;
+    make_room(trajectory_.coefficients, most_coefficients, memory);
+    make_room(trajectory_.pieces, 1, memory);
     trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
     set_state(energy_, flow.end());
     energy_.run();
@@ -75,13 +111,15 @@ void Recorder::impact(double t, const State& before, const Vector& v_after, doub
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
     if (keep_ == Keep::end) return;
-    Event& event = trajectory_.events.emplace_back();
+    Event event;
     event.kind = Event::Kind::impact;
     event.t = t;
     event.q = before.q;
     event.v_before = before.v;
     event.v_after = v_after;
     event.impact_speed = speed;
+    make_room(trajectory_.events, 1, trajectory_.run.options.memory);
+    trajectory_.events.push_back(std::move(event));
 }
 
 void Recorder::event(Event event) {

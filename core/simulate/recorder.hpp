@@ -43,6 +43,8 @@ class Recorder {
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
     long steps() const { return trajectory_.statistics.steps; }
+    // Of all that is kept.
+    double bytes() const;
 
     // Ends the run. The recorder is empty afterwards.
     Trajectory finish(double t, const State& state, Outcome outcome, long evaluations);

@@ -57,7 +57,14 @@ Sample Sampler::at(double t) {
     return sample;
 }
 
-std::vector<Sample> Sampler::all(int between) {
+std::vector<Sample> Sampler::all(int between) { return of_every(1, between); }
+
+std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {
+    return of_every(1 + (trajectory_.pieces.size() - 1) / most_steps, between);
+}
+
+// One step of each `stride` that follow one another, and not always the same of them: a motion may have that period.
+std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
     std::vector<Sample> samples;
     const std::vector<Event>& events = trajectory_.events;
     std::size_t j = 0, phase = 0;
@@ -75,15 +82,18 @@ std::vector<Sample> Sampler::all(int between) {
             const Event& event = events[j];
             const bool shown =
                 !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
-            if (event.kind == Event::Kind::impact && !shown)
+            const bool is_left_out = stride > 1 && event.t < until;
+            if (event.kind == Event::Kind::impact && !shown && !is_left_out)
                 add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before});
             ++j;
         }
         return any;
     };
     bool contact = false;
-    for (const Piece& piece : trajectory_.pieces) {
-        const bool fresh = pass_events(piece.start) || samples.empty() || piece.contact != contact;
+    const std::size_t count = trajectory_.pieces.size();
+    for (std::size_t block = 0; block * stride < count; ++block) {
+        const Piece& piece = trajectory_.pieces[std::min(block * stride + block * 7919 % stride, count - 1)];
+        const bool fresh = pass_events(piece.start) || samples.empty() || piece.contact != contact || stride > 1;
         contact = piece.contact;
         const Phase::Kind in = kind(piece.start);
         if (fresh) add(piece.start, in, contact, state(piece, piece.start));

@@ -26,10 +26,13 @@ class Sampler {
     // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each
     // step.
     std::vector<Sample> all(int between = 0);
+    // The same of at most so many steps, spread over the run, and of the events that border on them.
+    std::vector<Sample> some(std::size_t most_steps, int between);
 
  private:
     struct Projection;
     State state(const Piece& piece, double t) const;
+    std::vector<Sample> of_every(std::size_t stride, int between);
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <new>
 
 #include "number/ground.hpp"
 #include "simulate/event_stepper.hpp"
@@ -15,7 +16,11 @@ Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Wa
     ContactKinematics kinematics(*model, run);
     Execution execution(model, run, kinematics, watch, keep, Execution::InDoubt::ask_exactly);
     EventStepper stepper(*model, run, kinematics);
-    while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
+    try {
+        while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
+    } catch (const std::bad_alloc&) {
+        execution.run_out_of_memory();
+    }
     return execution.finish();
 }
 

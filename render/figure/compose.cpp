@@ -88,7 +88,10 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     constexpr std::size_t wanted = 4000;
     const std::size_t steps = std::max<std::size_t>(1, trajectory.pieces.size());
     const int between = static_cast<int>(std::clamp<std::size_t>(wanted / steps, 1, 400));
-    return Sampler(trajectory).all(between);
+    // Of a run that took far more steps than a screen has columns, some: more would be drawn over one another.
+    constexpr std::size_t most_steps = 100000;
+    Sampler sampler(trajectory);
+    return steps > most_steps ? sampler.some(most_steps / 2, between) : sampler.all(between);
 }
 
 std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to) {

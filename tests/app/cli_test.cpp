@@ -318,6 +318,24 @@ TEST(Cli, TheStepsOfARunCanBeLimited) {
     EXPECT_EQ(root["options"]["max_steps"], 30);
 }
 
+// By its own limit, or where the system gives no more: what there is is written.
+TEST(Cli, TheMemoryOfARunIsLimited) {
+    const Folder folder;
+    const std::string run = "simulate ball_in_bowl --end 1e8 --max-steps 1000000000 ";
+    const Answer own = folder.run(run + "--memory 2e6 --json a.json");
+    EXPECT_EQ(own.status, 3);
+    EXPECT_NE(own.err.find("take the 2 MB that the run may have"), std::string::npos) << own.err;
+    const json root = json::parse(content(folder.path() / "a.json"));
+    EXPECT_EQ(root["outcome"]["kind"], "out of memory");
+    EXPECT_EQ(root["options"]["memory"], 2e6);
+#ifndef __SANITIZE_ADDRESS__
+    const Answer systems = folder.run(run + "--memory 1e12", "ulimit -v 300000;");
+    EXPECT_EQ(systems.status, 3);
+    EXPECT_NE(systems.out.find("outcome: out of memory"), std::string::npos) << systems.out;
+    EXPECT_NE(systems.err.find("the system has no memory for more"), std::string::npos) << systems.err;
+#endif
+}
+
 TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {
     const Folder folder;
     folder.put("run.csv", "old");

@@ -60,6 +60,7 @@ const std::vector<Command> one_of_each{
     command::UseMethod{Method::dopri5},
     command::MaxImpacts{1000},
     command::UseOption{"max-steps", {100000}},
+    command::UseOption{"memory", {2.5e8}},
     command::Range{2, true, -1.0, 0.1 + 0.2},
     command::Range{1, false, 0.0, 1e-7},
     command::Export{"a folder/run.json", false},

@@ -155,7 +155,7 @@ TEST(Slider, all_values_are_reset_at_once_and_that_is_undone_at_once) {
 
 // What no slider shows differs from the file, too.
 TEST(Slider, every_value_can_be_reset) {
-    for (const char* line : {"method dopri5", "max-impacts 1000", "max-steps 100000", "eps 1e-5 1e-6 1e-6",
+    for (const char* line : {"method dopri5", "max-impacts 1000", "max-steps 100000", "memory 2e8", "eps 1e-5 1e-6 1e-6",
                              "reinitialization euclidean", "tolerance 1e-9", "set e 0.4", "set y' 0.1"}) {
         SliderHand hands("ball_on_sine");
         hands.session.apply(parse_command(line));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,7 @@
 #include "figure/mechanism.hpp"
 #include "figure/ticks.hpp"
 #include "simulate/sampler.hpp"
+#include "simulate/simulate.hpp"
 
 namespace achilles {
 namespace {
@@ -209,6 +211,27 @@ TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
     for (const Point& p : panel.curves[1].points)
         if (!std::isnan(p.y)) most = std::max(most, p.y);
     EXPECT_GT(most, 1.0);
+}
+
+// A run of more steps than a screen shows is drawn by some of them, over its whole time and as high as all.
+TEST(Compose, very_many_steps_are_thinned) {
+    const auto model = test::load("ball_in_bowl");
+    auto run = model->default_run();
+    run.options.end_time = 1e8;
+    run.options.max_steps = 300000;
+    const Trajectory trajectory = simulate(model, run);
+    ASSERT_EQ(trajectory.pieces.size(), 300000U);
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    EXPECT_LT(samples.size(), 200000U);
+    double highest = 0.0, highest_of_all = 0.0;
+    for (const Sample& sample : samples) highest = std::max(highest, sample.state.q[1]);
+    for (const Sample& sample : Sampler(trajectory).all(1))
+        highest_of_all = std::max(highest_of_all, sample.state.q[1]);
+    EXPECT_GT(highest, 0.999 * highest_of_all);
+    EXPECT_LT(samples.front().t, 0.01 * trajectory.end_time);
+    EXPECT_GT(samples.back().t, 0.99 * trajectory.end_time);
+    EXPECT_TRUE(
+        std::is_sorted(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.t < b.t; }));
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ TEST(Options, the_table_has_them_all) {
     EXPECT_NE(all.method, Options{}.method);
     EXPECT_NE(all.max_impacts, Options{}.max_impacts);
     EXPECT_NE(all.max_steps, Options{}.max_steps);
+    EXPECT_NE(all.memory, Options{}.memory);
     EXPECT_NE(all.truncation.eps_q, Options{}.truncation.eps_q);
     EXPECT_NE(all.truncation.eps_v, Options{}.truncation.eps_v);
     EXPECT_NE(all.truncation.eps_t, Options{}.truncation.eps_t);
@@ -64,7 +65,7 @@ TEST(Options, what_is_not_allowed_is_told) {
 TEST(Options, are_told_in_one_order_but_for_the_first) {
     std::string keys;
     for (const Option* one : told_options({"tolerance", "method"})) keys += std::string(one->key) + " ";
-    EXPECT_EQ(keys, "tolerance method end_time max_impacts max_steps conditions reinitialization eps_q eps_v eps_t ");
+    EXPECT_EQ(keys, "tolerance method end_time max_impacts max_steps memory conditions reinitialization eps_q eps_v eps_t ");
 }
 
 TEST(Options, a_command_sets_those_that_share_it) {

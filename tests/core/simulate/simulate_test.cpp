@@ -1,6 +1,7 @@
 // The starts and ends a run may have, what its energy does, and what watches it.
 #include "simulate/simulate.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -216,6 +217,28 @@ TEST(Simulate, AMotionTooFastForItsEndTimeEnds) {
     EXPECT_EQ(trajectory.statistics.steps, 1000);
     run.options.max_steps = 0;
     EXPECT_THROW(simulate(model, run), InputError);
+}
+
+// What a run keeps is bounded, and in the end it keeps what it says.
+TEST(Simulate, ARunEndsWhereItsMemoryDoes) {
+    const auto model = test::load("ball_in_bowl");
+    auto run = model->default_run();
+    run.options.end_time = 1e8;
+    double last = 0.0;
+    for (const double memory : {1e5, 1e7, 3e7}) {
+        run.options.memory = memory;
+        const Trajectory trajectory = simulate(model, run);
+        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::out_of_memory);
+        EXPECT_NE(trajectory.outcome.message.find(fmt::format("the {:.4g} MB", memory / 1e6)), std::string::npos)
+            << trajectory.outcome.message;
+        const double kept = static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
+                                                trajectory.pieces.size() * sizeof(Piece));
+        EXPECT_GT(kept, 0.8 * memory);
+        EXPECT_LT(kept, memory + 4096.0);
+        EXPECT_GT(trajectory.end_time, last);
+        last = trajectory.end_time;
+        EXPECT_EQ(trajectory.pieces.back().end, last);
+    }
 }
 
 // A run that would take hours: with restitution 1 every impact is followed by another.

@@ -66,6 +66,7 @@ tolerance = 1e-9
 method = "taylor"
 max_impacts = 7
 max_steps = 8
+memory = 3e8
 [truncation]
 eps_q = 1e-5
 eps_v = 1e-4
@@ -134,6 +135,7 @@ anything = { goes = [1, "here"] }
     EXPECT_EQ(system.options.method, Method::taylor);
     EXPECT_EQ(system.options.max_impacts, 7);
     EXPECT_EQ(system.options.max_steps, 8);
+    EXPECT_EQ(system.options.memory, 3e8);
     EXPECT_EQ(system.options.truncation.eps_q, 1e-5);
     EXPECT_EQ(system.options.truncation.eps_v, 1e-4);
     EXPECT_EQ(system.options.truncation.eps_t, 1e-3);

@@ -55,7 +55,7 @@ const Change in_keys[] = {
      "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, extra"},
     {"end_time = 5", "zeno = 5",
      "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown here: end_time, tolerance, method, "
-     "max_impacts, max_steps"},
+     "max_impacts, max_steps, memory"},
     {"eps_q", "epsq",
      "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown here: "
      "eps_q, eps_v, eps_t, conditions, reinitialization"},
