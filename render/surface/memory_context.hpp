@@ -18,4 +18,8 @@ struct MemoryContext {
 MemoryContext os_mesa_context();  // by libOSMesa (osmesa.cpp)
 MemoryContext egl_context();      // by libEGL without a surface (egl.cpp)
 
+// Mesa's renderer compiles what it draws with, and crashes where the system makes no memory executable: then another is
+// chosen, which draws other last bits and takes longer. To be called before a context is made.
+void choose_renderer();
+
 }  // namespace achilles

@@ -15,6 +15,7 @@ namespace {
 
 // OSMesa, or EGL where Debian no longer has it; both draw the same bytes. ACHILLES_OFFSCREEN=osmesa or egl insists.
 MemoryContext memory_context() {
+    choose_renderer();
     const char* const given = std::getenv("ACHILLES_OFFSCREEN");
     const std::string wanted = given == nullptr ? "" : given;
     if (wanted == "osmesa") return os_mesa_context();

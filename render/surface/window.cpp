@@ -15,6 +15,7 @@
 #include "surface/draw_data.hpp"
 #include "surface/events.hpp"
 #include "surface/interface.hpp"
+#include "surface/memory_context.hpp"
 
 namespace achilles {
 
@@ -43,6 +44,7 @@ bool display_is_named() {
 // Starts GLFW, once. It is never stopped: that would unload the graphics driver, which not every driver survives, and
 // the process's end does the same.
 bool glfw_works() {
+    choose_renderer();
     glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
     return display_is_named() && glfwInit() == GLFW_TRUE;
 }

@@ -1,9 +1,12 @@
 // Pictures that know where they come from: made again from what they carry, whatever became of the files.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <filesystem>
 
 #include "app/program.hpp"
+#include "core/deny_executable.hpp"
 #include "image/image.hpp"
 #include "image/png_notes.hpp"
 #include "paint/svg.hpp"
@@ -297,6 +300,27 @@ TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
         "missing\nthe package libosmesa6 has the first, libegl1 with libgl1-mesa-dri the second\n");
     EXPECT_EQ(folder.run(command + "c.svg", hiding(without_both)).status, 0);  // needs neither
     EXPECT_EQ(folder.files().size(), 3u);
+}
+
+// On a hardened system Mesa's fast renderer would crash.
+TEST(Figure, IsDrawnWhereNoMemoryCanBeMadeExecutable) {
+    const Folder folder;
+    const std::string out = folder.path() / "a.png";
+    const pid_t child = fork();  // what is denied stays so
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        if (!deny_executable_memory()) _exit(99);
+        execl(ACHILLES_BINARY_DIR "/achilles", "achilles", "figure", "ball_on_sine", "--view", "gap", "--size",
+              "400x300", "--out", out.c_str(), nullptr);
+        _exit(98);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
+    if (WEXITSTATUS(status) == 99) GTEST_SKIP() << "no seccomp here";
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+    // Three curves' worth of ink, not an empty page.
+    EXPECT_GT(content(out).size(), 5000U);
 }
 
 TEST(Figure, TooLittleMemoryIsAMessage) {

@@ -2,11 +2,7 @@
 // it is never writable. What compares its bits with the loops' (here, expression_test, series_test, side_by_side_test)
 // would compare the loops with themselves if there were none.
 #include <gtest/gtest.h>
-#include <linux/filter.h>
-#include <linux/seccomp.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +17,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "core/deny_executable.hpp"
 #include "core/machine_code.hpp"
 #include "core/systems.hpp"
 #include "number/lanes.hpp"
@@ -179,20 +176,6 @@ TEST_F(MachineCodes, LeaveNoMemoryBehind) {
     EXPECT_EQ(bytes_of_code(), before);
 }
 
-// From here on the system makes no memory executable for this thread; false if it lets nobody ask for that.
-bool deny_executable_memory() {
-    sock_filter filter[] = {
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
-        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_mprotect, 0, 3),
-        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, args[2])),
-        BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, PROT_EXEC, 0, 1),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
-        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
-    };
-    const sock_fprog program{std::size(filter), filter};
-    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-}
-
 std::string run_of(const std::shared_ptr<const Model>& model) { return to_json(simulate(model, model->default_run())); }
 
 TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
@@ -201,7 +184,7 @@ TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
     const pid_t child = fork();  // what is denied stays so
     ASSERT_GE(child, 0);
     if (child == 0) {
-        if (!deny_executable_memory()) _exit(not_denied);
+        if (!test::deny_executable_memory()) _exit(not_denied);
         if (machine_code(few, 2, Width::one)) _exit(has_code);
         const auto model = test::load("ball_on_sine");
         make_lane_stepper(model->lane_programs(), 1e-10);

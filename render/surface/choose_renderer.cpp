@@ -1,0 +1,29 @@
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+
+#include "surface/memory_context.hpp"
+
+namespace achilles {
+
+namespace {
+
+bool can_make_code() {
+    constexpr std::size_t size = 4096;
+    void* const page = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED) return true;  // something else is wrong, and will be told
+    const bool can = mprotect(page, size, PROT_READ | PROT_EXEC) == 0;
+    munmap(page, size);
+    return can;
+}
+
+}  // namespace
+
+void choose_renderer() {
+    if (can_make_code()) return;
+    setenv("GALLIUM_DRIVER", "softpipe", 1);
+    setenv("DRAW_USE_LLVM", "0", 1);
+}
+
+}  // namespace achilles
