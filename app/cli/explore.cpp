@@ -14,6 +14,7 @@
 #include "cli/dropped.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
+#include "journal/recovery.hpp"
 #include "journal/tour.hpp"
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
@@ -132,6 +133,7 @@ class Explorer {
           trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
+        unsaved_ = left_unsaved();
     }
 
     // What is done at the start, at a tour's pace: journals that the command line names, and what it says itself.
@@ -154,6 +156,8 @@ class Explorer {
         }
         for (const Command& command : commands) take(command);
         take_answer();
+        recover();
+        keep_text();
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
         // A run that is under way is asked now and then how far it is.
@@ -162,8 +166,11 @@ class Explorer {
                              session_.under_way() != nullptr ? progress_seconds : 0.0);
     }
 
-    // Tells the record what is not told yet.
-    void finish() { keep_wait(); }
+    // The window was closed: what is not saved was given up. Tells the record what is not told yet.
+    void finish() {
+        recovery_.forget();
+        keep_wait();
+    }
 
  private:
     void pass_time() {
@@ -228,6 +235,40 @@ class Explorer {
         take(command::Replay{question.journal});
     }
 
+    // What is typed is kept as it comes: no signal, no crash and no display that goes away takes it.
+    void keep_text() {
+        const bool typing = is_typing(state_);
+        if (typing || session_.document().is_changed())
+            recovery_.keep(session_.document(), typing ? state_.editor.text : session_.document().text);
+        else
+            recovery_.forget();
+    }
+
+    // Offers what earlier windows left, one text after the other.
+    void recover() {
+        using Answer = RecoveryQuestion::Answer;
+        if (unsaved_.empty() || tour_.runs()) return;
+        const Unsaved& text = unsaved_.front();
+        if (!state_.recovery_question) {
+            const bool is_busy = is_typing(state_) || session_.document().is_changed();
+            if (!is_busy) state_.recovery_question = RecoveryQuestion{text.name, text.when, Answer::none};
+            return;
+        }
+        const Answer answer = state_.recovery_question->answer;
+        if (answer == Answer::none) return;
+        state_.recovery_question.reset();
+        if (answer == Answer::recover) {
+            take(text.steps[0]);
+            if (!session_.error().empty()) take(command::New{});  // its file is gone
+            take(text.steps[1]);
+            take(command::Show{"editor", true});
+            keep_text();
+        }
+        std::error_code ignored;
+        if (answer != Answer::later) std::filesystem::remove(text.file, ignored);
+        unsaved_.erase(unsaved_.begin());
+    }
+
     void lead_on(PanelState::OnTour wanted) {
         if (wanted == PanelState::OnTour::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
@@ -261,6 +302,8 @@ class Explorer {
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
+    Recovery recovery_;
+    std::vector<Unsaved> unsaved_;  // by earlier windows, not offered yet
     Trust trust_;
     std::map<std::filesystem::path, bool> answers_;  // whether a journal may use files
     std::size_t replayed_ = 0;                       // commands of journals since the hand did something

@@ -166,10 +166,10 @@ void OutputFiles::give_back(File& file) {
         ::unlink(file.target.c_str());
 }
 
-void OutputFiles::commit() {
+void OutputFiles::commit(Care care) {
     refuse_inputs();
     for (File& file : files_)
-        if (!file.in_place) write_all(open_temporary(file), file.path, file.content, true);
+        if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Care::on_disk);
     // A device can be full: it comes before the names, which cannot fail for lack of room.
     for (const File& file : files_) {
         if (!file.in_place) continue;
@@ -188,7 +188,8 @@ void OutputFiles::commit() {
         for (File& file : files_) give_back(file);
         throw;
     }
-    for (const fs::path& folder : folders) keep_names(folder);
+    for (const fs::path& folder : folders)
+        if (care == Care::on_disk) keep_names(folder);
 }
 
 }  // namespace achilles

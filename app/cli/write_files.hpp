@@ -31,7 +31,8 @@ class OutputFiles {
     // What an added file will hold.
     void put(const std::string& path, std::string content);
     // Writes all. Throws InputError (the disk is full); then every file is as it was.
-    void commit();
+    enum class Care { on_disk, quick };  // quick: what can be made again, or is written at every letter
+    void commit(Care care = Care::on_disk);
 
  private:
     using Identity = std::pair<dev_t, ino_t>;

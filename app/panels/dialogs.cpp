@@ -197,6 +197,35 @@ void journal_dialog(PanelState& state) {
     if (question.answer) ImGui::CloseCurrentPopup();
 }
 
+void recovery_dialog(PanelState& state) {
+    using Answer = RecoveryQuestion::Answer;
+    RecoveryQuestion& question = *state.recovery_question;
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextUnformatted(
+        fmt::format("The text of {} was not saved when its window ended ({}).", question.name, question.when).c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    const bool entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+    if (button("Recover", state) || entered) question.answer = Answer::recover;
+    ImGui::SameLine();
+    if (button("Discard", state)) question.answer = Answer::discard;
+    ImGui::SameLine();
+    if (button("Later", state) || is_escape()) question.answer = Answer::later;
+    if (question.answer != Answer::none) ImGui::CloseCurrentPopup();
+}
+
+// A question that is not about the text in the editor: it comes where nothing else is asked.
+template <class Question, class Content>
+void question_dialog(const char* title, const std::optional<Question>& question, bool is_free, const Content& content) {
+    if (question && is_free && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+    dialog(title, [&] {
+        if (question)
+            content();
+        else
+            ImGui::CloseCurrentPopup();
+    });
+}
+
 // What waited for the changes to be saved is done once they are; if that failed, it is not.
 void go_on_if_saved(const Session& session, EditorState& editor, Commands& commands) {
     if (!std::exchange(editor.has_saved, false)) return;
@@ -265,15 +294,10 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
                                                          {Asking::take_away, "Take it away"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    constexpr const char* about_journal = "A journal wants files";
-    if (state.journal_question && editor.asking == Asking::nothing && !ImGui::IsPopupOpen(about_journal))
-        ImGui::OpenPopup(about_journal);
-    dialog(about_journal, [&] {
-        if (state.journal_question)
-            journal_dialog(state);
-        else
-            ImGui::CloseCurrentPopup();
-    });
+    const bool is_free = editor.asking == Asking::nothing;
+    question_dialog("A journal wants files", state.journal_question, is_free, [&] { journal_dialog(state); });
+    question_dialog("Text that was not saved", state.recovery_question, is_free && !state.journal_question,
+                    [&] { recovery_dialog(state); });
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
     dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });

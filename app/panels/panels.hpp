@@ -46,6 +46,12 @@ struct JournalQuestion {
     std::optional<bool> answer;      // whether it may
 };
 
+// Text that an earlier window left unsaved, and what becomes of it.
+struct RecoveryQuestion {
+    std::string name, when;
+    enum class Answer { none, recover, discard, later } answer = Answer::none;
+};
+
 // The menu of one plot: what is typed there.
 struct PlotMenu {
     int plot = -1;
@@ -120,6 +126,7 @@ struct PanelState {
     std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
     std::optional<JournalQuestion> journal_question;  // asked until it is answered
+    std::optional<RecoveryQuestion> recovery_question;
     TypedValue typed;
     PressedSlider pressed;
     PlotMenu plot_menu;

@@ -15,7 +15,7 @@ build=$1
 folder=$(mktemp -d)
 explorer=
 trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -rf "$folder"' EXIT
-export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder
+export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder XDG_STATE_HOME=$folder/state
 
 fail() { echo "window_test: $*" >&2; exit 1; }
 # Waits up to 30 s for a command to succeed.
@@ -128,6 +128,38 @@ status=0
 wait "$explorer" || status=$?
 explorer=
 [ "$status" -eq 0 ] || fail "closed from outside the explorer ends with status $status"
+
+# What was typed and not saved outlives the window that is killed, and is offered to the next; what is recovered and then
+# given up is gone.
+[ -z "$(ls "$folder/state/achilles" 2>/dev/null)" ] || fail "text that was saved or given up is kept"
+for signal in TERM HUP; do
+    "$build/achilles" explore "$folder/mine.toml" --size 1280x800 &
+    explorer=$!
+    await xdotool search --onlyvisible --class achilles || fail "no window appears to be killed"
+    window=$(xdotool search --onlyvisible --class achilles | head -1)
+    xdotool windowfocus --sync "$window" || true
+    if [ "$signal" = HUP ]; then xdotool sleep 1 key Escape; fi  # what the other left is offered: later
+    xdotool sleep 0.5 key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
+    xdotool type --delay 40 " lost $signal"
+    await grep -q "# by hand.* lost $signal\"" -r "$folder/state/achilles" || fail "what is typed is not kept"
+    kill -s "$signal" "$explorer"
+    wait "$explorer" || true
+    explorer=
+done
+"$build/achilles" explore ball_on_sine --size 1280x800 --record "$folder/third" &
+explorer=$!
+await xdotool search --onlyvisible --class achilles || fail "no window appears to recover in"
+window=$(xdotool search --onlyvisible --class achilles | head -1)
+xdotool windowfocus --sync "$window" || true
+xdotool sleep 1 key Return
+await grep -q "^text .* lost" "$folder/third" || fail "Enter does not recover what was not saved"
+grep -q "^open $folder/mine.toml" "$folder/third" || fail "what is recovered does not belong to its file"
+xdotool sleep 0.5 key Escape sleep 0.5
+kill -s KILL "$explorer"
+wait "$explorer" || true
+explorer=
+grep -q "lost" "$folder/mine.toml" && fail "what was not saved is in the file"
+[ "$(ls "$folder/state/achilles" | wc -l)" -eq 2 ] || fail "the texts of two windows are not two files"
 
 # Impacts without end: the window is there at once, and closes at once.
 "$build/achilles" explore ball_on_sine --size 1280x800 --set e=1 --end 1e9 --max-impacts 1000000000 &
