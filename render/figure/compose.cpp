@@ -91,7 +91,7 @@ std::vector<Sample> plot_samples(const Trajectory& trajectory) {
     // Of a run that took far more steps than a screen has columns, some: more would be drawn over one another.
     constexpr std::size_t most_steps = 100000;
     Sampler sampler(trajectory);
-    return steps > most_steps ? sampler.some(most_steps / 2, between) : sampler.all(between);
+    return steps > most_steps ? sampler.some(most_steps / 4, between) : sampler.all(between);
 }
 
 std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to) {

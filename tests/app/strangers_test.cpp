@@ -117,6 +117,7 @@ TEST_F(Strangers, work_has_a_limit) {
     EXPECT_NE(nested.err.find("at most 10000 commands"), std::string::npos) << nested.err;
     for (int i = 0; i < 10001; ++i) many += "done\n";
     EXPECT_EQ(screenshot(many).err.find("x.journal:10001:1: a session replays at most 10000 commands"), 0U);
+    EXPECT_EQ(folder.run("figure ball_on_sine --do 'step 1000000000' --out a.svg").status, 0);
     EXPECT_EQ(screenshot("step 1000000000\nstep -1000000000\n").status, 0);
     const auto refused = [&](const std::string& command, const std::string& journal, const std::string& message) {
         const std::string bare = held_by("a.png");
