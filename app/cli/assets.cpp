@@ -57,6 +57,7 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
         if (file.stem() == path) return file;
         names.push_back(file.stem().string());
     }
+    std::error_code problem;
     if (fs::is_directory(path, problem)) return path;  // which the reader tells
     throw InputError({}, {}, fmt::format("there is no {} '{}'{}", kind, wanted, did_you_mean(wanted, names)),
                      fmt::format("a {} is a path to a {} file or one of: {}", kind, extension, fmt::join(names, ", ")));
