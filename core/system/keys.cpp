@@ -15,11 +15,11 @@ std::span<const FileTable> file_tables() {
           {"lagrangian", "table, needed", "[lagrangian]"},
           {"constraint", "one table, needed", "[[constraint]]"},
           {"run", "table", "[run]: how a run is made, unless the command line says otherwise"},
-          {"truncation", "table", "[truncation]: when infinitely many impacts may be cut short"},
           {"view", "tables",
            "[[view]]: the plots. Without one every coordinate and the gap over t, and the plane of the "
            "first two"},
           {"drawing", "tables", "[[drawing]]: the mechanism"},
+          {"truncation", "table", "[truncation]: when infinitely many impacts may be cut short"},
           {"extra", "table", "[extra]: whatever other programs want to know; it is not read"}}},
         {"[[coordinate]]",
          {{"name", "name, needed", "its rate is the name with a prime: x'"},

@@ -140,6 +140,31 @@ TEST(ZenoCondition, BelievesValuesOverRanges) {
     EXPECT_EQ(condition(*model, run).verdict, Verdict::depends);
 }
 
+// A range that reaches past zero, below the value or above it: the sign is not the same for all that a slider offers.
+TEST(ZenoCondition, LooksAtTheWholeRange) {
+    const std::string text = R"toml(
+title = "Pulled either way"
+[[coordinate]]
+name = "y"
+start = 1
+[[parameter]]
+name = "k"
+value = VALUE
+range = [-1, 1]
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "k*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)toml";
+    for (const char* value : {"0.5", "-0.5"}) {
+        std::string with = text;
+        with.replace(with.find("VALUE"), 5, value);
+        EXPECT_EQ(condition(*test::typed(with)).verdict, Verdict::depends) << value;
+    }
+}
+
 // Denominators that only the definiteness of M shows to be positive.
 TEST(ZenoCondition, UsesThatTheMassMatrixIsPositiveDefinite) {
     const auto model = test::typed(R"toml(

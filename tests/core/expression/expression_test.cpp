@@ -4,6 +4,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "expression/parse.hpp"
@@ -47,6 +48,26 @@ class Expressions : public testing::Test {
     Scope scope;
     std::vector<std::string> names{"x", "y", "z"};
 };
+
+TEST_F(Expressions, PowersOfOneBaseAreOnePower) {
+    EXPECT_EQ(read("x^5/x^2"), read("x^3"));
+    EXPECT_EQ(read("x^2/x^5"), read("x^-3"));
+    EXPECT_EQ(read("x^2*x^5"), read("x^7"));
+    EXPECT_EQ(power(read("x") - read("x") * read("2"), 3), read("-x^3"));
+    EXPECT_EQ(value("(-x)^3", 2), -8);
+    EXPECT_EQ(value("(-x)^4", 2), 16);
+    EXPECT_EQ(value("(-sin(x))^3", 1), -std::pow(std::sin(1.0), 3));
+    EXPECT_EQ(value("x^5/x^2", 2), 8);
+    EXPECT_EQ(value("sin(x)^5/sin(x)^2", 1), std::pow(std::sin(1.0), 2) * std::sin(1.0));
+}
+
+TEST_F(Expressions, WithoutNamesAreNumbers) {
+    EXPECT_EQ(value_of_constant(read("3 - pi")), 3.0 - std::numbers::pi);
+    EXPECT_EQ(value_of_constant(read("pi/4 - sqrt(2)")), std::numbers::pi / 4.0 - std::sqrt(2.0));
+    EXPECT_NEAR(value("x^(4 - pi)", 2), std::pow(2.0, 4.0 - std::numbers::pi), 1e-15);
+    EXPECT_NE(error("(3 - pi)^x"), "no error");  // its base is negative
+    EXPECT_EQ(error("(pi - 3)^x"), "no error");
+}
 
 TEST_F(Expressions, PrecedenceIsThatOfMathematics) {
     EXPECT_EQ(value("-x^2", 3), -9);
