@@ -12,6 +12,7 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/dropped.hpp"
+#include "cli/manual.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
 #include "journal/recovery.hpp"
@@ -93,6 +94,8 @@ PanelState panel_state(bool in_window) {
     PanelState state;
     state.systems = known_systems();
     state.tours = known_tours();
+    for (const ManualTopic& topic : manual_topics()) state.manual.push_back({topic.name, topic.title});
+    state.manual_page = [](const std::string& topic) { return manual_page(topic); };
     state.in_window = in_window;
     return state;
 }

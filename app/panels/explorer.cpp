@@ -160,6 +160,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
             show_controls(session, state, commands);
     });
     show_dialogs(session, state, commands);
+    show_manual(state);
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });

@@ -44,7 +44,8 @@ float show_state(const Session& session, ImVec2 at, float width) {
         const std::string rate_unit = unit.empty() ? "" : unit + "/s";
         const auto place = static_cast<float>(i);
         const float x = at.x + units(narrow ? 16.0F : first + column * static_cast<float>(i % columns));
-        const float y = at.y + line * (narrow ? place + 1.0F : 2.0F * static_cast<float>(i / columns));
+        const std::size_t row = i / columns;
+        const float y = at.y + line * (narrow ? place + 1.0F : 2.0F * static_cast<float>(row));
         const float rate_x = narrow ? x + units(column) : x, rate_y = narrow ? y : y + line;
         const auto text = [&](const std::string& name, double value, const std::string& of) {
             return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;

@@ -2,6 +2,7 @@
 // and for pictures, so both show the same bytes.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -116,9 +117,13 @@ struct PlaneView {
 
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
-    std::vector<SystemEntry> systems;  // to choose from
-    std::vector<SystemEntry> tours;    // journals to replay
-    bool on_tour = false;              // one is under way: its caption has buttons
+    std::vector<SystemEntry> systems;                                  // to choose from
+    std::vector<SystemEntry> tours;                                    // journals to replay
+    std::vector<SystemEntry> manual;                                   // its pages
+    std::function<std::string(const std::string& topic)> manual_page;  // the text of one
+    std::string manual_text;                                           // of the one that was chosen
+    bool opens_manual = false;
+    bool on_tour = false;  // one is under way: its caption has buttons
     enum class OnTour { nothing, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
     int copies = 0;                                                          // the session's, that the clipboard has
     bool in_window = false;          // a window may show how long the run took; a picture must not
@@ -153,6 +158,9 @@ void show_editor(const Session& session, PanelState& state, Commands& commands);
 // What can be taken away, and the tours: lines of a menu.
 void show_take_away_items(const Session& session, PanelState& state, Commands& commands);
 void show_tour_items(const Session& session, PanelState& state, Commands& commands);
+// The pages of the manual as lines of a menu, and the one that was chosen, above everything else.
+void show_help_items(PanelState& state);
+void show_manual(PanelState& state);
 // Above the mechanism: what a tour says.
 float caption_height(const Session& session, const PanelState& state, float width);
 void show_caption(const Session& session, PanelState& state, Commands& commands);

@@ -51,8 +51,9 @@ bool grid_button(int columns, int rows, bool chosen, PanelState& state) {
     const float width = (size - 2.0F * edge - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
     const float height = (size - 2.0F * edge - gap * static_cast<float>(rows - 1)) / static_cast<float>(rows);
     for (int i = 0; i < columns * rows; ++i) {
-        const ImVec2 low{at.x + edge + static_cast<float>(i % columns) * (width + gap),
-                         at.y + edge + static_cast<float>(i / columns) * (height + gap)};
+        const int column = i % columns, row = i / columns;
+        const ImVec2 low{at.x + edge + static_cast<float>(column) * (width + gap),
+                         at.y + edge + static_cast<float>(row) * (height + gap)};
         list->AddRectFilled(low, {low.x + width, low.y + height}, packed(chosen ? text_color() : faint_color()));
     }
     tooltip(std::to_string(columns * rows) + (columns * rows == 1 ? " plot" : " plots"));

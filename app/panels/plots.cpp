@@ -310,8 +310,9 @@ void show_plots(const Session& session, PanelState& state, Commands& commands) {
     const float width = std::floor((area.width - gap * (columns - 1.0F)) / columns);
     const float height = std::floor((area.height - gap * (rows - 1.0F)) / rows);
     for (int i = 0; i < static_cast<int>(session.plots().size()); ++i) {
-        const Rectangle cell{area.x + static_cast<float>(i % plots.columns()) * (width + gap),
-                             area.y + static_cast<float>(i / plots.columns()) * (height + gap), width, height};
+        const int column = i % plots.columns(), row = i / plots.columns();
+        const Rectangle cell{area.x + static_cast<float>(column) * (width + gap),
+                             area.y + static_cast<float>(row) * (height + gap), width, height};
         show_plot(session, static_cast<std::size_t>(i), cell, state, commands);
     }
 }

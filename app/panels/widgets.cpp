@@ -14,7 +14,7 @@ namespace achilles {
 float units(float pixels) { return pixels * ImGui::GetFontSize() / 15.0F; }
 
 ImU32 packed(const Color& color, float alpha) {
-    return IM_COL32(color.r, color.g, color.b, static_cast<int>(static_cast<float>(color.a) * alpha + 0.5F));
+    return IM_COL32(color.r, color.g, color.b, static_cast<int>(std::lround(static_cast<float>(color.a) * alpha)));
 }
 
 Color text_color() { return current_theme().ink; }

@@ -85,7 +85,7 @@ constexpr auto cut = &Options::truncation;
 constexpr std::string_view usage_of_eps = "write: eps 1e-6, or: eps POSITION VELOCITY TIME";
 constexpr std::string_view wrong_eps = "eps must be positive and finite, but it would be {}";
 
-constexpr std::array options{
+constexpr std::array rows{
     at<&Options::end_time>({.key = "end_time",
                             .table = "run",
                             .flag = "--end",
@@ -187,18 +187,18 @@ constexpr std::array options{
 
 }  // namespace
 
-std::span<const Option> all_options() { return options; }
+std::span<const Option> all_options() { return rows; }
 
 const Option& option(std::string_view key) {
-    const auto found = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.key == key; });
-    assert(found != options.end());
+    const auto found = std::find_if(rows.begin(), rows.end(), [&](const Option& o) { return o.key == key; });
+    assert(found != rows.end());
     return *found;
 }
 
 std::span<const Option> options_set_by(std::string_view command) {
     const auto is_of_it = [&](const Option& o) { return o.command == command; };
-    const auto first = std::find_if(options.begin(), options.end(), is_of_it);
-    return {first, std::find_if_not(first, options.end(), is_of_it)};
+    const auto first = std::find_if(rows.begin(), rows.end(), is_of_it);
+    return {first, std::find_if_not(first, rows.end(), is_of_it)};
 }
 
 std::vector<std::span<const Option>> options_by_command() {
@@ -210,7 +210,7 @@ std::vector<std::span<const Option>> options_by_command() {
 
 std::vector<const Option*> told_options(std::initializer_list<std::string_view> first) {
     std::vector<const Option*> told;
-    for (const Option& o : options) told.push_back(&o);
+    for (const Option& o : rows) told.push_back(&o);
     const auto rank = [&](const Option* o) {
         const auto named = std::find(first.begin(), first.end(), o->key);
         const bool is_of_cut = o->table == "truncation";

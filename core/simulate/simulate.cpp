@@ -28,7 +28,7 @@ Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Wa
 
 // What is undecided may be so since the state had become wrong before, by steps or by a cut: then the whole run is made
 // once more, as exactly as double precision allows.
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch, Keep keep) {
+Trajectory simulate(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch, Keep keep) {
     const Ground ground;
     model->check(run);
     const auto clock = std::chrono::steady_clock::now();

@@ -22,7 +22,7 @@ enum class Keep { everything, end };
 
 // Runs. Never throws for what happens on the way: that is the trajectory's outcome. Throws InputError if the run cannot
 // start (Model::check). A tolerance or eps below least_tolerance is raised to it, in the trajectory's run too.
-Trajectory simulate(std::shared_ptr<const Model> model, const Run& run, Watch* watch = nullptr,
+Trajectory simulate(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch = nullptr,
                     Keep keep = Keep::everything);
 
 }  // namespace achilles

@@ -5,7 +5,6 @@
 #include "figure/layout.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
-#include "paint/sheet.hpp"
 #include "surface/curves.hpp"
 
 namespace achilles {

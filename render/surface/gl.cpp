@@ -7,11 +7,13 @@
 namespace achilles {
 
 Gl::Gl(const AddressFunction& address_of) {
+// NOLINTBEGIN(bugprone-macro-parentheses): a type cannot stand in them
 #define ACHILLES_GL_LOAD(type, name)                       \
     name = reinterpret_cast<type>(address_of("gl" #name)); \
     if (name == nullptr) throw std::runtime_error("OpenGL 3.3 lacks gl" #name " on this machine");
     ACHILLES_GL_FUNCTIONS(ACHILLES_GL_LOAD)
 #undef ACHILLES_GL_LOAD
+    // NOLINTEND(bugprone-macro-parentheses)
 }
 
 GLuint Gl::program(const char* vertex, const char* fragment) const {

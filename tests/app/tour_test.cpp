@@ -130,6 +130,24 @@ TEST(Tour, sessions_replay_journals) {
     EXPECT_NE(session.error().find("no end"), std::string::npos);
 }
 
+TEST(HelpMenu, shows_a_page_above_everything_until_escape) {
+    test::Hands hands("ball_on_sine");
+    hands.state.manual = {{"data", "The data"}, {"system", "The system file"}};
+    hands.state.manual_page = [](const std::string& topic) { return "# A page about " + topic; };
+    hands.rest(2);
+    hands.click("menu Help");
+    hands.click("menu system");
+    EXPECT_EQ(hands.state.manual_text, "# A page about system");
+    ASSERT_TRUE(hands.state.places.count("Close the manual"));
+    const double before = hands.session.run().parameters[0];
+    hands.click("set m", 0.9);  // beneath
+    EXPECT_EQ(hands.session.run().parameters[0], before);
+    hands.click("Close the manual");
+    hands.state.places.clear();
+    hands.rest(2);
+    EXPECT_FALSE(hands.state.places.count("Close the manual"));
+}
+
 TEST(Tour, is_chosen_from_the_menu) {
     test::Hands hands("ball_on_sine");
     hands.state.tours = {{"the_ball", "The paper's ball"}};

@@ -10,7 +10,7 @@
 #include "figure/layout.hpp"
 #include "golden/pictures.hpp"
 #include "paint/label.hpp"
-#include "paint/sheet.hpp"
+#include "paint/paint.hpp"
 
 namespace achilles::golden {
 
