@@ -143,7 +143,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     menu("Edit", state, [&] { show_edit_menu(session, state, commands); });
     menu("View", state, [&] { show_view_menu(session, state, commands); });
     menu("Tours", state, [&] { show_tour_items(session, state, commands); });
-    if (!state.manual.empty()) menu("Help", state, [&] { show_help_items(state); });
+    menu("Help", state, [&] { show_help_items(state); });
     const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
     const float width = 4.0F * size + 3.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;

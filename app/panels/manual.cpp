@@ -34,6 +34,8 @@ void show_page(PanelState& state) {
 }  // namespace
 
 void show_help_items(PanelState& state) {
+    // The menu is there in any case: a picture must not depend on where the assets are.
+    if (state.manual.empty()) ImGui::MenuItem("The manual is missing", nullptr, false, false);
     for (const SystemEntry& page : state.manual) {
         const bool chosen = ImGui::MenuItem(page.title.c_str());
         remember(state, "menu " + page.name);

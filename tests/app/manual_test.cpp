@@ -122,6 +122,22 @@ TEST(Manual, IsPrintedByItsTopics) {
     EXPECT_NE(none.err.find("there is no topic 'sistem'; did you mean 'system'?"), std::string::npos) << none.err;
 }
 
+TEST(Help, ListsNoOptionWithoutEffect) {
+    const Folder folder;
+    const std::string text = folder.run("simulate --help").out;
+    EXPECT_EQ(text.find("no effect"), std::string::npos);
+    EXPECT_EQ(text.find("--scale"), std::string::npos);
+    EXPECT_EQ(folder.run("simulate ball_on_floor --end 1 --scale 2 --size 800x600").status, 0);  // taken all the same
+}
+
+TEST(Instants, AreNotOverwritten) {
+    const Folder folder;
+    folder.put("times", "0\n0.5\n1\n");
+    const Answer answer = folder.run("simulate ball_on_floor --times times --csv times");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(content(folder.path() / "times"), "0\n0.5\n1\n");
+}
+
 // ---- the skeleton ----
 
 TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {

@@ -73,6 +73,7 @@ int run(const SimulateArguments& arguments) {
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
     files.spare(find_system(arguments.system));
+    if (!arguments.times.empty()) files.spare(arguments.times);
     if (!arguments.json.empty()) files.add(arguments.json);
     if (!arguments.csv.empty()) files.add(arguments.csv);
 
@@ -115,7 +116,9 @@ void add_simulate(CLI::App& program, int& status) {
                       "columns of --csv have names that Python can use: theta1_rate for theta1'");
     command->add_flag("--units", arguments->units, "a second line of --csv has the units of the columns");
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
-    add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures; no effect here");
+    add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures");
+    // Common options are taken; those that mean nothing here are not listed.
+    for (const char* idle : {"--size", "--scale"}) command->get_option(idle)->group("");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = run(*arguments); });
 }
