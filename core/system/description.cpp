@@ -134,7 +134,7 @@ std::vector<Text> texts_of(const DrawingDescription& drawing) {
     using Shape = DrawingDescription::Shape;
     std::vector<Text> texts;
     for (const auto& point : drawing.points) texts.insert(texts.end(), point.begin(), point.end());
-    if (drawing.shape == Shape::disc) texts.push_back(drawing.radius);
+    if (is_round(drawing.shape)) texts.push_back(drawing.radius);
     if (drawing.shape == Shape::curve)
         texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
     if (!drawing.width.text.empty()) texts.push_back(drawing.width);

@@ -70,10 +70,10 @@ struct ParameterDescription {
 };
 
 struct DrawingDescription {
-    enum class Shape { disc, segment, curve, polyline, text };
+    enum class Shape { disc, circle, segment, curve, polyline, text };
     Shape shape = Shape::disc;
     std::vector<std::array<Text, 2>> points;  // at, or from and to, or points
-    Text radius;                              // disc
+    Text radius;                              // disc, circle
     std::string over;                         // curve: its own parameter, and the limits
     std::array<Text, 2> over_limits;
     std::string text;   // text
@@ -83,7 +83,12 @@ struct DrawingDescription {
     Location at;
 };
 
-// Every expression of a drawing: x and y of its points, then a disc's radius or a curve's limits, then the width if
+// A disc, or its outline.
+inline bool is_round(DrawingDescription::Shape shape) {
+    return shape == DrawingDescription::Shape::disc || shape == DrawingDescription::Shape::circle;
+}
+
+// Every expression of a drawing: x and y of its points, then a disc's or circle's radius or a curve's limits, then the width if
 // given.
 std::vector<Text> texts_of(const DrawingDescription& drawing);
 
@@ -91,6 +96,8 @@ struct ViewDescription {
     std::string name;
     Text x;
     std::vector<Text> y;
+    std::string label{},
+        unit{};  // of the y axis, as it is shown; "": what y is, and the unit that follows from the file's
 };
 
 struct SystemDescription {

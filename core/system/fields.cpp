@@ -139,6 +139,22 @@ Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::st
     return {value.at, fmt::format("'{}' in {} must be {}, not {}", key, where_, expected, kind_name(value.kind)), {}};
 }
 
+void read_unit(const Fields& fields, std::string& unit) {
+    unit = fields.string_or("unit", "");
+    for (std::size_t at = 0; at < unit.size(); ++at) {
+        const std::size_t end = std::min(unit.find_first_of(" */^().", at), unit.size());
+        const std::string word = unit.substr(at, end - at);
+        at = end;
+        if (word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
+        const std::string right = std::string(unit).replace(end - word.size(), word.size(), "rad");
+        const Mistake mistake{fields.string("unit").at,
+                              fmt::format("the unit '{}' is not one to compute in", shown(unit)),
+                              fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
+        unit = right;
+        throw mistake;
+    }
+}
+
 std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes) {
     std::vector<Fields> list;
     const std::string where = fmt::format("[[{}]]", key);

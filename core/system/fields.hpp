@@ -54,6 +54,10 @@ class Fields {
     std::vector<std::string> misspelt_;  // keys that are there under another name
 };
 
+// The unit of what a table tells of. Degrees are none: what is evaluated is the sine of radians. After such a mistake it
+// is rad, as was meant. Throws Mistake.
+void read_unit(const Fields& fields, std::string& unit);
+
 // The tables of an array of tables, at most 1000; none where the key is absent. What is something else is a mistake,
 // and left out.
 std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes);

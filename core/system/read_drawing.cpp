@@ -21,11 +21,9 @@ struct NamedShape {
 };
 
 const std::vector<NamedShape>& shapes() {
-    static const std::vector<NamedShape> list{{"disc", Shape::disc},
-                                              {"segment", Shape::segment},
-                                              {"curve", Shape::curve},
-                                              {"polyline", Shape::polyline},
-                                              {"text", Shape::text}};
+    static const std::vector<NamedShape> list{{"disc", Shape::disc},         {"circle", Shape::circle},
+                                              {"segment", Shape::segment},   {"curve", Shape::curve},
+                                              {"polyline", Shape::polyline}, {"text", Shape::text}};
     return list;
 }
 
@@ -98,7 +96,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
     } else {
         point("at");
     }
-    if (shape.shape == Shape::disc) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
+    if (is_round(shape.shape)) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
     if (shape.shape == Shape::curve) mistakes.attempt([&] { read_over(system, of_shape, drawing); });
     if (shape.shape == Shape::text) mistakes.attempt([&] { drawing.text = of_shape.string("text").text; });
     mistakes.attempt([&] { drawing.color = read_color(of_shape); });
@@ -124,6 +122,8 @@ ViewDescription read_view(Fields& fields, Mistakes& mistakes) {
         if (y.items.empty()) throw Mistake{y.at, "'y' in [[view]] is empty", "one expression for each curve"};
         for (const TomlValue& item : y.items) mistakes.attempt([&] { view.y.push_back(fields.expression("y", item)); });
     }
+    mistakes.attempt([&] { view.label = fields.string_or("label", ""); });
+    mistakes.attempt([&] { read_unit(fields, view.unit); });
     mistakes.attempt([&] { view.name = fields.string_or("name", view.y.empty() ? "" : view.y[0].text); });
     return view;
 }

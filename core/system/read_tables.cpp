@@ -62,24 +62,6 @@ Text read_name(Names& names, const Fields& fields) {
     return name;
 }
 
-// The unit of a name. Degrees are none: what is evaluated is the sine of radians. After such a mistake it is rad, as was
-// meant. Throws Mistake.
-void read_unit(const Fields& fields, std::string& unit) {
-    unit = fields.string_or("unit", "");
-    for (std::size_t at = 0; at < unit.size(); ++at) {
-        const std::size_t end = std::min(unit.find_first_of(" */^().", at), unit.size());
-        const std::string word = unit.substr(at, end - at);
-        at = end;
-        if (word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
-        const std::string right = std::string(unit).replace(end - word.size(), word.size(), "rad");
-        const Mistake mistake{fields.string("unit").at,
-                              fmt::format("the unit '{}' is not one to compute in", shown(unit)),
-                              fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
-        unit = right;
-        throw mistake;
-    }
-}
-
 // The tables of coordinates or parameters: where they cannot be had, neither can their names.
 std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
     const std::size_t before = reading.mistakes.count();

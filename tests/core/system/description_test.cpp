@@ -27,6 +27,17 @@ const std::string constraint = "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n
 const std::string title = "title = \"drop\"\n";                // first line of what is accepted
 const std::string least = coordinate + energies + constraint;  // lines 1-4, 5-7, 8-10
 
+TEST(Description, a_view_may_have_a_label_and_a_unit) {
+    const std::string view = "[[view]]\nname = \"v\"\nx = \"t\"\ny = \"2*x\"\n";
+    const ViewDescription own =
+        parse_system(title + least + view + "label = \"twice\"\nunit = \"km\"\n", "f.toml").views[0];
+    EXPECT_EQ(own.label, "twice");
+    EXPECT_EQ(own.unit, "km");
+    const ViewDescription none = parse_system(title + least + view, "f.toml").views[0];
+    EXPECT_EQ(none.label + none.unit, "");
+    EXPECT_NE(message_of(title + least + view + "unit = \"deg\"\n").find("the unit 'deg'"), std::string::npos);
+}
+
 TEST(Description, reads_a_full_file) {
     const SystemDescription system = parse_system(R"toml(
 title  = "Ball"

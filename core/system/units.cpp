@@ -1,0 +1,204 @@
+#include "system/units.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "expression/parse.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A product of powers of kg, m, s and rad.
+struct Unit {
+    std::array<double, 4> powers{};
+    friend bool operator==(const Unit&, const Unit&) = default;
+    bool is_plain() const { return *this == Unit{}; }
+};
+// Nothing: not known.
+using MaybeUnit = std::optional<Unit>;
+constexpr std::array<const char*, 4> base_names{"kg", "m", "s", "rad"};
+
+const std::map<std::string, Unit, std::less<>>& known_units() {
+    static const std::map<std::string, Unit, std::less<>> units{
+        {"kg", {{1, 0, 0, 0}}},  {"m", {{0, 1, 0, 0}}},   {"s", {{0, 0, 1, 0}}},
+        {"rad", {{0, 0, 0, 1}}}, {"N", {{1, 1, -2, 0}}},  {"J", {{1, 2, -2, 0}}},
+        {"W", {{1, 2, -3, 0}}},  {"Hz", {{0, 0, -1, 0}}}, {"Pa", {{1, -1, -2, 0}}}};
+    return units;
+}
+
+// a b^exponent. What has a mass or a length in it does not say that it was turned through an angle.
+MaybeUnit product(const MaybeUnit& a, const MaybeUnit& b, double exponent) {
+    if (!a || !b) return std::nullopt;
+    Unit result = *a;
+    for (std::size_t i = 0; i < result.powers.size(); ++i) result.powers[i] += exponent * b->powers[i];
+    if (result.powers[0] != 0.0 || result.powers[1] != 0.0) result.powers[3] = 0.0;
+    return result;
+}
+
+MaybeUnit sum(const MaybeUnit& a, const MaybeUnit& b) {
+    if (!a || !b) return std::nullopt;
+    if (a->is_plain()) return b;
+    return b->is_plain() || *a == *b ? a : std::nullopt;
+}
+
+// "kg*m^2/s^2", "N m", "1/m": factors one after the other, each after a slash below the line.
+MaybeUnit read(std::string_view text) {
+    if (text.empty()) return std::nullopt;
+    MaybeUnit result = Unit{};
+    double sign = 1.0;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == ' ' || c == '*' || c == '.') {
+            ++at;
+            continue;
+        }
+        if (c == '/') {
+            sign = -1.0;
+            ++at;
+            continue;
+        }
+        std::size_t end = at;
+        while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end])) != 0) ++end;
+        const auto known = known_units().find(text.substr(at, end - at));
+        if (end == at && c == '1') {
+            ++at;
+            continue;
+        }
+        if (known == known_units().end()) return std::nullopt;
+        int exponent = 1;
+        if (end < text.size() && text[end] == '^') {
+            const auto [last, problem] = std::from_chars(text.data() + end + 1, text.data() + text.size(), exponent);
+            if (problem != std::errc() || std::abs(exponent) > 9) return std::nullopt;
+            end = static_cast<std::size_t>(last - text.data());
+        }
+        result = product(result, known->second, sign * exponent);
+        sign = 1.0;
+        at = end;
+    }
+    return result;
+}
+
+std::string written(const Unit& unit) {
+    for (const char* name : {"J", "N", "W"})
+        if (unit == known_units().at(name)) return name;
+    std::string above, below;
+    int factors_below = 0;
+    for (std::size_t i = 0; i < unit.powers.size(); ++i) {
+        const double power = unit.powers[i], size = std::abs(power);
+        if (power == 0.0) continue;
+        if (size != std::round(size) || size > 9.0) return "";
+        std::string& side = power > 0.0 ? above : below;
+        if (power < 0.0) ++factors_below;
+        side += fmt::format("{}{}{}", side.empty() ? "" : "*", base_names[i],
+                            size == 1.0 ? "" : fmt::format("^{}", static_cast<int>(size)));
+    }
+    if (below.empty()) return above;
+    return (above.empty() ? "1" : above) + "/" + (factors_below > 1 ? "(" + below + ")" : below);
+}
+
+// What the names of a file stand for, as symbols of a graph of their own, and the unit of each.
+class Names {
+ public:
+    // Of what is derived only what the expression may name: kinetic energies are long.
+    Names(const SystemDescription& description, std::string_view expression) {
+        const auto names = [&](std::string_view name) { return expression.find(name) != std::string_view::npos; };
+        const MaybeUnit second = read("s");
+        bool has_units = false;
+        for (const CoordinateDescription& c : description.coordinates) {
+            has_units = has_units || !c.unit.empty();
+            const MaybeUnit unit = read(c.unit);
+            add(c.name, unit);
+            add(c.name + "'", product(unit, second, -1.0));
+        }
+        for (const ParameterDescription& p : description.parameters) add(p.name, read(p.unit));
+        add("t", has_units ? second : std::nullopt);
+        const bool has_energy = names("energy") || names("lambda");
+        const MaybeUnit gap = has_energy || names("gap") ? of(description.gap.text) : std::nullopt;
+        MaybeUnit energy = has_energy ? of(description.kinetic.text) : std::nullopt;
+        if (has_energy && !energy) energy = of(description.potential.text);
+        add("gap", gap);
+        add("gap'", product(gap, second, -1.0));
+        add("gap''", product(gap, second, -2.0));
+        add("energy", energy);
+        add("lambda", product(energy, gap, -1.0));
+    }
+
+    MaybeUnit of(std::string_view text) {
+        try {
+            return unit_of(parse(text, scope_, graph_));
+        } catch (const ParseError&) {
+            return std::nullopt;
+        } catch (const TooLarge&) {
+            return std::nullopt;
+        }
+    }
+
+ private:
+    void add(const std::string& name, const MaybeUnit& unit) {
+        scope_.allowed.emplace(name, graph_.symbol(static_cast<std::uint32_t>(symbols_.size())));
+        symbols_.push_back(unit);
+    }
+
+    MaybeUnit unit_of(Expression expression) {
+        // Operands come before what they are operands of.
+        for (auto id = static_cast<std::uint32_t>(nodes_.size()); id <= expression.id(); ++id)
+            nodes_.push_back(unit_of(graph_.node(id)));
+        return nodes_[expression.id()];
+    }
+
+    MaybeUnit unit_of(const Graph::Node& node) {
+        switch (node.operation) {
+            case Operation::symbol:
+                return symbols_[node.a];
+            case Operation::add:
+            case Operation::subtract:
+                return sum(nodes_[node.a], nodes_[node.b]);
+            case Operation::multiply:
+                return product(nodes_[node.a], nodes_[node.b], 1.0);
+            case Operation::divide:
+                return product(nodes_[node.a], nodes_[node.b], -1.0);
+            case Operation::negate:
+                return nodes_[node.a];
+            case Operation::power:
+                return product(Unit{}, nodes_[node.a], node.exponent);
+            case Operation::real_power: {
+                const double exponent = value_of_constant({&graph_, node.b});
+                return std::isfinite(exponent) ? product(Unit{}, nodes_[node.a], exponent) : std::nullopt;
+            }
+            case Operation::sqrt:
+                return product(Unit{}, nodes_[node.a], 0.5);
+            case Operation::asin:
+            case Operation::acos:
+            case Operation::atan:
+                return read("rad");
+            default:
+                return Unit{};  // numbers, and functions whose values are numbers
+        }
+    }
+
+    Graph graph_;
+    Scope scope_;
+    std::vector<MaybeUnit> symbols_, nodes_;
+};
+
+}  // namespace
+
+std::string unit_of_expression(const SystemDescription& description, std::string_view expression) {
+    const MaybeUnit unit = Names(description, expression).of(expression);
+    if (!unit) return "";
+    const std::string text = written(*unit);
+    const std::size_t begin = std::min(expression.find_first_not_of(' '), expression.size());
+    const bool is_force = expression.substr(begin).starts_with("lambda") &&
+                          expression.find_first_not_of(' ', begin + 6) == std::string_view::npos;
+    return is_force && text == "J" ? "N*m" : text;
+}
+
+}  // namespace achilles

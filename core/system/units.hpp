@@ -1,0 +1,18 @@
+// The unit of whatever a system file lets one write, from the units that it gives its coordinates and parameters.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "system/description.hpp"
+
+namespace achilles {
+
+// The unit of an expression of t, coordinates, rates, parameters, gap, gap', gap'', lambda and energy, as a file would
+// write it: "m", "rad/s", "kg*m/s", "N" for a force and "J" for an energy, "N*m" for a contact force whose gap is an
+// angle. "" where it has none, where a quantity in it has a unit that is not made of kg, m, s and rad (N, J, W, Hz and
+// Pa are known), and where the terms of a sum do not agree; a plain number, or a function's value, agrees with any.
+// An angle times a length is a length.
+std::string unit_of_expression(const SystemDescription& description, std::string_view expression);
+
+}  // namespace achilles

@@ -1,0 +1,62 @@
+// Units follow from those that a file gives, and are not made up where it gives none.
+#include "system/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/systems.hpp"
+#include "model/read_system.hpp"
+
+namespace achilles {
+namespace {
+
+std::string unit(const std::string& system, const std::string& expression) {
+    return unit_of_expression(test::load(system)->description(), expression);
+}
+
+TEST(Units, follow_from_those_of_the_file) {
+    EXPECT_EQ(unit("ball_on_sine", "t"), "s");
+    EXPECT_EQ(unit("ball_on_sine", "gap"), "m");
+    EXPECT_EQ(unit("ball_on_sine", "gap'"), "m/s");
+    EXPECT_EQ(unit("ball_on_sine", "gap''"), "m/s^2");
+    EXPECT_EQ(unit("ball_on_sine", "lambda"), "N");
+    EXPECT_EQ(unit("ball_on_sine", "energy"), "J");
+    EXPECT_EQ(unit("ball_on_sine", "sqrt(x'^2 + y'^2)"), "m/s");
+    EXPECT_EQ(unit("ball_on_sine", "m*y'"), "kg*m/s");
+    EXPECT_EQ(unit("ball_on_sine", "energy/(m*g)"), "m");
+    EXPECT_EQ(unit("ball_on_sine", "x'*t - 2*x"), "m");
+    EXPECT_EQ(unit("ball_on_sine", "1/(x*t)"), "1/(m*s)");
+    EXPECT_EQ(unit("ball_on_sine", "(x'^2)^0.75"), "");  // no whole powers
+    EXPECT_EQ(unit("ball_in_bowl", "c*x"), "");          // 1/m times m
+    EXPECT_EQ(unit("bead_in_ring", "r*sin(phi)"), "m");
+    EXPECT_EQ(unit("impact_oscillator", "K*y"), "N");  // N/m
+    EXPECT_EQ(unit("swinging_leg", "c"), "J");         // "N m", which a product does not tell from work
+}
+
+TEST(Units, of_angles) {
+    EXPECT_EQ(unit("double_pendulum", "gap"), "rad");
+    EXPECT_EQ(unit("double_pendulum", "theta1 + theta2"), "rad");
+    EXPECT_EQ(unit("double_pendulum", "gap''"), "rad/s^2");
+    EXPECT_EQ(unit("double_pendulum", "L1*theta1'"), "m/s");
+    EXPECT_EQ(unit("double_pendulum", "lambda"), "N*m");
+    EXPECT_EQ(unit("double_pendulum", " lambda "), "N*m");
+    EXPECT_EQ(unit("double_pendulum", "energy"), "J");
+    EXPECT_EQ(unit("ball_on_sine", "atan(y/x)"), "rad");
+}
+
+// Half of a sum is not known, nor is what two terms that disagree may be.
+TEST(Units, are_nothing_where_they_are_not_known) {
+    const std::string head =
+        "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"y\"\n"
+        "[[coordinate]]\nname = \"z\"\nunit = \"inch\"\n[[parameter]]\nname = \"k\"\nvalue = 1\n";
+    const SystemDescription system = parse_system(head +
+                                                      "[lagrangian]\nkinetic = \"x'^2+y'^2+z'^2\"\npotential = \"y\"\n"
+                                                      "[[constraint]]\ngap = \"x - k\"\nrestitution = 0.5\n",
+                                                  "typed.toml");
+    for (const char* text : {"y", "z", "y'", "x + y", "k*x", "x + x'", "gap", "lambda", "energy", "nothing", "x +"})
+        EXPECT_EQ(unit_of_expression(system, text), "") << text;
+    EXPECT_EQ(unit_of_expression(system, "x + 1"), "m");
+    EXPECT_EQ(unit_of_expression(system, "x + sin(y)"), "m");
+}
+
+}  // namespace
+}  // namespace achilles
