@@ -8,6 +8,7 @@
 #include "output/output.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
+#include "pictures/pdf.hpp"
 
 namespace achilles {
 
@@ -87,6 +88,12 @@ std::string png_of(const Figure& figure, const PictureSize& size, const Notes& n
 
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
     return svg(figure, size.width, size.height, size.scale, assets() / "fonts", notes);
+}
+
+std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format) {
+    if (format == "png") return png_of(figure, size, notes);
+    const std::string drawn = svg_of(figure, size, notes);
+    return format == "svg" ? drawn : pdf_of_svg(drawn, size.width);
 }
 
 }  // namespace achilles

@@ -11,6 +11,7 @@
 #include "journal/journal.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
+#include "pictures/pdf.hpp"
 #include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 
@@ -55,7 +56,7 @@ Words figure_words(const Session& session, const std::string& name) {
     return words;
 }
 
-std::string figure_bytes(const Session& session, bool as_svg) {
+std::string figure_bytes(const Session& session, const std::string& format) {
     const std::string& name = session.system();
     const Origin origin{"Achilles " + version(),
                         command_line(figure_words(session, name)),
@@ -67,13 +68,14 @@ std::string figure_bytes(const Session& session, bool as_svg) {
     PictureSize size;
     size.scale *= publication_scale;
     const Notes carried = notes(origin, {{name, &session.trajectory()}});
-    return as_svg ? svg_of(figure, size, carried) : png_of(figure, size, carried);
+    return picture_of(figure, size, carried, format);
 }
 
 // Of what cannot be drawn here (a library that is missing) only the message matters.
-std::string drawn(const Session& session, const std::string& file, bool as_svg) {
+std::string drawn(const Session& session, const std::string& file, const std::string& format) {
+    if (format == "pdf") need_pdf_writer(file);
     try {
-        return figure_bytes(session, as_svg);
+        return figure_bytes(session, format);
     } catch (const InputError&) {
         throw;
     } catch (const std::runtime_error& problem) {
@@ -84,12 +86,12 @@ std::string drawn(const Session& session, const std::string& file, bool as_svg) 
 std::string bytes_of(const Session& session, const std::string& file) {
     std::string ending = fs::path(file).extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (ending == ".svg" || ending == ".png") return drawn(session, file, ending == ".svg");
+    if (ending == ".svg" || ending == ".png" || ending == ".pdf") return drawn(session, file, ending.substr(1));
     if (ending == ".json") return to_json(session.trajectory());
     if (ending == ".csv") return to_csv(session.trajectory());
     if (ending == ".journal") return journal_text(recipe(session));
     throw InputError(file, {}, "this name does not say what to export",
-                     "end it in .svg or .png (the plots), .json or .csv (the run), or .journal (the session)");
+                     "end it in .svg, .png or .pdf (the plots), .json or .csv (the run), or .journal (the session)");
 }
 
 }  // namespace

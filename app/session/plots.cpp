@@ -217,7 +217,8 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
     std::vector<Sample> close;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
-        framing.legend = medium == Medium::print;
+        framing.legend = false;
+        framing.for_print = medium == Medium::print;
         std::span<const Sample> own = samples;
         if (plot.over_time() && framing.x) {
             if (part != framing.x) {

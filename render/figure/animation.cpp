@@ -34,6 +34,25 @@ void append(std::vector<Point>& all, const std::vector<Point>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
+// What a run will show, without what has happened.
+Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns) {
+    Figure figure = publication(trajectory, views, {columns, false});
+    for (Panel& panel : figure.panels) {
+        for (Markers& markers : panel.markers) markers.points.clear();
+        for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
+    }
+    return figure;
+}
+
+// The first two coordinates; of a single one its phase plane.
+ViewDescription plane_of(const SystemDescription& description) {
+    const std::string& first = description.coordinates[0].name;
+    ViewDescription view;
+    view.x.text = first;
+    view.y.push_back({description.coordinates.size() > 1 ? description.coordinates[1].name : first + "'", {}});
+    return view;
+}
+
 }  // namespace
 
 namespace {
@@ -98,11 +117,12 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
     const double shape = (limits_.x_high - limits_.x_low) / (limits_.y_high - limits_.y_low);
     areas_ = still_areas(shape, views.size(),
                          {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
-    figure_ = publication(trajectory, views, {areas_.columns, false});
-    for (Panel& panel : figure_.panels) {
-        for (Markers& markers : panel.markers) markers.points.clear();
-        for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
-    }
+    figure_ = pale_figure(trajectory, views, areas_.columns);
+    if (!mechanism_.is_empty()) return;
+    const ViewDescription plane = plane_of(trajectory.model->description());
+    plane_view_.emplace(*trajectory.model, plane);
+    plane_ = pale_figure(trajectory, {&plane, 1}, 1);
+    if (!views.empty()) plane_.keys.clear();
 }
 
 // The curves until now in full colour, what happened until now, and a dot where the run is.
@@ -152,6 +172,8 @@ Still Animation::at(double t) {
     const double scale = still.scale = still_scale(size_);
     still.world = mechanism_.draw(now.state, trajectory_.run.parameters, limits_, theme);
     add_trail(still.world.shapes, trail_, samples_, now.t, theme);
+    still.plane = plane_;
+    for (Panel& panel : still.plane.panels) add_present(panel, *plane_view_, now);
     still.plots = figure_;
     for (std::size_t i = 0; i < views_.size(); ++i) add_present(still.plots.panels[i], views_[i], now);
 
@@ -178,7 +200,7 @@ std::string to_text(const Still& still) {
         const Point& last = shape.points.back();
         text += fmt::format("shape of {} points to {:.9g} {:.9g}\n", shape.points.size(), last.x, last.y);
     }
-    return text + to_text(still.plots);
+    return text + (still.plane.panels.empty() ? "" : to_text(still.plane)) + to_text(still.plots);
 }
 
 }  // namespace achilles

@@ -32,6 +32,7 @@ double still_scale(const StillSize& size);
 struct Still {
     Sheet heading;  // and the background
     Drawing world;
+    Figure plane;  // in place of a world that nothing draws: that of two coordinates, with the boundary; else empty
     Figure plots;
     StillAreas areas;
     double scale = 1.0;
@@ -61,6 +62,8 @@ class Animation {
     Trail trail_;
     Drawing limits_;
     Figure figure_;  // the whole run, pale
+    std::optional<PreparedView> plane_view_;
+    Figure plane_;
     StillAreas areas_;
 };
 

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <limits>
 
+#include "figure/boundary.hpp"
 #include "figure/label.hpp"
+#include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
 #include "simulate/sampler.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -58,27 +61,40 @@ Sample sample_at(const Event& event) {
     return sample;
 }
 
-PreparedView::PreparedView(const Model& model, const ViewDescription& view) : name_(view.name) {
+PreparedView::PreparedView(const Model& model, const ViewDescription& view) : name_(view.name), label_(view.label) {
     std::vector<Text> texts{view.x};
     texts.insert(texts.end(), view.y.begin(), view.y.end());
     program_ = model.compile_view(texts);
-    for (const Text& text : texts) quantities_.push_back(quantity(model.description(), text.text));
+    for (const Text& text : texts)
+        quantities_.push_back(quantity(model.description(), text.text, quantities_.empty() ? "" : view.unit));
+    constexpr std::size_t most_names = 3;
+    for (std::size_t i = 1; i < quantities_.size() && view.label.empty() && view.y.size() <= most_names; ++i)
+        label_ += (i > 1 ? ", " : "") + quantities_[i].label;
+    if (!view.label.empty() && view.y.size() == 1) quantities_[1].label = view.label;
 }
 
-PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written) {
+std::string PreparedView::unit() const {
+    const auto other = [&](const Quantity& quantity) { return quantity.unit != quantities_[1].unit; };
+    return std::any_of(quantities_.begin() + 1, quantities_.end(), other) ? "" : quantities_[1].unit;
+}
+
+PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written,
+                                              const std::string& unit) {
     const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
     const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
-    Quantity result{typeset(text), "", 1.0, text == "t"};
-    bool units = false;
-    for (const CoordinateDescription& c : description.coordinates) {
-        units = units || !c.unit.empty();
-        const bool is_rate = text == c.name + "'";
-        if (text != c.name && !is_rate) continue;
-        result.unit = c.unit == "rad" ? "\u00B0" : typeset_unit(c.unit);
-        if (c.unit == "rad") result.factor = degrees(1.0);
-        if (is_rate && !result.unit.empty()) result.unit += "/s";
+    Quantity result{typeset(text), unit, 1.0, text == "t"};
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const CoordinateDescription& c = description.coordinates[i];
+        if (text == c.name) result.coordinate = i;
+        // Whatever the unit is called, a rate's is so much a second.
+        if (unit.empty() && (text == c.name || text == c.name + "'")) result.unit = unit_of(description, text);
     }
-    if (result.is_time && units) result.unit = "s";
+    if (result.unit.empty()) result.unit = unit_of_expression(description, text);
+    if (result.unit == "rad" || result.unit.starts_with("rad/")) {
+        result.factor = degrees(1.0);
+        result.unit.replace(0, 3, "\u00B0");
+    }
+    result.unit = typeset_unit(result.unit);
     return result;
 }
 
@@ -131,7 +147,10 @@ void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
             Curve& curve = panel.curves.emplace_back();
             curve.stroke = phase_stroke(theme, kind, i, curves);
             const bool first = kind == Phase::Kind::hybrid;
-            curve.label = curves == 1 ? legend_text(kind) : first ? quantities[i + 1].label : "";
+            // Units that differ have no other place.
+            const std::string name =
+                with_unit(quantities[i + 1].label, view.unit().empty() ? quantities[i + 1].unit : "");
+            curve.label = curves == 1 ? legend_text(kind) : first ? name : "";
         }
     }
 }
@@ -224,6 +243,31 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
         set_ticks(axis, range.low, range.high, margin);
 }
 
+// Widens an axis about its middle until it is at least a part of the other one: what is true to shape is no thread.
+void widen(Axis& axis, const Axis& other) {
+    constexpr double least = 0.3;
+    const double more = 0.5 * (least * (other.high - other.low) - (axis.high - axis.low));
+    if (more > 0.0) set_ticks(axis, axis.low - more, axis.high + more, 0.0);
+}
+
+// A path in a plane: with one unit on both axes it is true to shape, unless it is so long that nothing would be seen.
+void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                  const Framing& framing, const Theme& theme) {
+    constexpr double longest = 12.0;
+    const auto& quantities = view.quantities();
+    const double shape = (panel.x.high - panel.x.low) / (panel.y.high - panel.y.low);
+    const bool is_asked = framing.x && framing.y;  // then the limits stand
+    panel.equal_axes = !framing.log_x && !framing.log_y && !quantities[0].unit.empty() &&
+                       quantities[0].unit == view.unit() && (is_asked || std::max(shape, 1.0 / shape) <= longest);
+    if (panel.equal_axes && !framing.x) widen(panel.x, panel.y);
+    if (panel.equal_axes && !framing.y) widen(panel.y, panel.x);
+    for (Curve& curve : panel.curves)
+        if (!curve.stroke.dash.empty() && !framing.log_x && !framing.log_y)
+            curve.points = without_retraced(curve.points, panel.x, panel.y);
+    panel.boundary.stroke = {theme.surface, 1.0, {}};
+    panel.boundary.points = boundary(trajectory, samples, view, panel);
+}
+
 }  // namespace
 
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
@@ -247,8 +291,10 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     set_limits(panel.y, framing.y, y_range, 0.07);
     thin(panel);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
-    if (single) panel.y.label = with_unit(quantities[1].label, quantities[1].unit);
-    if (!single && framing.legend) place_legend(panel);
+    panel.y.label = view.label().empty() ? view.unit() : with_unit(view.label(), view.unit());
+    if (framing.for_print && !over_time) make_picture(panel, trajectory, samples, view, framing, theme);
+    panel.legend = panel.legend_above = !single && framing.for_print;
+    if (!single && framing.legend && !framing.for_print) place_legend(panel);
     return panel;
 }
 

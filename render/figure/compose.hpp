@@ -24,15 +24,20 @@ class PreparedView {
         std::string label, unit;
         double factor = 1.0;
         bool is_time = false;
+        std::optional<std::size_t> coordinate{};  // if it is one: its number
     };
     const std::string& name() const { return name_; }
     const Program& program() const { return program_; }
     const std::vector<Quantity>& quantities() const { return quantities_; }  // x, then every y
+    // What the y axis is called: as the file says, else a curve's name, or those of two or three.
+    const std::string& label() const { return label_; }
+    // The unit of all curves, as it is shown; "" where they have several.
+    std::string unit() const;
 
  private:
-    static Quantity quantity(const SystemDescription& description, const std::string& written);
+    static Quantity quantity(const SystemDescription& description, const std::string& written, const std::string& unit);
 
-    std::string name_;
+    std::string name_, label_;
     Program program_;  // x, then every y
     std::vector<Quantity> quantities_;
 };
@@ -51,6 +56,9 @@ struct Framing {
     bool log_x = false, log_y = false;
     std::set<std::size_t> hidden;  // curves, counted from 0 as the view's y
     bool legend = true;            // where there are several curves
+    // For print a path is true to shape, h = 0 is drawn in it, and what lies on what is there already is not drawn again;
+    // a legend stands above the panel, where it needs no room of the data.
+    bool for_print = false;
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 

@@ -39,6 +39,7 @@ struct Markers {
     Color fill, edge;
     double size = 6.0;  // across
     std::vector<Point> points;
+    double apart = 0.05;  // one that is nearer than this to another is not drawn
 };
 
 // A stretch of the x axis, over the whole height and behind everything; it may go on beyond the limits.
@@ -66,6 +67,7 @@ struct Panel {
     Axis x, y;
     bool equal_axes = false;  // one unit is the same length on both axes
     std::vector<Band> bands;
+    Curve boundary;  // behind the curves: what the path cannot cross
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     bool legend = false;

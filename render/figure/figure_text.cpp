@@ -64,6 +64,9 @@ std::string to_text(const Figure& figure) {
         for (const Band& band : panel.bands)
             text += fmt::format("  band \"{}\" {} {:.9g} to {:.9g}\n", band.label, color_text(band.color), band.low,
                                 band.high);
+        if (!panel.boundary.points.empty())
+            text += fmt::format("  boundary {} points {}:{}\n", color_text(panel.boundary.stroke.color),
+                                panel.boundary.points.size(), points_text(panel.boundary.points));
         for (const Curve& curve : panel.curves)
             text +=
                 fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label,

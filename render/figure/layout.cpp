@@ -48,16 +48,25 @@ Mark mark(const Markers& markers, const Point& at, const Metrics& m) {
 }
 
 void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
-    Point last{std::numeric_limits<double>::infinity(), 0.0};
+    // Whole or not at all, lest half a marker at the rim be another shape; what is on the rim may miss it by rounding.
+    constexpr double slack = 0.5;
+    const auto is_inside = [&](const Point& p) {
+        return p.x >= plot.x - slack && p.x <= plot.x + plot.width + slack && p.y >= plot.y - slack &&
+               p.y <= plot.y + plot.height + slack;
+    };
+    // Impacts crowd before a Zeno point; of the last ones on every curve of the panel those that stand apart are drawn.
+    constexpr std::size_t remembered = 32;
+    std::vector<Point> laid;
     for (const Point& point : markers.points) {
         const Point at = map(point);
-        // Whole or not at all: half a marker at the rim would be another shape.
-        if (!(at.x >= plot.x && at.x <= plot.x + plot.width && at.y >= plot.y && at.y <= plot.y + plot.height))
+        if (!is_inside(at)) continue;
+        const auto recent = laid.end() - static_cast<std::ptrdiff_t>(std::min(laid.size(), remembered));
+        if (std::any_of(recent, laid.end(), [&](const Point& other) {
+                return std::hypot(at.x - other.x, at.y - other.y) < markers.apart * m.scale;
+            }))
             continue;
-        // Impacts crowd before a Zeno point; what would cover the last one exactly is not drawn again.
-        if (std::hypot(at.x - last.x, at.y - last.y) < 0.05) continue;
         sheet.emplace_back(mark(markers, at, m));
-        last = at;
+        laid.push_back(at);
     }
 }
 
@@ -71,12 +80,14 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     const PanelMap map(panel, plot);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
-    for (const Curve& curve : panel.curves) {
+    const auto lay = [&](const Curve& curve) {
         Path path{{}, scaled(curve.stroke, m.scale), plot};
         path.points.reserve(curve.points.size());
         for (const Point& point : curve.points) path.points.push_back(map(point));
         sheet.emplace_back(std::move(path));
-    }
+    };
+    if (!panel.boundary.points.empty()) lay(panel.boundary);
+    for (const Curve& curve : panel.curves) lay(curve);
     for (const Markers& markers : panel.markers)
         if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
 }
@@ -261,10 +272,25 @@ struct Grid {
             y += room.top + height + room.bottom + between;
         }
         size = {0.0F, 0.0F, width, height};
+        count = figure.panels.size();
+    }
+    // Of a panel. Those of a last row that is not full share its whole width.
+    Rectangle plot(std::size_t i) const {
+        const std::size_t columns = xs.size(), row = i / columns, in_row = std::min(columns, count - row * columns);
+        if (in_row == columns) return on_pixels({xs[i % columns], ys[row], size.width, size.height});
+        Margins widest;
+        for (const Margins& room : across) widest = both(widest, room);
+        const float whole = xs.back() + size.width - xs.front(), shared = static_cast<float>(in_row);
+        const float apart = (xs.back() - xs.front()) / static_cast<float>(columns - 1) - size.width;
+        const float between = std::max(apart, widest.left + widest.right);
+        const float width = (whole - (shared - 1.0F) * between) / shared;
+        return on_pixels(
+            {xs.front() + static_cast<float>(i % columns) * (width + between), ys[row], width, size.height});
     }
     std::vector<Margins> across, down;  // of columns, left and right count; of rows, top and bottom
     std::vector<float> xs, ys;
     Rectangle size;
+    std::size_t count = 0;
 };
 
 }  // namespace
@@ -290,8 +316,7 @@ Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double 
         const std::size_t column = i % grid.xs.size(), row = i / grid.xs.size();
         const Margins room{grid.across[column].left, grid.across[column].right, grid.down[row].top,
                            grid.down[row].bottom};
-        lay_at(figure.panels[i], figure, sheet,
-               on_pixels({grid.xs[column], grid.ys[row], grid.size.width, grid.size.height}), room, m);
+        lay_at(figure.panels[i], figure, sheet, grid.plot(i), room, m);
     }
     return sheet;
 }

@@ -124,7 +124,7 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, con
     run.run();
     const DrawingDescription& d = item.description;
     Placed placed;
-    if (d.shape == Kind::disc) placed.radius = run.output(2);
+    if (is_round(d.shape)) placed.radius = run.output(2);
     if (!d.width.text.empty()) placed.width = run.output(run.output_count() - 1);
     if (d.shape != Kind::curve) {
         for (std::size_t i = 0; i < d.points.size(); ++i)
@@ -152,7 +152,7 @@ std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
     const Item *disc = nullptr, *line = nullptr;
     for (const Item& item : items_) {
         if (!item.moves) continue;
-        if (item.description.shape == Kind::disc) disc = &item;
+        if (is_round(item.description.shape)) disc = &item;
         if (item.description.shape == Kind::segment || item.description.shape == Kind::polyline) line = &item;
     }
     const Item* held = disc != nullptr ? disc : line;
@@ -163,7 +163,7 @@ std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
 Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
     Grip grip;
     grip.run_ = model_.evaluator(item.program, parameters);
-    grip.disc_ = item.description.shape == Kind::disc;
+    grip.disc_ = is_round(item.description.shape);
     grip.first_ = 2 * point;
     return grip;
 }
@@ -198,7 +198,7 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
         Placed placed = place(item, run, state);
-        const Shape::Kind kind = d.shape == Kind::disc   ? Shape::Kind::disc
+        const Shape::Kind kind = is_round(d.shape)       ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
         Shape& shape = add(kind, color, placed.width);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "figure/label.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -30,7 +31,7 @@ std::string lettered(std::size_t i, const std::string& name) {
 // Smaller than on a screen. Impacts crowd: rims would leave odd shapes of those that others cover.
 Markers for_print(Markers markers, Event::Kind kind) {
     markers.size = kind == Event::Kind::impact ? 5.5 : 9.0;
-    if (kind == Event::Kind::impact) markers.edge.a = 0;
+    if (kind == Event::Kind::impact) markers.edge.a = 0, markers.apart = 1.3 * markers.size;
     return markers;
 }
 
@@ -56,6 +57,9 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         if (hues) stroke.color = theme.ink;
         keys.push_back({legend_text(kind), stroke});
     }
+    const auto bounded = [](const Panel& panel) { return !panel.boundary.points.empty(); };
+    if (const auto one = std::find_if(panels.begin(), panels.end(), bounded); one != panels.end())
+        keys.push_back({typeset("gap") + " = 0", one->boundary.stroke});
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         if (!any_of(runs, &Trajectory::events, kind)) continue;
         const Markers markers = for_print(event_markers(theme, kind), kind);
@@ -97,12 +101,10 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
     const Theme theme = light_theme();
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
-    framing.legend = false;  // in a corner, for which it would make room
+    framing.for_print = true;
     std::vector<Panel> panels;
-    for (const ViewDescription& view : views) {
+    for (const ViewDescription& view : views)
         panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme, framing));
-        panels.back().legend = view.y.size() > 1;
-    }
     return publication(trajectory, std::move(panels), style);
 }
 

@@ -129,7 +129,10 @@ void paint(const Still& still, ImDrawList* list) {
     paint(still.heading, list);
     const auto room = static_cast<float>(std::round(still_margin * still.scale));
     const Rectangle& w = still.areas.world;
-    paint(still.world, list, {w.x + room, w.y, w.width - 2.0F * room, w.height - room}, still.scale);
+    if (still.plane.panels.empty())
+        paint(still.world, list, {w.x + room, w.y, w.width - 2.0F * room, w.height - room}, still.scale);
+    else
+        paint(still.plane, list, w, still.scale);
     if (!still.plots.panels.empty()) paint(still.plots, list, still.areas.plots, still.scale);
 }
 

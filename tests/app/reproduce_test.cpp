@@ -252,8 +252,9 @@ TEST(Figure, RefusalsAreOneMessageAndLeaveNothing) {
     const Folder folder;
     const std::pair<std::string, std::string> cases[] = {
         {"figure ball_on_sine --out a.jpg",
-         "--out a.jpg: this name says neither PNG nor SVG\nend it in .png or .svg, or add --format png or --format "
-         "svg\n"},
+         "--out a.jpg: this name says neither PNG nor SVG nor PDF\nend it in .png, .svg or .pdf, or add --format png, "
+         "svg "
+         "or pdf\n"},
         {"figure ball_on_sine --out a.png --view heigt",
          "--view heigt: this system has no view 'heigt'; did you mean 'height'?\nits views are: horizontal, height, "
          "gap, path, horizontal rate, contact force\n"},
@@ -321,6 +322,29 @@ TEST(Figure, IsDrawnWhereNoMemoryCanBeMadeExecutable) {
     EXPECT_EQ(WEXITSTATUS(status), 0);
     // Three curves' worth of ink, not an empty page.
     EXPECT_GT(content(out).size(), 5000U);
+}
+
+// By librsvg's program; where it is missing the message names its package, before the run.
+TEST(Figure, is_written_as_pdf) {
+    const Folder folder;
+    const std::string figure = "figure ball_on_sine --end 5 --view height ";
+    const Folder tools;  // a PATH with what runs the program, and nothing else
+    std::filesystem::create_symlink("/usr/bin/timeout", tools.path() / "timeout");
+    const Answer missing = folder.run(figure + "--out a.pdf", "PATH='" + tools.path().string() + "'");
+    EXPECT_EQ(missing.status, 2);
+    EXPECT_EQ(missing.err,
+              "--out a.pdf: a PDF is written by rsvg-convert, which is not installed\n"
+              "install the package librsvg2-bin, or end the name in .svg\n");
+    EXPECT_TRUE(folder.files().empty());
+    if (std::system("rsvg-convert --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "without rsvg-convert";
+    ASSERT_EQ(folder.run(figure + "--out a.pdf").status, 0);
+    ASSERT_EQ(folder.run(figure + "--out b.PDF").status, 0);
+    const std::string pdf = content(folder.path() / "a.pdf");
+    EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
+    EXPECT_EQ(pdf, content(folder.path() / "b.PDF"));                  // no date in it
+    EXPECT_NE(pdf.find("/MediaBox [ 0 0 481.88"), std::string::npos);  // 170 mm
+    ASSERT_EQ(folder.run("figure ball_on_sine --end 5 --do \"export c.pdf\" --out d.svg --allow-files").status, 0);
+    EXPECT_EQ(content(folder.path() / "c.pdf").substr(0, 5), "%PDF-");
 }
 
 TEST(Figure, TooLittleMemoryIsAMessage) {

@@ -39,6 +39,11 @@ Color turned(const Color& color) {
     return {channel(5.0), channel(3.0), channel(1.0), color.a};
 }
 
+// What is nearly grey has none that could be another.
+bool has_hue(const Color& color) {
+    return std::max({color.r, color.g, color.b}) - std::min({color.r, color.g, color.b}) > 40;
+}
+
 // Whether no other marker covers it.
 bool stands_alone(const Sheet& sheet, std::size_t item) {
     const auto& mark = std::get<Mark>(sheet[item]);
@@ -106,8 +111,8 @@ std::vector<Lie> lies_about(const Sheet& truth) {
             // A straight line moved along itself stays what it is.
             if (goes.y > visible) lies.push_back({Lie::Kind::moved_right, i, 0});
             if (goes.x > visible) lies.push_back({Lie::Kind::moved_up, i, 0});
-            if (goes.x + goes.y > visible)
-                for (const Lie::Kind kind : {Lie::Kind::other_hue, Lie::Kind::thicker}) lies.push_back({kind, i, 0});
+            if (goes.x + goes.y > visible && has_hue(path->stroke.color)) lies.push_back({Lie::Kind::other_hue, i, 0});
+            if (goes.x + goes.y > visible) lies.push_back({Lie::Kind::thicker, i, 0});
         }
         if (std::holds_alternative<Mark>(truth[i]) && stands_alone(truth, i))
             lies.push_back({Lie::Kind::no_marker, i, 0});

@@ -34,6 +34,27 @@ TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {
     EXPECT_DOUBLE_EQ(still_scale({16384, 16384, 8.0}), 11.0);
 }
 
+// Without a [[drawing]]: the plane of two coordinates with h = 0, the phase plane of one.
+TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
+    const std::string rest = "[[constraint]]\ngap = \"a\"\nrestitution = 0.5\n";
+    const std::string one = "title = \"\"\n[[coordinate]]\nname = \"a\"\nstart = 1\nunit = \"m\"\n";
+    const auto plane = test::typed(one + "[[coordinate]]\nname = \"b\"\nrate = 1\n[lagrangian]\n" +
+                                   "kinetic = \"(a'^2 + b'^2)/2\"\npotential = \"a\"\n" + rest);
+    const auto line = test::typed(one + "[lagrangian]\nkinetic = \"a'^2/2\"\npotential = \"a\"\n" + rest);
+    for (const auto& model : {plane, line}) {
+        const Trajectory trajectory = simulate(model, model->default_run());
+        Animation animation(trajectory, {}, {1600, 1000, 1.0}, 1.0 / 30.0);
+        const Still still = animation.at(1.0);
+        ASSERT_EQ(still.plane.panels.size(), 1u);
+        const Panel& panel = still.plane.panels[0];
+        EXPECT_EQ(panel.x.label, "𝑎 (m)");
+        EXPECT_EQ(panel.y.label, model == plane ? "𝑏" : "𝑎\u0307 (m/s)");
+        EXPECT_EQ(panel.boundary.points.empty(), model == line);
+        EXPECT_NEAR(panel.markers.back().points.at(0).x, 0.5, 1e-9);  // where it is now
+        EXPECT_EQ(to_text(still).find("[[drawing]]"), std::string::npos);
+    }
+}
+
 TEST(Animation, ShowsThePresentAndFillsThePlots) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "core/systems.hpp"
 #include "figure/label.hpp"
@@ -164,6 +165,23 @@ TEST(Composing, AnglesAreShownInDegrees) {
     EXPECT_NEAR(panel.curves[0].points[0].y, 30.0, 1e-12);
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
     EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);
+}
+
+// Of what is an angle, too, not of coordinates alone.
+TEST(Composing, angles_that_are_computed_are_shown_in_degrees) {
+    const auto model = test::load("double_pendulum");
+    ViewDescription view;
+    view.x.text = "t";
+    for (const auto& [text, label, factor] :
+         {std::tuple{"gap", "ℎ (°)", 180.0 / std::numbers::pi},
+          {"theta1 + theta2", "𝜃₁ + 𝜃₂ (°)", 180.0 / std::numbers::pi},
+          {"theta1' - theta2'", "𝜃\u0307₁ − 𝜃\u0307₂ (°/s)", 180.0 / std::numbers::pi},
+          {"lambda", "𝜆 (N·m)", 1.0}}) {
+        view.y = {{text, {}}};
+        const PreparedView prepared(*model, view);
+        EXPECT_EQ(with_unit(prepared.label(), prepared.unit()), label);
+        EXPECT_EQ(prepared.quantities()[1].factor, factor) << text;
+    }
 }
 
 // With thousands of steps no flight may lose its height.

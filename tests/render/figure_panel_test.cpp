@@ -137,6 +137,32 @@ TEST(Panels, AreBoundedForManyImpacts) {
     EXPECT_NEAR(highest, std::sqrt(0.2), 1e-3);  // thinning keeps the extremes
 }
 
+TEST(Mechanism, a_circle_is_the_outline_of_a_disc) {
+    const std::string system =
+        "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\n"
+        "potential = \"x\"\n[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n";
+    const auto shape = [&](const std::string& drawing) {
+        const auto model = test::typed(system + "[[drawing]]\nat = [\"x\", 2]\nradius = \"3*x\"\n" + drawing);
+        const Trajectory trajectory = simulate(model, model->default_run());
+        const Mechanism mechanism(*model);
+        return mechanism
+            .draw({trajectory.run.q, trajectory.run.v}, trajectory.run.parameters,
+                  mechanism.limits(trajectory, plot_samples(trajectory)), light_theme())
+            .shapes.at(0);
+    };
+    const Shape disc = shape("shape = \"disc\"\n"), circle = shape("shape = \"circle\"\n"),
+                outline = shape("shape = \"disc\"\nfill = false\n");
+    EXPECT_TRUE(disc.fill);
+    for (const Shape& open : {circle, outline}) {
+        EXPECT_EQ(open.kind, Shape::Kind::disc);
+        EXPECT_FALSE(open.fill);
+        EXPECT_EQ(open.radius, 3.0);
+        EXPECT_GT(open.stroke.width, 0.0);
+        EXPECT_TRUE(open.moves);
+    }
+    EXPECT_TRUE(shape("shape = \"circle\"\nfill = true\n").fill);
+}
+
 TEST(MechanismLimits, StayAtTheMotion) {
     const std::string disc = "[[drawing]]\nshape = \"disc\"\nat = [\"x\", \"y\"]\nradius = 0.3\n";
     const auto limits = [](const std::string& text) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/systems.hpp"
@@ -108,6 +110,180 @@ TEST_F(Publication, several_curves_fill_their_panel) {
         for (const Point& p : curve.points) most = std::max(most, std::isnan(p.y) ? 0.0 : p.y);
     EXPECT_GT(panel.y.high, most);
     EXPECT_LT(panel.y.high, 1.15 * most);
+}
+
+// Circles are circles: a path is as long as it is high where its axes say so, in the sheet that is drawn.
+TEST_F(Publication, axes_of_one_unit_are_equally_long) {
+    const auto lengths = [](const Figure& figure) {
+        const Panel& panel = figure.panels[0];
+        Rectangle clip;
+        for (const auto& item : layout(figure, half, {0, 0, 900, 700}, 1.0))
+            if (const auto* path = std::get_if<Path>(&item); path != nullptr && path->points.size() > 100)
+                clip = path->clip;
+        return std::array{clip.width / (panel.x.high - panel.x.low), clip.height / (panel.y.high - panel.y.low)};
+    };
+    for (const char* name : {"bead_in_ring", "ball_on_cylinder", "cart_pendulum", "ball_on_sine"}) {
+        const auto system = test::load(name);
+        const auto& views = system->description().views;
+        const auto path = std::find_if(views.begin(), views.end(), [](const auto& v) { return v.x.text != "t"; });
+        const auto [x, y] = lengths(publication(simulate(system, system->default_run()), {{*path}}, {}));
+        EXPECT_NEAR(x / y, 1.0, 0.02) << name;
+    }
+    EXPECT_TRUE(of({view("path", "x", {"y"})}).panels[0].equal_axes);
+    EXPECT_FALSE(of({view("phase plane", "x", {"x'"})}).panels[0].equal_axes);
+    EXPECT_FALSE(of({view("height", "t", {"y"})}).panels[0].equal_axes);
+    // Its whole length, and high enough to be read: the limits are widened.
+    const Panel panel = of({view("path", "x", {"y"})}).panels[0];
+    EXPECT_GE(panel.y.high - panel.y.low, 0.29 * (panel.x.high - panel.x.low));
+}
+
+// In a path h = 0 is drawn: in the plane of coordinates, and where a mechanism's point goes.
+TEST_F(Publication, a_path_shows_the_boundary) {
+    const auto of_path = [](const std::string& name) {
+        const auto system = test::load(name);
+        const auto& views = system->description().views;
+        const auto path = std::find_if(views.begin(), views.end(), [](const auto& v) { return v.x.text != "t"; });
+        return publication(simulate(system, system->default_run()), {{*path}}, {}).panels[0];
+    };
+    const Panel ball = of_path("ball_on_sine"), bead = of_path("bead_in_ring");
+    EXPECT_GT(ball.boundary.points.size(), 300u);
+    for (const Point& p : ball.boundary.points)
+        EXPECT_TRUE(std::isnan(p.x) || std::abs(p.y - std::sin(p.x)) < 2e-3) << p.x;
+    double left = 0.0, right = 0.0, top = 0.0, bottom = 0.0;
+    for (const Point& p : bead.boundary.points) {
+        if (!std::isfinite(p.x)) continue;
+        EXPECT_NEAR(std::hypot(p.x, p.y), 0.5, 1e-9);
+        left = std::min(left, p.x), right = std::max(right, p.x);
+        bottom = std::min(bottom, p.y), top = std::max(top, p.y);
+    }
+    EXPECT_TRUE(left < -0.49 && right > 0.49 && bottom < -0.49 && top > 0.49);
+    EXPECT_TRUE(of_path("ball_on_egg_crate").boundary.points.empty());  // h depends on the height, too
+    EXPECT_TRUE(of_path("double_pendulum").boundary.points.empty());    // a phase plane
+    EXPECT_TRUE(of({view("x", "t", {"x"})}).panels[0].boundary.points.empty());
+    const auto keys = of({view("path", "x", {"y"})}).keys;
+    EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.label == "ℎ = 0"; }));
+}
+
+TEST_F(Publication, axes_say_their_units) {
+    const auto label = [&](const std::vector<std::string>& ys) { return of({view("", "t", ys)}).panels[0].y.label; };
+    EXPECT_EQ(label({"gap"}), "ℎ (m)");
+    EXPECT_EQ(label({"gap'"}), "ℎ\u0307 (m/s)");
+    EXPECT_EQ(label({"lambda"}), "𝜆 (N)");
+    EXPECT_EQ(label({"energy"}), "energy (J)");
+    EXPECT_EQ(label({"sqrt(x'^2 + y'^2)"}), "sqrt(𝑥\u0307² + 𝑦\u0307²) (m/s)");
+    EXPECT_EQ(label({"x", "y"}), "𝑥, 𝑦 (m)");
+    EXPECT_EQ(label({"x", "y'"}), "𝑥, 𝑦\u0307");
+    EXPECT_EQ(of({view("", "t", {"x", "y'"})}).panels[0].curves[2].label, "𝑦\u0307 (m/s)");
+    EXPECT_EQ(label({"x", "y", "gap", "sin(x)*y"}), "m");
+    ViewDescription own = view("speed", "t", {"sqrt(x'^2 + y'^2)"});
+    own.label = "speed";
+    EXPECT_EQ(of({own}).panels[0].y.label, "speed (m/s)");
+    own.unit = "km/s";
+    EXPECT_EQ(of({own}).panels[0].y.label, "speed (km/s)");
+    own.y = {own.y[0], own.y[0]};
+    own.unit = "";
+    EXPECT_EQ(of({own}).panels[0].y.label, "speed (m/s)");
+}
+
+// Of plots that were arranged by hand, too.
+TEST_F(Publication, a_legend_above_needs_no_room_in_the_panel) {
+    const PreparedView rates(*model, view("rates", "t", {"x'", "y'"}));
+    Framing screen, print;
+    screen.legend = false;
+    print.for_print = true;
+    const auto samples = plot_samples(trajectory);
+    const Panel a = compose(trajectory, samples, rates, light_theme(), screen);
+    const Panel b = compose(trajectory, samples, rates, light_theme(), print);
+    EXPECT_TRUE(b.legend && b.legend_above && !a.legend);
+    EXPECT_EQ(a.y.high, b.y.high);
+}
+
+// A last row that is not full has no hole: its panels are wider, and end where the others do.
+TEST_F(Publication, a_last_row_fills_its_width) {
+    const ViewDescription y = view("height", "t", {"y"}), x = view("x", "t", {"x"});
+    const auto clips = [&](std::size_t panels, int columns) {
+        std::vector<Rectangle> found;
+        for (const auto& item :
+             layout(of(std::vector<ViewDescription>(panels, y), columns), half, {0, 0, 1200, 900}, 1.0)) {
+            const auto* path = std::get_if<Path>(&item);
+            if (path == nullptr || path->points.size() < 100) continue;
+            if (found.empty() || found.back().x != path->clip.x || found.back().y != path->clip.y)
+                found.push_back(path->clip);
+        }
+        return found;
+    };
+    for (const auto& [panels, columns] : {std::pair{5, 2}, {3, 2}, {7, 3}, {8, 3}}) {
+        const auto all = clips(static_cast<std::size_t>(panels), columns);
+        ASSERT_EQ(all.size(), static_cast<std::size_t>(panels));
+        const Rectangle &first = all.front(), &last = all.back(), &corner = all[static_cast<std::size_t>(columns) - 1];
+        EXPECT_NEAR(last.x + last.width, corner.x + corner.width, 1.5) << panels << " " << columns;
+        EXPECT_EQ(all[static_cast<std::size_t>(panels - panels % columns)].x, first.x);
+        EXPECT_GT(last.width, first.width);
+        for (std::size_t i = 1; i < all.size(); ++i)
+            EXPECT_TRUE(all[i].y != all[i - 1].y || all[i].x > all[i - 1].x + all[i - 1].width + 20.0F);
+    }
+}
+
+// Impacts before a Zeno point are seen one by one, as long as they stand apart; on each of several curves.
+TEST_F(Publication, impacts_that_crowd_thin_out) {
+    for (const auto& ys : {std::vector<std::string>{"y"}, {"y", "x'"}}) {
+        const Figure figure = of({view("", "t", ys)});
+        const Color fill = figure.panels[0].markers[0].fill;
+        std::vector<Point> squares;
+        for (const auto& item : layout(figure, half, {0, 0, 1200, 800}, 1.4))
+            if (const auto* mark = std::get_if<Mark>(&item);
+                mark != nullptr && mark->shape == Markers::Shape::square && mark->fill == fill && mark->at.y > 60.0)
+                squares.push_back(mark->at);
+        EXPECT_GT(squares.size(), 5u * ys.size());
+        EXPECT_LT(squares.size(), figure.panels[0].markers[0].points.size());
+        double nearest = 1e9;
+        for (std::size_t i = 0; i < squares.size(); ++i)
+            for (std::size_t j = 0; j < i; ++j)
+                nearest = std::min(nearest, std::hypot(squares[i].x - squares[j].x, squares[i].y - squares[j].y));
+        EXPECT_GT(nearest, 5.5 * 1.4);  // across
+    }
+}
+
+// A marker on the very end of an axis is there, whole, however wide the picture is.
+TEST(Layout, markers_on_the_rim_are_drawn) {
+    Figure figure;
+    Panel& panel = figure.panels.emplace_back();
+    panel.x.low = 0.1, panel.x.high = 20.3;
+    panel.y.low = -0.3, panel.y.high = 0.7;
+    panel.equal_axes = true;
+    Markers& markers = panel.markers.emplace_back();
+    markers.points = {{0.1, -0.3}, {20.3, -0.3}, {0.1, 0.7}, {20.3, 0.7}};
+    for (float width = 300.0F; width < 400.0F; width += 1.0F) {
+        int marks = 0;
+        for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0)) marks += item.index() == 2 ? 1 : 0;
+        EXPECT_EQ(marks, 4) << width;
+    }
+}
+
+// A second lap of dashes over the first would look solid.
+TEST_F(Publication, what_is_retraced_is_drawn_once) {
+    const auto system = test::typed(
+        "title = \"lap\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[coordinate]]\nname = \"y\"\nrate = 1\n"
+        "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"(x^2 + y^2)/2\"\n"
+        "[[constraint]]\ngap = \"x + 9\"\nrestitution = 0.5\n[run]\nend_time = 62.0\n");
+    const Figure figure = publication(simulate(system, system->default_run()), {{view("", "x", {"y"})}}, {});
+    double length = 0.0;
+    const auto& points = figure.panels[0].curves[0].points;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+        const double step = std::hypot(points[i].x - points[i - 1].x, points[i].y - points[i - 1].y);
+        length += std::isfinite(step) ? step : 0.0;
+    }
+    EXPECT_NEAR(length, 2.0 * 3.14159265, 0.1);
+}
+
+// Where a path crosses itself it goes on.
+TEST_F(Publication, crossings_are_not_retraced) {
+    const auto system = test::typed(
+        "title = \"eight\"\n[[coordinate]]\nname = \"x\"\nrate = 1\n[[coordinate]]\nname = \"y\"\nrate = 2\n"
+        "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"(x^2 + 4*y^2)/2\"\n"
+        "[[constraint]]\ngap = \"x + 9\"\nrestitution = 0.5\n[run]\nend_time = 6.28\n");
+    const Figure figure = publication(simulate(system, system->default_run()), {{view("", "x", {"y"})}}, {});
+    for (const Point& p : figure.panels[0].curves[0].points) EXPECT_TRUE(std::isfinite(p.x));
 }
 
 // A long title stands above a legend that leaves no room beside it, a short one in its line.

@@ -70,7 +70,9 @@ void add_system_argument(CLI::App& command, std::string& system) {
 }
 
 void add_format_option(CLI::App& command, std::string& format, const std::string& about) {
-    command.add_option("--format", format, about)->type_name("png|svg")->check(CLI::IsMember({"png", "svg"}));
+    command.add_option("--format", format, about)
+        ->type_name("png|svg|pdf")
+        ->check(CLI::IsMember({"png", "svg", "pdf"}));
 }
 
 void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about) {

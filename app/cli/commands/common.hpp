@@ -16,7 +16,7 @@ namespace achilles {
 // SYSTEM, which must be given.
 void add_system_argument(CLI::App& command, std::string& system);
 
-// --format png|svg.
+// --format png|svg|pdf.
 void add_format_option(CLI::App& command, std::string& format, const std::string& about);
 
 // --view NAME, as often as wished for.

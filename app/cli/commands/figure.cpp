@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/commands/commands.hpp"
@@ -9,6 +10,7 @@
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
+#include "pictures/pdf.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
 #include "session/open_session.hpp"
@@ -28,23 +30,25 @@ struct FigureArguments {
     PictureSize size;
 };
 
-// By --format, else by the ending of --out.
-bool wants_svg(const FigureArguments& arguments) {
-    if (!arguments.format.empty()) return arguments.format == "svg";
-    const std::string ending = std::filesystem::path(arguments.out).extension().string();
-    if (ending == ".svg" || ending == ".SVG") return true;
-    if (ending == ".png" || ending == ".PNG" || arguments.out == "-") return false;
-    throw InputError("--out " + arguments.out, {}, "this name says neither PNG nor SVG",
-                     "end it in .png or .svg, or add --format png or --format svg");
+// By --format, else by the ending of --out: "png", "svg" or "pdf".
+std::string format_of(const FigureArguments& arguments) {
+    if (!arguments.format.empty()) return arguments.format;
+    if (arguments.out == "-") return "png";
+    std::string ending = std::filesystem::path(arguments.out).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
+    if (ending == ".png" || ending == ".svg" || ending == ".pdf") return ending.substr(1);
+    throw InputError("--out " + arguments.out, {}, "this name says neither PNG nor SVG nor PDF",
+                     "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
 }
 
 // Puts a figure of a finished run where it belongs.
-int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, bool as_svg,
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
         PictureJob& job) {
     PictureSize size = arguments.size;
     size.scale *= publication_scale;
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
-            [&](const Notes& notes) { return as_svg ? svg_of(figure, size, notes) : png_of(figure, size, notes); });
+            [&](const Notes& notes) { return picture_of(figure, size, notes, format); });
     job.commit();
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
@@ -52,7 +56,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Fi
 }
 
 // The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
-int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job) {
+int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
@@ -74,13 +78,14 @@ int draw_session(const FigureArguments& arguments, bool as_svg, PictureJob& job)
     warn(session.description(), session.run(), session.model() == model ? &asked : nullptr);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
-    return put(arguments, session.trajectory(), figure_of(session, style), as_svg, job);
+    return put(arguments, session.trajectory(), figure_of(session, style), format, job);
 }
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
-    const bool as_svg = wants_svg(arguments);
-    if (!as_svg) job.check_size(arguments.size.width, arguments.size.height);
-    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, as_svg, job);
+    const std::string format = format_of(arguments);
+    if (format == "pdf") need_pdf_writer("--out " + arguments.out);
+    if (format == "png") job.check_size(arguments.size.width, arguments.size.height);
+    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, format, job);
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
@@ -90,7 +95,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     job.add(arguments.out);
 
     const Trajectory trajectory = simulate(model, run);
-    return put(arguments, trajectory, publication(trajectory, views, arguments.style), as_svg, job);
+    return put(arguments, trajectory, publication(trajectory, views, arguments.style), format, job);
 }
 
 void take_columns(const std::string& text, int& columns) {
@@ -104,11 +109,11 @@ void take_columns(const std::string& text, int& columns) {
 
 void add_figure(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FigureArguments>();
-    CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG or SVG");
+    CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG, SVG or PDF");
     add_system_argument(*command, arguments->system);
     command->add_option("--out", arguments->out, "the picture; - is standard output")
         ->required()
-        ->type_name("F.png|F.svg");
+        ->type_name("F.png|F.svg|F.pdf");
     add_view_option(*command, arguments->views, "a view of the system; may be given again (default: all)");
     command
         ->add_option("--journal", arguments->journal,

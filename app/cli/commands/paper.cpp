@@ -5,6 +5,7 @@
 #include "figure/publication.hpp"
 #include "model/model.hpp"
 #include "pictures/output_folder.hpp"
+#include "pictures/pdf.hpp"
 #include "pictures/picture_job.hpp"
 #include "simulate/simulate.hpp"
 
@@ -28,6 +29,7 @@ Trajectory run(Inputs& inputs, const std::string& system) {
 }
 
 int draw_paper(const fs::path& folder, const std::string& format, double scale, PictureJob& job) {
+    if (format == "pdf") need_pdf_writer("--format pdf");
     std::optional<OutputFolder> made;
     if (!job.reproduces()) made.emplace(folder);
     const Trajectory ball = run(job.inputs(), "ball_on_sine"), pendulum = run(job.inputs(), "double_pendulum");
@@ -39,11 +41,9 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
     for (const NamedFigure& figure : figures) {
         const PictureSize size{static_cast<int>(std::lround(figure.width * scale)),
                                static_cast<int>(std::lround(figure.height * scale)), scale * publication_scale};
-        if (format != "svg") job.check_size(size.width, size.height);
+        if (format == "png") job.check_size(size.width, size.height);
         job.put(file_of(figure), figure.name, {{"ball_on_sine", &ball}, {"double_pendulum", &pendulum}},
-                [&](const Notes& notes) {
-                    return format == "svg" ? svg_of(figure.figure, size, notes) : png_of(figure.figure, size, notes);
-                });
+                [&](const Notes& notes) { return picture_of(figure.figure, size, notes, format); });
     }
     job.put_text(table_file, table);
     job.commit();

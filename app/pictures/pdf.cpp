@@ -1,0 +1,97 @@
+#include "pictures/pdf.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+#include "system/description.hpp"
+
+extern char** environ;  // NOLINT: POSIX has it here
+
+namespace achilles {
+
+namespace {
+
+constexpr const char* writer = "rsvg-convert";
+
+bool is_installed() {
+    const char* const path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (!folder.empty() && ::access((folder + "/" + writer).c_str(), X_OK) == 0) return true;
+    return false;
+}
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File temporary() {
+    File file(std::tmpfile(), &std::fclose);
+    if (!file) throw std::runtime_error("no temporary file can be made");
+    return file;
+}
+
+std::string content(std::FILE* file) {
+    std::string text;
+    std::array<char, 65536> part{};
+    std::rewind(file);
+    for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), file)) > 0;) text.append(part.data(), n);
+    return text;
+}
+
+// The caller's environment, with the date that a PDF has: none that tells one run from another.
+std::vector<char*> environment() {
+    static std::string date = "SOURCE_DATE_EPOCH=0";
+    std::vector<char*> all;
+    for (char** entry = environ; *entry != nullptr; ++entry)
+        if (!std::string_view(*entry).starts_with("SOURCE_DATE_EPOCH=")) all.push_back(*entry);
+    all.push_back(date.data());
+    all.push_back(nullptr);
+    return all;
+}
+
+}  // namespace
+
+void need_pdf_writer(const std::string& file) {
+    if (is_installed()) return;
+    throw InputError(file, {}, fmt::format("a PDF is written by {}, which is not installed", writer),
+                     "install the package librsvg2-bin, or end the name in .svg");
+}
+
+std::string pdf_of_svg(const std::string& svg, int width) {
+    constexpr double page_pixels = 1200.0, page_points = 170.0 / 25.4 * 72.0;
+    const File in = temporary(), out = temporary(), problems = temporary();
+    if (std::fwrite(svg.data(), 1, svg.size(), in.get()) != svg.size() || std::fflush(in.get()) != 0)
+        throw std::runtime_error("a temporary file cannot be written");
+    std::rewind(in.get());
+    std::string wide = fmt::format("--width={:.3f}pt", width * page_points / page_pixels);
+    std::string name = writer, format = "--format=pdf", ratio = "--keep-aspect-ratio", unlimited = "--unlimited";
+    std::array<char*, 6> words{name.data(), format.data(), ratio.data(), unlimited.data(), wide.data(), nullptr};
+    std::vector<char*> variables = environment();
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(in.get()), 0);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), 1);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(problems.get()), 2);
+    pid_t process = 0;
+    const int problem = ::posix_spawnp(&process, writer, &actions, nullptr, words.data(), variables.data());
+    ::posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    const bool is_done = problem == 0 && ::waitpid(process, &status, 0) == process && status == 0;
+    std::string pdf = is_done ? content(out.get()) : "";
+    if (!pdf.starts_with("%PDF"))
+        throw std::runtime_error(fmt::format("{} has written no PDF: {}", writer, content(problems.get())));
+    return pdf;
+}
+
+}  // namespace achilles

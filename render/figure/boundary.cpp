@@ -1,0 +1,120 @@
+#include "figure/boundary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "figure/field.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Pair = std::array<std::size_t, 2>;
+
+// Where two coordinates are looked at.
+struct Part {
+    Pair pair;
+    Drawing box;
+};
+
+// The gap depends on no other coordinates than these.
+bool is_of(const Model& model, const Pair& pair) {
+    std::vector<std::uint32_t> others;
+    for (std::size_t i = 0; i < model.layout().dof; ++i)
+        if (i != pair[0] && i != pair[1]) others.push_back(static_cast<std::uint32_t>(model.layout().q(i)));
+    return !depends_on(model.equations().gap, others);
+}
+
+// The values of a view's first two quantities at a state of rest with these two coordinates.
+class Place {
+ public:
+    Place(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
+        : run_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
+          layout_(trajectory.model->layout()),
+          quantities_(view.quantities()),
+          state_{trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size())},
+          pair_(pair) {}
+    Point operator()(const Point& q, double t = 0.0, double rate = 0.0) {
+        state_.q[static_cast<Eigen::Index>(pair_[0])] = q.x;
+        state_.q[static_cast<Eigen::Index>(pair_[1])] = q.y;
+        state_.v.setConstant(rate);
+        set_state(run_, state_);
+        run_.input(layout_.t()) = t;
+        run_.input(layout_.contact()) = 0.0;
+        run_.run();
+        return {run_.output(0) * quantities_[0].factor, run_.output(1) * quantities_[1].factor};
+    }
+
+ private:
+    Evaluator<double> run_;
+    const Layout& layout_;
+    std::span<const PreparedView::Quantity> quantities_;
+    State state_;
+    Pair pair_;
+};
+
+// What of a coordinate the samples show, and half as much on either side; all around if it is an angle.
+std::array<double, 2> reach(std::span<const Sample> samples, const CoordinateDescription& coordinate, Eigen::Index i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Sample& sample : samples) {
+        low = std::min(low, sample.state.q[i]);
+        high = std::max(high, sample.state.q[i]);
+    }
+    const double around = coordinate.unit == "rad" ? std::numbers::pi - 0.5 * (high - low) : 0.0;
+    const double more = std::max(0.5 * (high - low), around);
+    return {low - more, high + more};
+}
+
+std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                            const Panel& panel) {
+    const Model& model = *trajectory.model;
+    const auto& quantities = view.quantities();
+    if (quantities.size() != 2 || samples.empty()) return std::nullopt;
+    const auto& x = quantities[0].coordinate;
+    const auto& y = quantities[1].coordinate;
+    Part part;
+    if (x && y && *x != *y) {
+        part.pair = {*x, *y};
+        part.box.x_low = panel.x.low / quantities[0].factor, part.box.x_high = panel.x.high / quantities[0].factor;
+        part.box.y_low = panel.y.low / quantities[1].factor, part.box.y_high = panel.y.high / quantities[1].factor;
+        return is_of(model, part.pair) ? std::optional(part) : std::nullopt;
+    }
+    if (model.dof() != 2) return std::nullopt;
+    part.pair = {0, 1};
+    const auto& coordinates = model.description().coordinates;
+    const auto first = reach(samples, coordinates[0], 0), second = reach(samples, coordinates[1], 1);
+    part.box.x_low = first[0], part.box.x_high = first[1];
+    part.box.y_low = second[0], part.box.y_high = second[1];
+    // A function of the coordinates alone, and of both: it says the same at other times and rates, another elsewhere.
+    Place place(trajectory, view, part.pair);
+    const Point here{trajectory.run.q[0], trajectory.run.q[1]};
+    const Point at_rest = place(here), moving = place(here, 1.25, 0.75);
+    const bool is_place = at_rest.x == moving.x && at_rest.y == moving.y && !quantities[0].is_time;
+    return is_place ? std::optional(part) : std::nullopt;
+}
+
+}  // namespace
+
+std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                            const Panel& panel) {
+    const auto part = part_of(trajectory, samples, view, panel);
+    if (!part) return {};
+    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
+    for (std::size_t i = 0; i < trajectory.model->layout().dof; ++i)
+        gap.input(i) = trajectory.run.q[static_cast<Eigen::Index>(i)];
+    std::vector<Point> line = Field(part->box, [&](const Point& p) {
+                                  gap.input(part->pair[0]) = p.x;
+                                  gap.input(part->pair[1]) = p.y;
+                                  gap.run();
+                                  return gap.output(0);
+                              }).zero_line();
+    Place place(trajectory, view, part->pair);
+    for (Point& point : line)
+        if (std::isfinite(point.x)) point = place(point);
+    return line;
+}
+
+}  // namespace achilles
