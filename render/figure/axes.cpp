@@ -90,13 +90,27 @@ std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m
                   m.text * closest_ticks);
 }
 
-// The size at which a label is at most `room` long: if need be that of indices, for which there are letters, and other
-// sizes, for which letters are stretched, only below it.
-float fitting(const std::string& label, const Metrics& m, float room) {
+// A label that is at most `room` long.
+struct Fitted {
+    std::string label;
+    float size;
+};
+
+// Smaller, if need be: the size of indices, for which there are letters, and other sizes, for which letters are
+// stretched, only below it. What is too long at the smallest size loses its last words, but not its unit.
+Fitted fitting(const std::string& label, const Metrics& m, float room) {
     const float width = m.width(label, m.text), small = std::round(m.text * script_size);
-    if (width <= room) return m.text;
-    if (m.width(label, small) <= room) return small;
-    return std::max(m.text * room / width, m.text * 0.5F);
+    if (width <= room) return {label, m.text};
+    if (small >= m.smallest_text && m.width(label, small) <= room) return {label, small};
+    const float size = std::max(m.text * room / width, m.smallest_text);
+    const std::size_t open = label.ends_with(')') ? label.rfind(" (") : std::string::npos;
+    const std::string unit = open == std::string::npos ? "" : label.substr(open);
+    std::string words = label.substr(0, open), shorter = label;
+    while (m.width(shorter, size) > room && words.rfind(' ') != std::string::npos) {
+        words.resize(words.rfind(' '));
+        shorter = words + "\u2026" + unit;
+    }
+    return {shorter, size};
 }
 
 void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
@@ -109,13 +123,12 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
             sheet.emplace_back(TextRun{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
     }
     if (panel.x.label.empty() || !panel.x.labelled) return;
-    const float size = fitting(panel.x.label, m, plot.width + room.left + room.right);
-    const float half = m.width(panel.x.label, size) / 2.0F;
+    const auto [label, size] = fitting(panel.x.label, m, plot.width + room.left + room.right);
+    const float half = m.width(label, size) / 2.0F;
     // Centred below the plot, but never beyond the panel.
     const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
     const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
-    sheet.emplace_back(
-        TextRun{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, panel.x.label, style.ink, size});
+    sheet.emplace_back(TextRun{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, label, style.ink, size});
 }
 
 void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
@@ -130,13 +143,13 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
                                        p.tick->label, style.ink, m.text});
     }
     if (panel.y.label.empty() || !panel.y.labelled) return;
-    const float size = fitting(panel.y.label, m, plot.height + room.top);
-    const float half = m.width(panel.y.label, size) / 2.0F;
+    const auto [label, size] = fitting(panel.y.label, m, plot.height + room.top);
+    const float half = m.width(label, size) / 2.0F;
     // It ends above the line of the x axis' label.
     const bool above = panel.x.label.empty() || !panel.x.labelled;
     const float lowest = plot.y + plot.height + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
     const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
-    sheet.emplace_back(TextRun{plot.x - room.left, at, 0.5F, panel.y.label, style.ink, size, true});
+    sheet.emplace_back(TextRun{plot.x - room.left, at, 0.5F, label, style.ink, size, true});
 }
 
 }  // namespace
@@ -144,6 +157,7 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
 Metrics::Metrics(const Figure& style, const Measure& measure, double scale_)
     : width(measure),
       text(static_cast<float>(std::round(style.text_size * scale_))),
+      smallest_text(text * static_cast<float>(style.smallest_text)),
       tick(static_cast<float>(std::round(5.0 * scale_))),
       minor_tick(static_cast<float>(std::round(3.0 * scale_))),
       gap(static_cast<float>(std::round(3.0 * scale_))),
@@ -208,9 +222,8 @@ void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     lay_x(panel, style, sheet, plot, room, m);
     lay_y(panel, style, sheet, plot, room, m);
     if (panel.title.empty()) return;
-    const float size = fitting(panel.title, m, plot.width + room.right);
-    sheet.emplace_back(
-        TextRun{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, panel.title, style.ink, size});
+    const auto [title, size] = fitting(panel.title, m, plot.width + room.right);
+    sheet.emplace_back(TextRun{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, title, style.ink, size});
 }
 
 }  // namespace achilles

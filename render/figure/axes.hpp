@@ -10,6 +10,7 @@ struct Metrics {
     Metrics(const Figure& style, const Measure& width, double scale);
     Measure width;
     float text;  // height of a line
+    float smallest_text;
     float tick;  // outside the box
     float minor_tick;
     float gap;   // between a tick and its label, a label and its neighbour

@@ -88,7 +88,8 @@ struct Figure {
     Color background{255, 255, 255, 255};
     Color ink{30, 30, 30, 255};  // axes and text
     Color grid{225, 225, 225, 255};
-    double text_size = 14.0;  // points
+    double text_size = 14.0;     // points
+    double smallest_text = 0.5;  // of a label that shrinks where room is short, as a share of text_size
 };
 
 // The figure as text, 9 significant digits: what golden tests compare before pixels.

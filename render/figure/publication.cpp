@@ -85,6 +85,7 @@ void share_axes(Figure& figure) {
 
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
     figure.grid.a = 0;
+    figure.smallest_text = 0.9;  // 7 points on a page
     figure.keys = keys_of(runs, figure.panels, light_theme());
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;

@@ -336,6 +336,24 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
     EXPECT_TRUE(holds(200, 150, "2"));
 }
 
+// On a page 1200 pixels are 170 mm: whatever is written at --scale 1 has 7 points at least, but indices.
+TEST_F(Publication, text_is_never_too_small_to_be_printed) {
+    ViewDescription long_one = view("a view whose name is much longer than the panel that it stands above, twice", "t",
+                                    {"sqrt(x'^2 + y'^2)*sqrt(x'^2 + y'^2) + x'*y' + x'*x' + y'*y'"});
+    const ViewDescription two = view("rates", "t", {"x'", "y'"});
+    std::string words;
+    for (const int columns : {1, 2, 3}) {
+        const Figure figure = of({long_one, two, long_one, two, long_one, long_one, two}, columns);
+        for (const auto& item : layout(figure, half, {0, 0, 1200, 800}, publication_scale)) {
+            const auto* run = std::get_if<TextRun>(&item);
+            if (run == nullptr) continue;
+            EXPECT_GE(run->size * 170.0 / 25.4 * 72.0 / 1200.0, 7.0) << run->label;
+            words += run->label + "|";
+        }
+    }
+    EXPECT_NE(words.find("\u2026 (m²/s²)|"), std::string::npos) << words;  // shorter, with its unit
+}
+
 // Full size, the size of indices, and only then any other: letters that are stretched look pale in pixels.
 TEST(Layout, labels_are_of_sizes_that_have_letters) {
     const auto size_of = [](const std::string& label) {
