@@ -57,9 +57,9 @@ Verdict to_save(const Document& document, const std::string& path) {
 
 Verdict to_take_away(const std::string& path) {
     const std::string ending = fs::path(path).extension().string();
-    if (!path.empty() && ending != ".svg" && ending != ".png" && ending != ".json" && ending != ".csv" &&
-        ending != ".journal")
-        return {"end it in .svg, .png, .json, .csv or .journal", false, false};
+    if (!path.empty() && ending != ".svg" && ending != ".png" && ending != ".pdf" && ending != ".json" &&
+        ending != ".csv" && ending != ".journal")
+        return {"end it in .svg, .png, .pdf, .json, .csv or .journal", false, false};
     return to_save(Document(), path);
 }
 

@@ -341,8 +341,10 @@ TEST(Figure, is_written_as_pdf) {
     ASSERT_EQ(folder.run(figure + "--out b.PDF").status, 0);
     const std::string pdf = content(folder.path() / "a.pdf");
     EXPECT_EQ(pdf.substr(0, 5), "%PDF-");
-    EXPECT_EQ(pdf, content(folder.path() / "b.PDF"));                  // no date in it
-    EXPECT_NE(pdf.find("/MediaBox [ 0 0 481.88"), std::string::npos);  // 170 mm
+    EXPECT_EQ(pdf, content(folder.path() / "b.PDF"));  // no date in it
+    const std::string box = "/MediaBox [ 0 0 ";
+    ASSERT_NE(pdf.find(box), std::string::npos);
+    EXPECT_NEAR(std::stod(pdf.substr(pdf.find(box) + box.size())), 170.0 / 25.4 * 72.0, 0.02);  // 170 mm in points
     ASSERT_EQ(folder.run("figure ball_on_sine --end 5 --do \"export c.pdf\" --out d.svg --allow-files").status, 0);
     EXPECT_EQ(content(folder.path() / "c.pdf").substr(0, 5), "%PDF-");
 }
