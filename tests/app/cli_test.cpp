@@ -97,18 +97,6 @@ const Refusal refusals[] = {
 INSTANTIATE_TEST_SUITE_P(Cli, Refused, testing::ValuesIn(refusals),
                          [](const auto& refusal) { return refusal.param.name; });
 
-const std::string drop = R"(title = "A ball dropped on the floor"
-[[coordinate]]
-name = "y"
-start = 1.0
-[lagrangian]
-kinetic = "y'^2/2"
-potential = "9.81*y"
-[[constraint]]
-gap = "y"
-restitution = 0.5
-)";
-
 TEST(Cli, BadTomlIsShownWithItsPlace) {
     const Folder folder;
     folder.put("bad.toml", "title = \"x\"\n[[coordinate]\n");
@@ -122,7 +110,7 @@ TEST(Cli, BadTomlIsShownWithItsPlace) {
 
 TEST(Cli, EveryMistakeIsShownAndNothingWritten) {
     const Folder folder;
-    std::string bad = drop;
+    std::string bad = drop_text;
     bad.replace(bad.find("start = 1.0"), 11, "start = inf");
     bad.replace(bad.find("9.81*y"), 6, "9.81*z");
     folder.put("bad.toml", bad);
@@ -137,7 +125,7 @@ TEST(Cli, EveryMistakeIsShownAndNothingWritten) {
 
 TEST(Cli, WhatTheCommandLineSetsIsCheckedAtTheStart) {
     const Folder folder;
-    folder.put("drop.toml", drop);
+    folder.put("drop.toml", drop_text);
     const Answer answer = folder.run("simulate drop.toml --set y=-1 --json a.json");
     EXPECT_EQ(answer.status, 2);
     EXPECT_EQ(answer.err, "--set y=-1: the gap is negative at the start: h = -1\nchoose a start with h(q) >= 0\n");
@@ -185,7 +173,7 @@ TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
 
 TEST(Cli, TheCommandLineOverridesTheFile) {
     const Folder folder;
-    folder.put("drop.toml", drop + "[run]\nmethod = \"taylor\"\n[truncation]\nconditions = \"paper\"\n");
+    folder.put("drop.toml", drop_text + "[run]\nmethod = \"taylor\"\n[truncation]\nconditions = \"paper\"\n");
     const Answer from_file = folder.run("simulate drop.toml");
     EXPECT_EQ(from_file.status, 0);
     EXPECT_NE(from_file.out.find("taylor, tolerance"), std::string::npos) << from_file.out;
@@ -206,7 +194,7 @@ TEST(Cli, ListShowsNamesAndTitles) {
 TEST(Cli, AssetsCanBeElsewhere) {
     const Folder folder;
     std::filesystem::create_directory(folder.path() / "systems");
-    folder.put("systems/drop.toml", drop);
+    folder.put("systems/drop.toml", drop_text);
     folder.put("systems/notes.txt", "no system");
     EXPECT_EQ(folder.run("list", "ACHILLES_ASSETS=.").out, "drop  A ball dropped on the floor\n");
     EXPECT_EQ(folder.run("list", "ACHILLES_ASSETS=./none").status, 2);
@@ -253,7 +241,7 @@ TEST(Cli, TheSameRunGivesTheSameBytes) {
 
 TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     const Folder folder;
-    folder.put("drop.toml", drop + "[run]\nend_time = 3.0\n[truncation]\neps_q = 1e-5\neps_v = 1e-5\n");
+    folder.put("drop.toml", drop_text + "[run]\nend_time = 3.0\n[truncation]\neps_q = 1e-5\neps_v = 1e-5\n");
     const Answer answer = folder.run(
         "simulate drop.toml --set y=2 --set \"y'=-1e0\" --eps 1e-4 --eps-v 1e-3 --tolerance 1e-9 "
         "--reinitialization euclidean --json - --csv run.csv");

@@ -12,6 +12,19 @@
 
 namespace achilles::test {
 
+// A small system file.
+inline const std::string drop_text = R"(title = "A ball dropped on the floor"
+[[coordinate]]
+name = "y"
+start = 1.0
+[lagrangian]
+kinetic = "y'^2/2"
+potential = "9.81*y"
+[[constraint]]
+gap = "y"
+restitution = 0.5
+)";
+
 struct Answer {
     int status = -1;
     std::string out, err;

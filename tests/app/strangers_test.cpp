@@ -15,18 +15,6 @@
 namespace achilles::test {
 namespace {
 
-const std::string drop = R"(title = "A ball dropped on the floor"
-[[coordinate]]
-name = "y"
-start = 1.0
-[lagrangian]
-kinetic = "y'^2/2"
-potential = "9.81*y"
-[[constraint]]
-gap = "y"
-restitution = 0.5
-)";
-
 const std::string small = " --size 640x480 --end 0.1 ";
 
 class Strangers : public testing::Test {
@@ -76,20 +64,20 @@ TEST_F(Strangers, journals_use_no_files) {
 
 TEST_F(Strangers, journals_may_name_assets_and_what_the_command_line_names) {
     EXPECT_EQ(screenshot("open ball_on_floor\nreplay the_ball\n").status, 0);
-    folder.put("mine.toml", drop);
+    folder.put("mine.toml", drop_text);
     EXPECT_EQ(screenshot("open ./mine.toml\n", "mine.toml").status, 0);
     EXPECT_EQ(screenshot("open ./mine.toml\ntext \"x\"\nsave ./mine.toml\n", "mine.toml").status, 2);
-    EXPECT_EQ(held_by("mine.toml"), drop);
+    EXPECT_EQ(held_by("mine.toml"), drop_text);
     EXPECT_EQ(folder.run("screenshot --do 'open mine.toml' --do 'save b.toml' --out b.png" + small).status, 0);
-    EXPECT_EQ(held_by("b.toml"), drop);
+    EXPECT_EQ(held_by("b.toml"), drop_text);
 }
 
 // What the user allows writes where nothing is.
 TEST_F(Strangers, a_journal_that_is_trusted_overwrites_nothing) {
     folder.put("victim.toml", "mine");
-    folder.put("mine.toml", drop);
+    folder.put("mine.toml", drop_text);
     EXPECT_EQ(screenshot("open mine.toml\nsave copy.toml overwrite\nsave copy.toml\n", "--allow-files").status, 0);
-    EXPECT_EQ(held_by("copy.toml"), drop);
+    EXPECT_EQ(held_by("copy.toml"), drop_text);
     for (const std::string line : {"save victim.toml overwrite", "save mine.toml", "export a.svg overwrite"}) {
         folder.put("a.svg", "mine");
         const Answer answer = screenshot("open mine.toml\n" + line + "\n", "--allow-files");
@@ -123,7 +111,7 @@ TEST_F(Strangers, work_has_a_limit) {
         const std::string bare = held_by("a.png");
         const std::string head = bare.substr(0, 33) + bare.substr(bare.find("IDAT") - 4);
         folder.put("p.png", with_notes(head, {{"Achilles Command", "achilles " + command},
-                                              {"Achilles System", "./s.toml\n" + drop},
+                                              {"Achilles System", "./s.toml\n" + drop_text},
                                               {"Achilles Journal", "j\n" + journal}}));
         const auto begin = std::chrono::steady_clock::now();
         const Answer answer = folder.run("reproduce p.png");
@@ -170,7 +158,7 @@ TEST_F(Strangers, text_steers_no_terminal) {
         return (answer.out + answer.err).find("\xC2\x9B") == std::string::npos;
     };
     const std::string evil = "source = \"\\u001b]0;x\\u0007\"\n" + [] {
-        std::string text = drop;
+        std::string text = drop_text;
         return text.replace(text.find("A ball"), 6, "\\u001b[2J\\u009b");
     }();
     std::filesystem::create_directories(folder.path() / "assets/systems");

@@ -15,18 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string drop = R"(title = "A ball dropped on the floor"
-[[coordinate]]
-name = "y"
-start = 1.0
-[lagrangian]
-kinetic = "y'^2/2"
-potential = "9.81*y"
-[[constraint]]
-gap = "y"
-restitution = 0.5
-)";
-
 mode_t mode_of(const fs::path& file) {
     struct stat there {};
     return ::stat(file.c_str(), &there) == 0 ? there.st_mode & 07777 : 0;
@@ -84,7 +72,7 @@ TEST(OutputFiles, are_all_there_or_as_they_were) {
 
 TEST(OutputFiles, are_no_inputs_and_no_others) {
     const Folder folder;
-    folder.put("in.toml", drop);
+    folder.put("in.toml", drop_text);
     fs::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
     fs::create_symlink("in.toml", folder.path() / "soft.toml");
     folder.put("a", "old");
@@ -95,8 +83,7 @@ TEST(OutputFiles, are_no_inputs_and_no_others) {
     const std::size_t before = folder.files().size();
     for (const std::string command :
          {"simulate in.toml --json in.toml", "simulate in.toml --csv hard.toml", "simulate soft.toml --json ./in.toml",
-          "simulate in.toml --json a --csv b", 
-          "figure in.toml --out in.toml --format svg",
+          "simulate in.toml --json a --csv b", "figure in.toml --out in.toml --format svg",
           "screenshot in.toml --size 640x480 --out in.toml",
           "screenshot --journal j.journal --size 640x480 --out j.journal",
           "screenshot in.toml --size 640x480 --out c.png --record c.png", "screenshot in.toml --record a --out c.png",
@@ -105,7 +92,7 @@ TEST(OutputFiles, are_no_inputs_and_no_others) {
         const Answer answer = folder.run(command);
         EXPECT_EQ(answer.status, 2) << command;
         EXPECT_NE(answer.err, "") << command;
-        EXPECT_EQ(content(folder.path() / "in.toml"), drop) << command;
+        EXPECT_EQ(content(folder.path() / "in.toml"), drop_text) << command;
         EXPECT_EQ(content(folder.path() / "a"), "old") << command;
         EXPECT_EQ(content(folder.path() / "j.journal"), "seek 0\n") << command;
         EXPECT_EQ(content(folder.path() / "p.svg"), picture) << command;
