@@ -7,6 +7,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+
+#include "core/systems.hpp"
 
 namespace achilles {
 namespace {
@@ -36,6 +39,26 @@ TEST(Description, a_view_may_have_a_label_and_a_unit) {
     const ViewDescription none = parse_system(title + least + view, "f.toml").views[0];
     EXPECT_EQ(none.label + none.unit, "");
     EXPECT_NE(message_of(title + least + view + "unit = \"deg\"\n").find("the unit 'deg'"), std::string::npos);
+}
+
+// A person writes "30 deg", not sixteen digits of it.
+TEST(Description, numbers_of_the_gallery_are_readable) {
+    constexpr std::size_t longest = 10;
+    for (const std::string& name : test::all_systems()) {
+        std::ifstream stream(test::source_file("assets/systems/" + name + ".toml"));
+        const std::string text{std::istreambuf_iterator<char>(stream), {}};
+        ASSERT_FALSE(text.empty()) << name;
+        for (std::size_t end = 0, at = 0; (at = text.find_first_of("0123456789", end)) < text.size();) {
+            end = std::min(text.find_first_not_of("0123456789", at), text.size());
+            EXPECT_LE(end - at, longest) << name << ": " << text.substr(at, end - at);
+        }
+    }
+    // What they come to is the double next to it.
+    const auto angle = [](const char* name, std::size_t i) { return test::load(name)->description().coordinates[i]; };
+    EXPECT_EQ(angle("double_pendulum", 0).start, 0.5235987755982988);
+    EXPECT_EQ(angle("swinging_leg", 1).range[1], 2.0943951023931953);
+    EXPECT_EQ(angle("bead_in_ring", 1).range[0], -3.141592653589793);
+    EXPECT_EQ(test::load("ball_on_egg_crate")->default_run().parameters[2], 6.283185307179586);
 }
 
 TEST(Description, reads_a_full_file) {
