@@ -151,7 +151,7 @@ std::string table(const Session& session) {
         if (chosen(session).value_or(i) != i) continue;
         const Event& event = events[i];
         const bool is_impact = event.kind == Event::Kind::impact;
-        text += fmt::format("\n{}\t{}\t{}\t{}", i + 1, event_markers(session.theme(), event.kind).label, event.t,
+        text += fmt::format("\n{}\t{}\t{}\t{}", i + 1, event_name(event), event.t,
                             is_impact ? fmt::format("{}", event.impact_speed) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
     }
@@ -242,8 +242,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
-                  is_plastic_landing(event) ? "landing" : markers.label.c_str());
+    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()), event_name(event).c_str());
     number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
     const std::string proof = event.kind == Event::Kind::zeno ? time_text(event) : "";

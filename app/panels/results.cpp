@@ -41,7 +41,7 @@ std::string explanation(const Event& event) {
     if (event.kind == Event::Kind::release)
         return fmt::format("release at t = {:.10g} s: the contact force falls through zero. Click: why", event.t);
     const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
-    return fmt::format("Zeno point at t = {:.10g} s after {} impacts\n{}", event.t, event.impacts, proof);
+    return fmt::format("{} at t = {:.10g} s after {} impacts\n{}", event_name(event), event.t, event.impacts, proof);
 }
 
 // In lines as wide as there is room, each with the gap before it.

@@ -140,9 +140,8 @@ void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
 
 void name_event(const Session& session, int number) {
     const Event& event = session.trajectory().events[static_cast<std::size_t>(number - 1)];
-    const std::string text =
-        fmt::format("{}, event {}, t = {} s\nclick: select it", event_markers(session.theme(), event.kind).label,
-                    number, achilles::number(event.t, "{:.9g}"));
+    const std::string text = fmt::format("{}, event {}, t = {} s\nclick: select it", event_name(event), number,
+                                         achilles::number(event.t, "{:.9g}"));
     const ImVec2 size = tooltip_size(text), mouse = ImGui::GetIO().MousePos;
     const float above = mouse.y - size.y - units(12.0F);
     place_tooltip({mouse.x + units(12.0F), above >= 0.0F ? above : mouse.y + units(20.0F)}, size);

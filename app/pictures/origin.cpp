@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "figure/palette.hpp"
 #include "image/png_notes.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
@@ -80,7 +81,8 @@ std::string options_text(const Options& options) {
 std::string certificates_text(const Trajectory& trajectory) {
     std::string text;
     for (const Event& event : trajectory.events)
-        if (event.certificate) text += fmt::format("Zeno point at t = {}: {}\n", event.t, sentence(*event.certificate));
+        if (event.certificate)
+            text += fmt::format("{} at t = {}: {}\n", event_name(event), event.t, sentence(*event.certificate));
     return text + fmt::format("outcome: {} ({})", to_text(trajectory.outcome.kind), trajectory.outcome.message);
 }
 

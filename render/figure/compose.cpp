@@ -189,6 +189,8 @@ void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values&
     const std::size_t curves = panel.curves.size() / 2;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
+        const Trajectory* const run = &trajectory;
+        markers.label = events_name({&run, 1}, kind);
         for (const Event& event : trajectory.events) {
             if (event.kind != kind || event.t > end) continue;
             values.set(sample_at(event));

@@ -139,4 +139,21 @@ Markers event_markers(const Theme& theme, Event::Kind kind) {
 
 std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 
+std::string event_name(const Event& event) {
+    return is_plastic_landing(event) ? "landing" : event_markers({}, event.kind).label;
+}
+
+std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind) {
+    std::string names;
+    for (const Trajectory* run : runs) {
+        if (kind != Event::Kind::zeno) break;  // all are called the same, and impacts may be very many
+        for (const Event& event : run->events) {
+            if (event.kind != kind) continue;
+            const std::string name = event_name(event);
+            if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
+        }
+    }
+    return names.empty() ? event_markers({}, kind).label : names;
+}
+
 }  // namespace achilles

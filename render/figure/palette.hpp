@@ -2,6 +2,8 @@
 // any colour vision (Okabe and Ito); dash and shape say the same again for print.
 #pragma once
 
+#include <span>
+
 #include "figure/figure.hpp"
 #include "run/trajectory.hpp"
 
@@ -40,5 +42,9 @@ Stroke pinned_stroke(const Theme& theme, const Stroke& stroke);
 Markers event_markers(const Theme& theme, Event::Kind kind);
 // What a legend calls them.
 std::string legend_text(Phase::Kind kind);
+// What a reader calls an event: "impact", "release", "Zeno point", and "landing" where restitution 0 ends the fall at once.
+std::string event_name(const Event& event);
+// What the markers of that kind mean in these runs: one name, or both of a run that lands and one that bounces.
+std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind);
 
 }  // namespace achilles

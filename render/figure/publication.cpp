@@ -62,8 +62,11 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         keys.push_back({typeset("gap") + " = 0", one->boundary.stroke});
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         if (!any_of(runs, &Trajectory::events, kind)) continue;
-        const Markers markers = for_print(event_markers(theme, kind), kind);
-        keys.push_back({markers.label + (kind == Event::Kind::zeno ? ", \U0001D70F_{\u221E}" : ""), markers});
+        std::string name = events_name(runs, kind);
+        const std::string zeno = event_markers(theme, Event::Kind::zeno).label;
+        if (const std::size_t at = name.find(zeno); at != std::string::npos)
+            name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");
+        keys.push_back({name, for_print(event_markers(theme, kind), kind)});
     }
     return keys;
 }

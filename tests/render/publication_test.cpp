@@ -78,6 +78,27 @@ TEST_F(Publication, the_legend_tells_what_occurs_and_nothing_else) {
     EXPECT_EQ(of({y}).keys[0].label, "hybrid");
 }
 
+// At restitution 0 nothing bounces: no legend speaks of a Zeno point.
+TEST_F(Publication, a_plastic_landing_is_called_a_landing) {
+    const ViewDescription y = view("height", "t", {"y", "x"});
+    achilles::Run plastic = model->default_run();
+    assign(plastic, model->description(), "e=0");
+    const Trajectory bouncing = trajectory;
+    trajectory = simulate(model, plastic);
+    const auto has = [](const Figure& figure, const std::string& label) {
+        return std::any_of(figure.keys.begin(), figure.keys.end(), [&](const Key& key) { return key.label == label; });
+    };
+    EXPECT_TRUE(has(of({y}), "landing"));
+    EXPECT_EQ(to_text(of({y})).find("Zeno"), std::string::npos);
+    const auto samples = plot_samples(trajectory);
+    const Panel on_screen = compose(trajectory, samples, PreparedView(*model, y), light_theme());
+    EXPECT_EQ(on_screen.markers[1].label, "landing");
+    Figure both;
+    const Trajectory* const runs[] = {&bouncing, &trajectory};
+    dress_for_print(both, runs);
+    EXPECT_TRUE(has(both, "Zeno point, 𝜏_{∞}, landing"));
+}
+
 // The sheet is checked, not a picture: no sign or label of a legend inside a plot area.
 TEST_F(Publication, no_legend_covers_data) {
     const Figure figure = of({view("rates", "t", {"x'", "y'"}), view("height", "t", {"y"})});
