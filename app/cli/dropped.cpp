@@ -134,7 +134,8 @@ std::vector<Command> session_of(const Origin& origin) {
 
 bool is_picture(const std::string& path) {
     const std::string ending = std::filesystem::path(path).extension().string();
-    return ending == ".png" || ending == ".svg" || ending == ".PNG" || ending == ".SVG";
+    return ending == ".png" || ending == ".svg" || ending == ".pdf" || ending == ".PNG" || ending == ".SVG" ||
+           ending == ".PDF";
 }
 
 std::vector<Command> session_in(const std::string& picture) {

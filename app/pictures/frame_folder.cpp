@@ -46,7 +46,7 @@ bool is_frame(const fs::path& file, const Notes& notes) {
                           "draw into another folder, or add --overwrite to replace what is there");
     };
     if (bytes.empty()) return false;
-    if (!is_png(bytes)) throw refuse("this is no picture of an animation");
+    if (picture_format(bytes) != "png") throw refuse("this is no picture of an animation");
     Origin there;
     try {
         if (png_notes(bytes) == notes) return true;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "figure/palette.hpp"
+#include "image/pdf_notes.hpp"
 #include "image/png_notes.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
@@ -155,14 +156,21 @@ Notes notes(const Origin& origin, const std::vector<Shown>& runs) {
     return result;
 }
 
-bool is_png(std::string_view file) { return file.substr(0, 4) == "\x89PNG"; }
+std::string picture_format(std::string_view file) {
+    if (file.starts_with("\x89PNG")) return "png";
+    if (file.starts_with("%PDF-")) return "pdf";
+    return file.find("<svg") == std::string_view::npos ? "" : "svg";
+}
+
+Notes notes_of(std::string_view file) {
+    const std::string format = picture_format(file);
+    if (format.empty()) throw std::runtime_error("this is neither a PNG nor an SVG nor a PDF file");
+    return format == "png" ? png_notes(file) : format == "svg" ? svg_notes(file) : pdf_notes(file);
+}
 
 Origin origin_of(std::string_view file) {
-    const bool png = is_png(file);
-    if (!png && file.find("<svg") == std::string_view::npos)
-        throw std::runtime_error("this is neither a PNG nor an SVG file");
     Origin origin;
-    for (const Note& note : png ? png_notes(file) : svg_notes(file)) {
+    for (const Note& note : notes_of(file)) {
         if (note.keyword == software_key) origin.software = note.text;
         if (note.keyword == command_key) origin.command = note.text;
         if (note.keyword == picture_key) origin.picture = note.text;

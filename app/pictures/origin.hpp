@@ -35,10 +35,11 @@ struct Shown {
 // The origin, the systems' titles and, for a reader, every run's parameters, start, options and certificates.
 Notes notes(const Origin& origin, const std::vector<Shown>& runs);
 
-// The origin a PNG or SVG file carries. Throws std::runtime_error that says what is wrong: neither of both, damaged,
-// cut off, no origin in it.
+// "png", "svg" or "pdf", by what the file holds; "" if it is none of them.
+std::string picture_format(std::string_view file);
+// What such a file carries. Throws std::runtime_error that says what is wrong: no such file, damaged, cut off.
+Notes notes_of(std::string_view file);
+// The origin among its notes. Throws std::runtime_error, also where there is none.
 Origin origin_of(std::string_view file);
-
-bool is_png(std::string_view file);
 
 }  // namespace achilles

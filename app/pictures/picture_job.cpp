@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "cli/assets.hpp"
+#include "image/pdf_notes.hpp"
 #include "image/png_notes.hpp"
 #include "output/output.hpp"
 #include "paint/paint.hpp"
@@ -92,8 +93,8 @@ std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& n
 
 std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format) {
     if (format == "png") return png_of(figure, size, notes);
-    const std::string drawn = svg_of(figure, size, notes);
-    return format == "svg" ? drawn : pdf_of_svg(drawn, size.width);
+    if (format == "svg") return svg_of(figure, size, notes);
+    return with_pdf_notes(pdf_of_svg(svg_of(figure, size, {}), size.width), notes);
 }
 
 }  // namespace achilles

@@ -68,7 +68,7 @@ struct PictureSize {
 };
 std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes);
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes);
-// By the format's name: "png", "svg", or "pdf", which has no notes.
+// By the format's name: "png", "svg" or "pdf".
 std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format);
 
 }  // namespace achilles

@@ -162,9 +162,6 @@ std::string with_unit(const std::string& label, const std::string& unit) {
     return unit.empty() ? label : label + " (" + unit + ")";
 }
 
-namespace {
-
-// The next code point.
 char32_t next_code_point(std::string_view text, std::size_t& at) {
     constexpr char32_t replacement = 0xFFFD;
     const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
@@ -180,8 +177,6 @@ char32_t next_code_point(std::string_view text, std::size_t& at) {
     at += more;
     return value;
 }
-
-}  // namespace
 
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {

@@ -35,6 +35,8 @@ std::vector<Letter> letters(std::string_view label);
 
 // UTF-8 as Unicode defines it: nothing overlong, no surrogates, no U+FFFE, nothing beyond U+10FFFF.
 std::string utf8(char32_t code);
+// The code that begins at a place, which is moved behind it; U+FFFD for a byte that is no UTF-8.
+char32_t next_code_point(std::string_view text, std::size_t& at);
 bool is_utf8(std::string_view text);
 
 // How indices and powers are set, as shares of the label's size: their own size, and how far their base line is moved.

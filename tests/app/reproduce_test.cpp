@@ -9,7 +9,6 @@
 #include "core/deny_executable.hpp"
 #include "image/image.hpp"
 #include "image/png_notes.hpp"
-#include "paint/svg.hpp"
 #include "pictures/origin.hpp"
 
 namespace achilles::test {
@@ -36,7 +35,13 @@ TEST(Origin, ACommandLineKeepsItsWords) {
         EXPECT_THROW(words_of(damaged), std::runtime_error) << damaged;
 }
 
-class Reproduced : public testing::TestWithParam<std::string> {};
+class Reproduced : public testing::TestWithParam<std::string> {
+ protected:
+    void SetUp() override {
+        if (GetParam() == "pdf" && std::system("rsvg-convert --version >/dev/null 2>&1") != 0)
+            GTEST_SKIP() << "without rsvg-convert";
+    }
+};
 
 TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
     const Folder folder;
@@ -71,8 +76,7 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
     ASSERT_EQ(folder.run(arguments + "a." + GetParam()).status, 0);
     const std::string bytes = content(folder.path() / ("a." + GetParam()));
     std::string all;
-    for (const Note& note : is_png(bytes) ? png_notes(bytes) : svg_notes(bytes))
-        all += note.keyword + ": " + note.text + "\n";
+    for (const Note& note : notes_of(bytes)) all += note.keyword + ": " + note.text + "\n";
     for (const char* part : {"Title: Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \"so\"\n", "Software: Achilles 0.1.0\n",
                              "Achilles Parameters: g = 3, y(0) = 1, y'(0) = 0.5\n",
                              "Achilles Options: tolerance 1e-10, method taylor, end time 5, ",
@@ -89,7 +93,7 @@ TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
         ASSERT_EQ(folder.run(arguments + picture + (limited ? " --max-steps 100000" : "")).status, 0);
         const std::string bytes = content(folder.path() / picture);
         std::string told;
-        for (const Note& note : is_png(bytes) ? png_notes(bytes) : svg_notes(bytes))
+        for (const Note& note : notes_of(bytes))
             if (note.keyword == "Achilles Options") told = note.text;
         EXPECT_EQ(told.find("at most 200000 impacts, at most 100000 steps, ") != std::string::npos, limited) << told;
         EXPECT_EQ(told.find("steps") != std::string::npos, limited) << told;
@@ -102,7 +106,7 @@ TEST_P(Reproduced, ADifferenceIsTold) {
     const std::string picture = "a." + GetParam();
     ASSERT_EQ(folder.run(arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
-    if (is_png(bytes)) {
+    if (picture_format(bytes) == "png") {
         // Another version, and check sums that are right.
         Notes notes = png_notes(bytes);
         notes[1].text = "Achilles 0.0.9";
@@ -120,7 +124,7 @@ TEST_P(Reproduced, ADifferenceIsTold) {
     EXPECT_EQ(content(folder.path() / "again"), bytes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Origin, Reproduced, testing::Values("png", "svg"));
+INSTANTIATE_TEST_SUITE_P(Origin, Reproduced, testing::Values("png", "svg", "pdf"));
 
 TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     const Folder folder;
@@ -186,8 +190,8 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     const auto with = [&](const Notes& notes) { return with_notes(bare, notes); };
     const Note command{"Achilles Command", "achilles figure ./drop.toml"};
     const std::pair<std::string, std::string> cases[] = {
-        {"", "x: this is neither a PNG nor an SVG file\n"},
-        {"GIF89a", "x: this is neither a PNG nor an SVG file\n"},
+        {"", "x: this is neither a PNG nor an SVG nor a PDF file\n"},
+        {"GIF89a", "x: this is neither a PNG nor an SVG nor a PDF file\n"},
         {png.substr(0, 9000), "x: the PNG file is cut off\n"},
         {png.substr(0, 5), "x: this is no PNG file\n"},
         {flipped, "x: the PNG file is damaged: a check sum is wrong\n"},

@@ -152,7 +152,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
         session.apply(command::Export{in_folder(name), true});
         EXPECT_EQ(session.error(), "");
     }
-    EXPECT_TRUE(is_png(test::content(in_folder("a.png"))));
+    EXPECT_EQ(picture_format(test::content(in_folder("a.png"))), "png");
     EXPECT_EQ(nlohmann::json::parse(test::content(in_folder("a.json")))["outcome"]["kind"], "end time");
     EXPECT_EQ(test::content(in_folder("a.csv")).rfind("t,phase,", 0), 0U);
     EXPECT_EQ(test::content(in_folder("a.journal")), "open ball_on_sine\n");

@@ -29,7 +29,7 @@ auto with_name(const std::string& picture, const Work& work) {
 }
 
 // Runs the command that an origin tells; leaves what it made in the job. Only commands that make pictures run here.
-int run_again(const std::string& picture, const Origin& origin, bool png, PictureJob& job) {
+int run_again(const std::string& picture, const Origin& origin, const std::string& format, PictureJob& job) {
     CLI::App program("what makes pictures", "achilles");
     program.require_subcommand(1);
     int status = bad_input;
@@ -38,7 +38,7 @@ int run_again(const std::string& picture, const Origin& origin, bool png, Pictur
     if (words.size() > most_words)
         throw InputError(picture, {},
                          fmt::format("its command has {} words; at most {} are run here", words.size(), most_words));
-    words.insert(words.end(), {"--out", png ? "picture.png" : "picture.svg"});
+    words.insert(words.end(), {"--out", "picture." + format});
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
     try {
         program.parse(words);
@@ -58,7 +58,7 @@ int reproduce(const std::string& picture, const std::string& out) {
     if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
     PictureJob job(origin);
-    const int status = with_name(picture, [&] { return run_again(picture, origin, is_png(before), job); });
+    const int status = with_name(picture, [&] { return run_again(picture, origin, picture_format(before), job); });
     const std::string& after = *job.made();
     if (!out.empty()) files.put(out, after);
     files.commit();
@@ -86,7 +86,7 @@ void add_reproduce(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
         "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
-    command->add_option("PICTURE", arguments->picture, "a PNG or SVG file of figure, frames, paper or screenshot")
+    command->add_option("PICTURE", arguments->picture, "a PNG, SVG or PDF file of figure, frames, paper or screenshot")
         ->required()
         ->type_name("");
     command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")
