@@ -137,6 +137,18 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
     std::filesystem::remove(file.string() + ".png");
 }
 
+// At the size of a page nothing is shortened.
+TEST(Svg, labels_of_the_gallery_are_whole) {
+    for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/assets/systems")) {
+        const auto model = std::make_shared<const Model>(read_system(entry.path()));
+        const Figure figure = publication(simulate(model, model->default_run()), model->description().views, {});
+        EXPECT_EQ(svg(figure, 1200, 800, publication_scale, fonts, {}).find("\u2026"), std::string::npos)
+            << entry.path();
+        for (const Panel& panel : figure.panels)
+            EXPECT_NE(panel.y.label.find(" ("), std::string::npos) << entry.path() << panel.title << ": no unit";
+    }
+}
+
 TEST(Svg, carries_notes) {
     EXPECT_EQ(svg_notes(sample()), quoted_notes);
     EXPECT_TRUE(svg_notes("<svg/>").empty());
