@@ -88,6 +88,11 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     };
     if (!panel.boundary.points.empty()) lay(panel.boundary);
     for (const Curve& curve : panel.curves) lay(curve);
+}
+
+// Above the box: what happened at the end of an axis is not crossed out by it.
+void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    const PanelMap map(panel, plot);
     for (const Markers& markers : panel.markers)
         if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
 }
@@ -234,6 +239,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
         if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }
     lay_axes(panel, style, sheet, inner, room, lift, m);
+    lay_events(panel, sheet, inner, m);
     if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
     return inner;
 }

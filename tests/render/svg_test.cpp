@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include "figure/publication.hpp"
 #include "image/xml.hpp"
@@ -135,6 +138,83 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
     EXPECT_GE(systems, 15);
     std::filesystem::remove(file);
     std::filesystem::remove(file.string() + ".png");
+}
+
+// The box of the numbers in a path, left, top, right, bottom.
+std::array<double, 4> box_of(const std::string& path) {
+    std::array<double, 4> box{1e9, 1e9, -1e9, -1e9};
+    for (std::size_t at = path.find('M') + 1; path[at] != 'Z'; at = path.find(' ', at) + 1) {
+        const double x = std::stod(path.substr(at)), y = std::stod(path.substr(path.find(',', at) + 1));
+        box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), std::max(box[3], y)};
+    }
+    return box;
+}
+
+// A release and an impact exactly where an axis begins and ends: neither cut nor crossed by the box, in SVG and pixels.
+TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
+    const auto model =
+        std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml"));
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const auto release = std::find_if(trajectory.events.begin(), trajectory.events.end(),
+                                      [](const Event& event) { return event.kind == Event::Kind::release; });
+    const auto impact = std::next(release);
+    ASSERT_EQ(impact->kind, Event::Kind::impact);
+    ViewDescription height;
+    height.x.text = "t";
+    height.y.emplace_back().text = "y";
+    const auto figure_from = [&](double from, double to) {
+        Framing framing;
+        framing.for_print = true;
+        framing.x = {from, to};
+        return publication(
+            trajectory,
+            {compose(trajectory, plot_samples(trajectory), PreparedView(*model, height), light_theme(), framing)}, {});
+    };
+    const Figure at_ends = figure_from(release->t, impact->t);
+    const double span = impact->t - release->t;
+    const Figure inside = figure_from(release->t - 0.3 * span, impact->t + 0.3 * span);
+
+    // SVG: outside every clipping group, and to both sides of the axis' end.
+    std::istringstream lines(svg(at_ends, 600, 400, 1.4, fonts, {}));
+    const Color green = event_markers(light_theme(), Event::Kind::release).fill;
+    const std::string fill = fmt::format("fill=\"#{:02x}{:02x}{:02x}\"", green.r, green.g, green.b);
+    int triangles = 0;
+    bool clipped = false;
+    double left = 0.0;                                             // of the axes
+    const std::string area = "<clipPath id=\"plot3\"><rect x=\"";  // after those of two keys
+    for (std::string line; std::getline(lines, line);) {
+        clipped = line.starts_with("<g clip-path") || (clipped && line != "</g>");
+        if (const std::size_t at = line.find(area); at != std::string::npos)
+            left = std::stod(line.substr(at + area.size()));
+        if (line.find(fill) == std::string::npos || !line.starts_with("<path") || line.find("Z\"") == std::string::npos)
+            continue;
+        const auto box = box_of(line);
+        if (box[1] < 50.0) continue;  // in the legend
+        EXPECT_FALSE(clipped);
+        EXPECT_NEAR(0.5 * (box[0] + box[2]), left, 0.5) << line;
+        EXPECT_NEAR(box[2] - box[0], 2.0 * 9.0 * 1.4 * 0.68 * std::sin(std::acos(-1.0) / 3.0), 0.02) << line;
+        ++triangles;
+    }
+    EXPECT_EQ(triangles, 1);
+
+    // Pixels: as many of their colours as where nothing is near them.
+    SurfaceOptions options = support::options(600, 400, 1.4);
+    options.curve_fineness = 2;
+    Offscreen surface(options);
+    const auto pixels_of = [&](const Figure& figure) {
+        const Image image = surface.frame([&] {
+            paint(figure, ImGui::GetBackgroundDrawList(), {0, 0, 600, 400}, 1.4);
+        });
+        int found = 0;
+        for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+            const bool is_green = image.rgb[i] == green.r && image.rgb[i + 1] == green.g && image.rgb[i + 2] == green.b;
+            found += is_green && i / 3 / 600 > 50 ? 1 : 0;
+        }
+        return found;
+    };
+    const int whole = pixels_of(inside), there = pixels_of(at_ends);
+    EXPECT_GT(whole, 40);
+    EXPECT_NEAR(there, whole, 0.1 * whole);
 }
 
 // At the size of a page nothing is shortened.
