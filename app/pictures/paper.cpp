@@ -29,17 +29,6 @@ ViewDescription view(const std::string& name, const std::string& x, const std::s
     return result;
 }
 
-// The surface y = sin x under the path.
-void add_surface(Panel& panel, const Theme& theme) {
-    Curve surface;
-    surface.stroke = {theme.surface, 1.0, {}};
-    for (int i = 0; i <= 400; ++i) {
-        const double x = panel.x.low + (panel.x.high - panel.x.low) * i / 400.0;
-        surface.points.push_back({x, std::sin(x)});
-    }
-    panel.curves.insert(panel.curves.begin(), surface);
-}
-
 const Event* nth(const Trajectory& trajectory, Event::Kind kind, int n) {
     for (const Event& event : trajectory.events)
         if (event.kind == kind && n-- == 0) return &event;
@@ -61,16 +50,17 @@ Figure empty_page() {
 // The panels of the paper's figure; the first four are of the ball.
 std::vector<Panel> paper_panels(const Trajectory& ball, const Trajectory& pendulum) {
     const Theme theme = light_theme();
+    Framing framing;
+    framing.for_print = true;  // the path with h = 0 in it, as `figure` draws it
     std::vector<Panel> panels;
     const std::vector<Sample> of_ball = plot_samples(ball), of_pendulum = plot_samples(pendulum);
     const auto add = [&](const Trajectory& run, std::span<const Sample> samples, const ViewDescription& what) {
-        panels.push_back(compose(run, samples, PreparedView(*run.model, what), theme));
+        panels.push_back(compose(run, samples, PreparedView(*run.model, what), theme, framing));
     };
     add(ball, of_ball, view("(a)", "t", "x"));
     add(ball, of_ball, view("(b)", "t", "y"));
     add(ball, of_ball, view("(c)", "t", "gap"));
     add(ball, of_ball, view("(d)", "x", "y"));
-    add_surface(panels.back(), theme);
     add(pendulum, of_pendulum, view("(e)", "t", "theta1"));
     add(pendulum, of_pendulum, view("(f)", "t", "theta2"));
     return panels;
@@ -163,13 +153,15 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
         Figure single = empty_page();
         single.panels.push_back(panels[i]);
         dress_for_print(single, std::span(runs).subspan(i < 4 ? 0 : 1, 1));
-        figures.push_back({"fig4" + panels[i].title.substr(1, 1), 900, 600, single});
+        // What is true to shape is long and low here: no page is left empty above it.
+        const int height = panels[i].equal_axes ? 380 : 600;
+        figures.push_back({"fig4" + panels[i].title.substr(1, 1), 900, height, single});
     }
     Figure page = empty_page();
     page.columns = 2;
     page.panels = panels;
     dress_for_print(page, runs);
-    figures.push_back({"fig4", 1400, 1350, page});
+    figures.push_back({"fig4", 1400, 1050, page});
     Figure more = empty_page();
     more.grid.a = 0;
     more.panels = {threshold_panel(ball), widths_panel(ball, pendulum)};

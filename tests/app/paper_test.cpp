@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/systems.hpp"
@@ -33,6 +34,17 @@ TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
     EXPECT_EQ(figures[0].name, "fig4a");
     EXPECT_EQ(figures[6].name, "fig4");
     EXPECT_EQ(figures[6].figure.panels.size(), 6u);
+    // The path is drawn once, with the gap's zero line, as `figure` draws it.
+    const Panel& path = figures[3].figure.panels[0];
+    EXPECT_EQ(path.curves.size(), 2u);
+    EXPECT_TRUE(path.equal_axes);
+    EXPECT_GT(path.boundary.points.size(), 300u);
+    for (const Point& p : path.boundary.points)
+        EXPECT_TRUE(std::isnan(p.x) || std::abs(p.y - std::sin(p.x)) < 2e-3) << p.x;
+    for (const std::size_t i : {3u, 6u}) {
+        const auto& keys = figures[i].figure.keys;
+        EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.label == "ℎ = 0"; })) << i;
+    }
     // From the certified time at threshold 0 to what one would read as 11 at threshold 1.
     EXPECT_EQ(figures[7].name, "zeno");
     const std::vector<Point>& cut = figures[7].figure.panels[0].curves[0].points;
