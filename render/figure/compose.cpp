@@ -252,6 +252,28 @@ void widen(Axis& axis, const Axis& other) {
     if (more > 0.0) set_ticks(axis, axis.low - more, axis.high + more, 0.0);
 }
 
+// What the path cannot cross is seen whole where little of it would be cut off: a ring is round.
+void show_whole(Axis& axis, double low, double high) {
+    constexpr double margin = 0.04, rounding = 1e-6;
+    const double span = axis.high - axis.low;
+    const bool is_below = low<axis.low - rounding * span, is_above = high> axis.high + rounding * span;
+    if (!is_below && !is_above) return;
+    set_ticks(axis, is_below ? low - margin * span : axis.low, is_above ? high + margin * span : axis.high, 0.0);
+}
+
+void show_whole(Panel& panel, const std::vector<Point>& line) {
+    constexpr double little = 0.15;  // of the axis
+    Range x, y;
+    for (const Point& point : line) x.include(point.x), y.include(point.y);
+    const auto is_near = [](const Axis& axis, const Range& range) {
+        const double more = little * (axis.high - axis.low);
+        return range.low >= axis.low - more && range.high <= axis.high + more;
+    };
+    if (!is_near(panel.x, x) || !is_near(panel.y, y)) return;
+    show_whole(panel.x, x.low, x.high);
+    show_whole(panel.y, y.low, y.high);
+}
+
 // A path in a plane: with one unit on both axes it is true to shape, unless it is so long that nothing would be seen.
 void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
                   const Framing& framing, const Theme& theme) {
@@ -268,6 +290,8 @@ void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sa
             curve.points = without_retraced(curve.points, panel.x, panel.y);
     panel.boundary.stroke = {theme.surface, 1.0, {}};
     panel.boundary.points = boundary(trajectory, samples, view, panel);
+    if (panel.equal_axes && !framing.x && !framing.y && !panel.boundary.points.empty())
+        show_whole(panel, panel.boundary.points);
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ struct Panel {
     std::string title;  // "(a)", or a view's name
     Axis x, y;
     bool equal_axes = false;  // one unit is the same length on both axes
+    int rows = 1;             // of the figure's, that it stands beside
     std::vector<Band> bands;
     Curve boundary;  // behind the curves: what the path cannot cross
     std::vector<Curve> curves;
@@ -83,7 +84,7 @@ struct Key {
 
 struct Figure {
     int columns = 1;
-    std::vector<Panel> panels;  // row by row
+    std::vector<Panel> panels;  // row by row, each in the first place that is free
     std::vector<Key> keys;      // a legend above all panels; empty: none
     Color background{255, 255, 255, 255};
     Color ink{30, 30, 30, 255};  // axes and text

@@ -56,7 +56,8 @@ std::string to_text(const Figure& figure) {
     std::string text = fmt::format("figure columns {} background {}\n", figure.columns, color_text(figure.background));
     for (const Key& key : figure.keys) text += fmt::format("key \"{}\"\n", key.label);
     for (const Panel& panel : figure.panels) {
-        text += fmt::format("panel \"{}\"{}{}\n", panel.title, panel.equal_axes ? " equal" : "",
+        text += fmt::format("panel \"{}\"{}{}{}\n", panel.title, panel.equal_axes ? " equal" : "",
+                            panel.rows > 1 ? fmt::format(" rows {}", panel.rows) : "",
                             !panel.legend        ? ""
                             : panel.legend_above ? " legend above"
                                                  : " legend");

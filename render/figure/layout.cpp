@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/axes.hpp"
+#include "figure/grid.hpp"
 
 namespace achilles {
 
@@ -15,13 +15,15 @@ Rectangle on_pixels(Rectangle r) {
     return {x, y, std::max(std::round(r.x + r.width) - x, 1.0F), std::max(std::round(r.y + r.height) - y, 1.0F)};
 }
 
-// Shrinks the plot area until one unit is the same length on both axes; its middle stays.
+// Shrinks the plot area until one unit is the same length on both axes; its middle stays, or, beside several rows, the
+// corner where reading begins.
 Rectangle with_equal_units(const Panel& panel, Rectangle plot) {
     const double wide = panel.x.high - panel.x.low, high = panel.y.high - panel.y.low;
     const double unit = std::min(plot.width / wide, plot.height / high);
     if (!panel.equal_axes || !(unit > 0.0) || !std::isfinite(unit) || !std::isfinite(high)) return plot;
     const auto width = static_cast<float>(unit * wide), height = static_cast<float>(unit * high);
-    return on_pixels({plot.x + (plot.width - width) / 2.0F, plot.y + (plot.height - height) / 2.0F, width, height});
+    const float before = panel.rows > 1 ? 0.0F : 0.5F;
+    return on_pixels({plot.x + before * (plot.width - width), plot.y + before * (plot.height - height), width, height});
 }
 
 void lay_bands(const Panel& panel, Sheet& sheet, Rectangle plot) {
@@ -244,60 +246,21 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     return inner;
 }
 
-// Where the plot areas of a figure go: all of one size, in line, with the room the fullest panel of each column and row
-// needs.
-struct Grid {
-    Grid(const Figure& figure, Rectangle area, const Metrics& m) {
-        const auto columns = static_cast<std::size_t>(std::max(figure.columns, 1));
-        const std::size_t rows = (figure.panels.size() + columns - 1) / columns;
-        across.resize(columns);
-        down.resize(rows);
-        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-            const Margins room = margins(figure.panels[i], m);
-            across[i % columns] = both(across[i % columns], room);
-            down[i / columns] = both(down[i / columns], room);
-        }
-        const float pad = std::round(m.text * 0.7F), between = m.text;
-        float width = area.width - 2.0F * pad - between * static_cast<float>(columns - 1);
-        float height = area.height - 2.0F * pad - between * static_cast<float>(rows - 1);
-        for (const Margins& room : across) width -= room.left + room.right;
-        width = std::floor(width / static_cast<float>(columns));
-        for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-            const float needed = margins(figure.panels[i], m).top + room_of_legend(figure.panels[i], width, m);
-            down[i / columns].top = std::max(down[i / columns].top, needed);
-        }
-        for (const Margins& room : down) height -= room.top + room.bottom;
-        height = std::floor(height / static_cast<float>(rows));
-        float x = area.x + pad, y = area.y + pad;
-        for (const Margins& room : across) {
-            xs.push_back(x + room.left);
-            x += room.left + width + room.right + between;
-        }
-        for (const Margins& room : down) {
-            ys.push_back(y + room.top);
-            y += room.top + height + room.bottom + between;
-        }
-        size = {0.0F, 0.0F, width, height};
-        count = figure.panels.size();
-    }
-    // Of a panel. Those of a last row that is not full share its whole width.
-    Rectangle plot(std::size_t i) const {
-        const std::size_t columns = xs.size(), row = i / columns, in_row = std::min(columns, count - row * columns);
-        if (in_row == columns) return on_pixels({xs[i % columns], ys[row], size.width, size.height});
-        Margins widest;
-        for (const Margins& room : across) widest = both(widest, room);
-        const float whole = xs.back() + size.width - xs.front(), shared = static_cast<float>(in_row);
-        const float apart = (xs.back() - xs.front()) / static_cast<float>(columns - 1) - size.width;
-        const float between = std::max(apart, widest.left + widest.right);
-        const float width = (whole - (shared - 1.0F) * between) / shared;
-        return on_pixels(
-            {xs.front() + static_cast<float>(i % columns) * (width + between), ys[row], width, size.height});
-    }
-    std::vector<Margins> across, down;  // of columns, left and right count; of rows, top and bottom
-    std::vector<float> xs, ys;
-    Rectangle size;
-    std::size_t count = 0;
-};
+Grid grid_of(const Figure& figure, Rectangle area, const Metrics& m) {
+    return {figure, area, m, [&](const Panel& panel, float width) { return room_of_legend(panel, width, m); }};
+}
+
+// Takes the lines of the figure's own legend off the top of the area.
+KeyLines take_legend(const Figure& figure, Rectangle& area, const Metrics& m) {
+    const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
+    // A small picture shows its data rather than what they mean.
+    constexpr float most_of_height = 0.3F;
+    if (figure.keys.empty() || keys.height(m) >= most_of_height * area.height) return KeyLines({}, area.width, m);
+    const float above = std::round(m.text * 0.5F) + keys.height(m);
+    area.y += above;
+    area.height -= above;
+    return keys;
+}
 
 }  // namespace
 
@@ -306,25 +269,26 @@ Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double 
     if (figure.background.a > 0) sheet.emplace_back(Fill{area, figure.background});
     if (figure.panels.empty()) return sheet;
     const Metrics m(figure, width, scale);
-    const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
-    // A small picture shows its data rather than what they mean.
-    constexpr float most_of_height = 0.3F;
-    if (!figure.keys.empty() && keys.height(m) < most_of_height * area.height) {
-        const float top = std::round(m.text * 0.5F), height = keys.height(m);
-        keys.lay(sheet, area.x + area.width / 2.0F, area.y + top, 0.5F, figure, m);
-        area.y += top + height;
-        area.height -= top + height;
-    }
-    const Grid grid(figure, area, m);
-    // Too small for anything but labels.
-    if (grid.size.width < m.text || grid.size.height < m.text) return sheet;
-    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-        const std::size_t column = i % grid.xs.size(), row = i / grid.xs.size();
-        const Margins room{grid.across[column].left, grid.across[column].right, grid.down[row].top,
-                           grid.down[row].bottom};
-        lay_at(figure.panels[i], figure, sheet, grid.plot(i), room, m);
-    }
+    const float top = area.y + std::round(m.text * 0.5F);
+    take_legend(figure, area, m).lay(sheet, area.x + area.width / 2.0F, top, 0.5F, figure, m);
+    const Grid grid = grid_of(figure, area, m);
+    if (grid.least_side() < m.text) return sheet;  // too small for anything but labels
+    for (std::size_t i = 0; i < figure.panels.size(); ++i)
+        lay_at(figure.panels[i], figure, sheet, on_pixels(grid.plot(i)), grid.room(i), m);
     return sheet;
+}
+
+std::vector<PlotArea> plot_areas(const Figure& figure, const Measure& width, Rectangle area, double scale) {
+    if (figure.panels.empty()) return {};
+    const Metrics m(figure, width, scale);
+    take_legend(figure, area, m);
+    const Grid grid = grid_of(figure, area, m);
+    std::vector<PlotArea> areas;
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+        const Rectangle place = on_pixels(grid.plot(i));
+        areas.push_back({with_equal_units(figure.panels[i], place), place});
+    }
+    return areas;
 }
 
 Rectangle layout(const Panel& panel, const Figure& style, const Measure& width, Rectangle area, double scale,

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <map>
 
+#include "figure/grid.hpp"
 #include "figure/label.hpp"
+#include "figure/layout.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -71,19 +75,69 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
     return keys;
 }
 
+// How well the panels of a figure stand: the sum of the logarithms of their areas, so that twice the area of one makes
+// up for half of another's, and of the shares of their places that they fill.
+double ease(Figure figure, double shape) {
+    constexpr float height = 800.0F;
+    const auto measure = [](const std::string& label, float size) {
+        return 0.5F * size * static_cast<float>(letters(label).size());
+    };
+    share_axes(figure);
+    const Rectangle page{0.0F, 0.0F, static_cast<float>(shape) * height, height};
+    double sum = 0.0;
+    const auto area = [](const Rectangle& r) { return std::max(double{r.width} * double{r.height}, 1e-9); };
+    for (const PlotArea& at : plot_areas(figure, measure, page, publication_scale))
+        sum += std::log(area(at.plot)) + std::log(area(at.plot) / area(at.place));
+    return sum;
+}
+
+Figure with_path(Figure figure, std::size_t from, std::size_t to, int rows) {
+    figure.panels[from].rows = rows;
+    const auto at = [&](std::size_t i) { return figure.panels.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::rotate(at(to), at(from), at(from + 1));
+    return figure;
+}
+
+// A lone path that is true to shape stands beside several rows of the others, which fill the places that are left, if
+// the panels have more room so.
+void set_path(Figure& figure, const PublicationStyle& style) {
+    constexpr double worth_it = 0.1;
+    const auto is_path = [](const Panel& panel) { return panel.equal_axes; };
+    auto& panels = figure.panels;
+    const std::size_t n = panels.size(), columns = static_cast<std::size_t>(figure.columns);
+    if (n < 3 || columns < 2 || std::count_if(panels.begin(), panels.end(), is_path) != 1) return;
+    const auto path = static_cast<std::size_t>(std::find_if(panels.begin(), panels.end(), is_path) - panels.begin());
+    const std::size_t place = style.ordered ? path : 0;
+    Figure bare = figure;  // to be copied for every arrangement: without what has no say
+    for (Panel& panel : bare.panels) panel.boundary = {}, panel.curves.clear(), panel.markers.clear();
+    double best = ease(bare, style.shape) + worth_it;
+    int rows = 1;
+    for (std::size_t all = (n + columns - 1) / columns; all < n; ++all) {
+        const std::size_t tall = columns * all - (n - 1);
+        if (tall < 2 || tall > all || place / columns + tall > all) continue;
+        const double here = ease(with_path(bare, path, place, static_cast<int>(tall)), style.shape);
+        if (here > best) best = here, rows = static_cast<int>(tall);
+    }
+    if (rows > 1) figure = with_path(std::move(figure), path, place, rows);
+}
+
 }  // namespace
 
 void share_axes(Figure& figure) {
-    const auto columns = static_cast<std::size_t>(std::max(figure.columns, 1));
-    const std::vector<Panel>& panels = figure.panels;
-    for (std::size_t row = 0; row < panels.size(); row += columns) {
-        // A row with room for one panel's labels has it for all: then they stay, and the grid looks even.
-        bool shared = true;
-        for (std::size_t i = row; i < std::min(row + columns, panels.size()); ++i)
-            shared = shared && i + columns < panels.size() && same_axis(panels[i].x, panels[i + columns].x);
-        for (std::size_t i = row; i < std::min(row + columns, panels.size()); ++i)
-            figure.panels[i].x.labelled = !shared;
-    }
+    std::vector<Panel>& panels = figure.panels;
+    const std::vector<Cell> cells = cells_of(figure);
+    const auto shares = [&](std::size_t i) {
+        for (std::size_t below = i + 1; below < cells.size(); ++below)
+            if (cells[below].column == cells[i].column && cells[below].row == cells[i].row + 1)
+                return same_axis(panels[i].x, panels[below].x);
+        return false;
+    };
+    std::map<std::size_t, bool> shared;  // by row
+    // A row with room for one panel's labels has it for all: then they stay, and the grid looks even.
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        if (cells[i].rows == 1)
+            shared[cells[i].row] = shared.try_emplace(cells[i].row, true).first->second && shares(i);
+    for (std::size_t i = 0; i < cells.size(); ++i) panels[i].x.labelled = cells[i].rows > 1 || !shared[cells[i].row];
 }
 
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
@@ -121,11 +175,12 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
     if (style.transparent) figure.background.a = 0;
     const Trajectory* const run = &trajectory;
     dress_for_print(figure, {&run, 1});
+    figure.columns = style.columns > 0 ? style.columns : figure.panels.empty() ? 1 : columns_for(figure.panels);
+    if (style.columns == 0) set_path(figure, style);
+    share_axes(figure);
     const bool lone = figure.panels.size() == 1;
     for (std::size_t i = 0; i < figure.panels.size(); ++i)
         figure.panels[i].title = lone ? "" : lettered(i, figure.panels[i].title);
-    figure.columns = style.columns > 0 ? style.columns : figure.panels.empty() ? 1 : columns_for(figure.panels);
-    share_axes(figure);
     return figure;
 }
 

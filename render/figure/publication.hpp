@@ -9,6 +9,8 @@ namespace achilles {
 struct PublicationStyle {
     int columns = 0;           // 0: one for up to three views over the same axis, two up to six, else three
     bool transparent = false;  // no background
+    bool ordered = false;      // the panels stay in their order, even where a path would stand better as the first
+    double shape = 1.5;        // of the picture: its width over its height
 };
 
 // Throws InputError for a view that cannot be evaluated.
@@ -20,7 +22,8 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
 // occurs in the runs they show.
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs);
 
-// Takes the labels off the x axes of every row whose panels all stand on others with the same axes.
+// Takes the labels off the x axes of every row whose panels all stand on others with the same axes. A panel beside
+// several rows keeps its own.
 void share_axes(Figure& figure);
 
 // Text and strokes of a figure are made for a page about as wide as this many pixels; --scale 1 is that size.

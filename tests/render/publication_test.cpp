@@ -14,8 +14,7 @@
 namespace achilles {
 namespace {
 
-// Every letter as wide as half its size.
-float half(const std::string& label, float size) { return 0.5F * size * static_cast<float>(label.size()); }
+using samples::half;
 
 ViewDescription view(const std::string& name, const std::string& x, const std::vector<std::string>& ys) {
     ViewDescription result;
@@ -178,6 +177,9 @@ TEST_F(Publication, a_path_shows_the_boundary) {
         bottom = std::min(bottom, p.y), top = std::max(top, p.y);
     }
     EXPECT_TRUE(left < -0.49 && right > 0.49 && bottom < -0.49 && top > 0.49);
+    // All of the ring is in view, and of a longer line what the path needs.
+    EXPECT_TRUE(bead.x.low < left && bead.x.high > right && bead.y.low < bottom && bead.y.high > top);
+    EXPECT_LT(of_path("ball_on_cylinder").x.high, 1.5);
     EXPECT_TRUE(of_path("ball_on_egg_crate").boundary.points.empty());  // h depends on the height, too
     EXPECT_TRUE(of_path("double_pendulum").boundary.points.empty());    // a phase plane
     EXPECT_TRUE(of({view("x", "t", {"x"})}).panels[0].boundary.points.empty());
@@ -262,22 +264,6 @@ TEST_F(Publication, impacts_that_crowd_thin_out) {
             for (std::size_t j = 0; j < i; ++j)
                 nearest = std::min(nearest, std::hypot(squares[i].x - squares[j].x, squares[i].y - squares[j].y));
         EXPECT_GT(nearest, 5.5 * 1.4);  // across
-    }
-}
-
-// A marker on the very end of an axis is there, whole, however wide the picture is.
-TEST(Layout, markers_on_the_rim_are_drawn) {
-    Figure figure;
-    Panel& panel = figure.panels.emplace_back();
-    panel.x.low = 0.1, panel.x.high = 20.3;
-    panel.y.low = -0.3, panel.y.high = 0.7;
-    panel.equal_axes = true;
-    Markers& markers = panel.markers.emplace_back();
-    markers.points = {{0.1, -0.3}, {20.3, -0.3}, {0.1, 0.7}, {20.3, 0.7}};
-    for (float width = 300.0F; width < 400.0F; width += 1.0F) {
-        int marks = 0;
-        for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0)) marks += item.index() == 2 ? 1 : 0;
-        EXPECT_EQ(marks, 4) << width;
     }
 }
 
@@ -373,41 +359,6 @@ TEST_F(Publication, text_is_never_too_small_to_be_printed) {
         }
     }
     EXPECT_NE(words.find("\u2026 (m²/s²)|"), std::string::npos) << words;  // shorter, with its unit
-}
-
-// Full size, the size of indices, and only then any other: letters that are stretched look pale in pixels.
-TEST(Layout, labels_are_of_sizes_that_have_letters) {
-    const auto size_of = [](const std::string& label) {
-        Figure figure;
-        figure.panels.push_back(samples::corners(""));
-        figure.panels[0].x.label = label;
-        for (const auto& item : layout(figure, half, {0, 0, 400, 400}, 1.0))
-            if (const auto* words = std::get_if<TextRun>(&item); words != nullptr && words->label == label)
-                return words->size;
-        return 0.0F;
-    };
-    EXPECT_EQ(size_of(std::string(50, 'x')), 14.0F);  // 350 px
-    EXPECT_EQ(size_of(std::string(60, 'x')), 10.0F);
-    EXPECT_EQ(size_of(std::string(75, 'x')), 10.0F);
-    const float least = size_of(std::string(90, 'x'));
-    EXPECT_LT(least, 10.0F);
-    EXPECT_GE(least, 7.0F);
-}
-
-TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
-    const auto ticks_in = [](float width) {
-        Figure figure;
-        figure.panels.push_back(samples::corners(""));
-        figure.panels[0].y.ticks.clear();
-        int ticks = 0;
-        for (const auto& item : layout(figure, half, {0, 0, width, 400}, 1.0)) {
-            const auto* fill = std::get_if<Fill>(&item);
-            ticks += fill != nullptr && (fill->area.height == 3.0F || fill->area.height == 5.0F) ? 1 : 0;
-        }
-        return ticks;
-    };
-    EXPECT_EQ(ticks_in(600), 9);  // 0, 5, ... 20 and what is between
-    EXPECT_EQ(ticks_in(90), 5);
 }
 
 }  // namespace

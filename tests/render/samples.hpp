@@ -10,6 +10,9 @@
 
 namespace achilles::samples {
 
+// A measure: every byte of a label is half as wide as it is high.
+inline float half(const std::string& label, float size) { return 0.5F * size * static_cast<float>(label.size()); }
+
 inline std::string number(double value) {
     // Only for the samples: a few digits, a real minus sign.
     std::string text = std::to_string(std::abs(value)).substr(0, 4);

@@ -95,7 +95,10 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     job.add(arguments.out);
 
     const Trajectory trajectory = simulate(model, run);
-    return put(arguments, trajectory, publication(trajectory, views, arguments.style), format, job);
+    PublicationStyle style = arguments.style;
+    style.ordered = !arguments.views.empty();
+    style.shape = double{1} * arguments.size.width / arguments.size.height;
+    return put(arguments, trajectory, publication(trajectory, views, style), format, job);
 }
 
 void take_columns(const std::string& text, int& columns) {

@@ -1,0 +1,130 @@
+#include "figure/layout.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/systems.hpp"
+#include "figure/grid.hpp"
+#include "figure/publication.hpp"
+#include "render/samples.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+namespace {
+
+using samples::half;
+
+// Round things do not stay small between white margins: in every figure of the gallery panels fill their places.
+TEST(Layout, paths_fill_their_place) {
+    for (const std::string& name : test::all_systems()) {
+        const auto system = test::load(name);
+        auto views = system->description().views;
+        std::stable_partition(views.begin(), views.end(), [](const ViewDescription& v) { return v.x.text == "t"; });
+        const Figure figure = publication(simulate(system, system->default_run()), views, {});
+        const auto plots = plot_areas(figure, half, {0, 0, 1200, 800}, publication_scale);
+        const auto area = [](const Rectangle& r) { return double{r.width} * double{r.height}; };
+        for (std::size_t i = 0; i < plots.size(); ++i) {
+            const Rectangle& a = plots[i].plot;
+            EXPECT_GT(area(a), 0.6 * area(plots[i].place)) << name << " " << figure.panels[i].title;
+            EXPECT_TRUE(a.x > 0 && a.y > 0 && a.x + a.width < 1200 && a.y + a.height < 800) << name;
+            for (std::size_t j = 0; j < i; ++j) {
+                const Rectangle& b = plots[j].plot;
+                EXPECT_TRUE(a.x > b.x + b.width + 20 || b.x > a.x + a.width + 20 || a.y > b.y + b.height + 20 ||
+                            b.y > a.y + a.height + 20)
+                    << name << i << j;
+            }
+        }
+    }
+}
+
+// The path first, beside two rows; the others keep their order and share their axis as ever.
+TEST(Layout, a_round_path_stands_beside_two_rows) {
+    const auto system = test::load("bead_in_ring");
+    const Trajectory run = simulate(system, system->default_run());
+    auto views = system->description().views;
+    std::rotate(views.begin(), views.begin() + 1, views.end());  // the path is the last
+    const Figure figure = publication(run, views, {});
+    EXPECT_EQ(figure.panels[0].title, "(a)\u00A0\u00A0path");
+    EXPECT_EQ(figure.panels[0].rows, 2);
+    EXPECT_EQ(figure.panels[1].title, "(b)\u00A0\u00A0gap");
+    const bool labelled[] = {true, false, false, true, true};
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(figure.panels[i].x.labelled, labelled[i]) << i;
+    const auto plots = plot_areas(figure, half, {0, 0, 1200, 800}, publication_scale);
+    const Rectangle &path = plots[0].plot, &gap = plots[1].plot, &force = plots[3].plot;
+    EXPECT_LE(path.y + path.height + 40, force.y);  // its own axis is above the next panel
+    EXPECT_EQ(path.x, force.x);
+    EXPECT_EQ(path.y, gap.y);
+    EXPECT_EQ(force.y, plots[4].plot.y);
+    EXPECT_EQ(gap.x, plots[2].plot.x);
+    EXPECT_GT(path.height, 1.8F * gap.height);
+    EXPECT_NEAR(path.width / path.height, shape_of(figure.panels[0]), 0.01);
+    // As the command line orders them, or arranged by hand, they stay.
+    PublicationStyle ordered, by_hand;
+    ordered.ordered = true;
+    by_hand.columns = 2;
+    EXPECT_EQ(publication(run, views, ordered).panels[4].title, "(e)\u00A0\u00A0path");
+    EXPECT_EQ(publication(run, views, by_hand).panels[4].rows, 1);
+    // What is long and low keeps a row of its own, which is higher; what is high and narrow a column.
+    const auto of_system = [](const std::string& name) {
+        const auto other = test::load(name);
+        return publication(simulate(other, other->default_run()), other->description().views, {});
+    };
+    EXPECT_EQ(of_system("falling_rod").panels[0].rows, 4);
+    EXPECT_EQ(of_system("ball_on_sine").panels[3].rows, 1);
+    EXPECT_EQ(of_system("ball_on_hills").panels[0].rows, 1);
+}
+
+// A marker on the very end of an axis is there, whole, however wide the picture is.
+TEST(Layout, markers_on_the_rim_are_drawn) {
+    Figure figure;
+    Panel& panel = figure.panels.emplace_back();
+    panel.x.low = 0.1, panel.x.high = 20.3;
+    panel.y.low = -0.3, panel.y.high = 0.7;
+    panel.equal_axes = true;
+    Markers& markers = panel.markers.emplace_back();
+    markers.points = {{0.1, -0.3}, {20.3, -0.3}, {0.1, 0.7}, {20.3, 0.7}};
+    for (float width = 300.0F; width < 400.0F; width += 1.0F) {
+        int marks = 0;
+        for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0)) marks += item.index() == 2 ? 1 : 0;
+        EXPECT_EQ(marks, 4) << width;
+    }
+}
+
+// Full size, the size of indices, and only then any other: letters that are stretched look pale in pixels.
+TEST(Layout, labels_are_of_sizes_that_have_letters) {
+    const auto size_of = [](const std::string& label) {
+        Figure figure;
+        figure.panels.push_back(samples::corners(""));
+        figure.panels[0].x.label = label;
+        for (const auto& item : layout(figure, half, {0, 0, 400, 400}, 1.0))
+            if (const auto* words = std::get_if<TextRun>(&item); words != nullptr && words->label == label)
+                return words->size;
+        return 0.0F;
+    };
+    EXPECT_EQ(size_of(std::string(50, 'x')), 14.0F);  // 350 px
+    EXPECT_EQ(size_of(std::string(60, 'x')), 10.0F);
+    EXPECT_EQ(size_of(std::string(75, 'x')), 10.0F);
+    const float least = size_of(std::string(90, 'x'));
+    EXPECT_LT(least, 10.0F);
+    EXPECT_GE(least, 7.0F);
+}
+
+TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
+    const auto ticks_in = [](float width) {
+        Figure figure;
+        figure.panels.push_back(samples::corners(""));
+        figure.panels[0].y.ticks.clear();
+        int ticks = 0;
+        for (const auto& item : layout(figure, half, {0, 0, width, 400}, 1.0)) {
+            const auto* fill = std::get_if<Fill>(&item);
+            ticks += fill != nullptr && (fill->area.height == 3.0F || fill->area.height == 5.0F) ? 1 : 0;
+        }
+        return ticks;
+    };
+    EXPECT_EQ(ticks_in(600), 9);  // 0, 5, ... 20 and what is between
+    EXPECT_EQ(ticks_in(90), 5);
+}
+
+}  // namespace
+}  // namespace achilles
