@@ -1,7 +1,6 @@
 // Offscreen drawing by EGL on Mesa's surfaceless platform, the successor of OSMesa. The only file that includes EGL.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <dlfcn.h>
 
 #include <array>
 #include <cstdlib>
@@ -9,13 +8,14 @@
 #include <stdexcept>
 #include <string>
 
+#include "surface/loaded_library.hpp"
 #include "surface/memory_context.hpp"
 
 namespace achilles {
 
 namespace {
 
-// Loaded by hand like OSMesa: a machine without it gets a sentence, and the window chooses its own.
+// Loaded by hand like OSMesa: the window chooses its own.
 struct Egl {
     decltype(&eglGetProcAddress) address;
     decltype(&eglInitialize) initialize;
@@ -25,12 +25,6 @@ struct Egl {
     decltype(&eglMakeCurrent) make_current;
     EGLDisplay display = EGL_NO_DISPLAY;
 };
-
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library, name));
-    if (function == nullptr) throw std::runtime_error(std::string("libEGL.so.1 lacks ") + name);
-}
 
 // A variable of the environment as long as this lives; one that the user has set stays.
 class Variable {
@@ -51,15 +45,14 @@ class Variable {
 
 const Egl& egl() {
     static const Egl loaded = [] {
-        void* library = dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL);  // never closed, as OSMesa
-        if (library == nullptr) throw std::runtime_error("libEGL.so.1 is missing");
+        const LoadedLibrary library("libEGL.so.1");
         Egl egl{};
-        find(library, "eglGetProcAddress", egl.address);
-        find(library, "eglInitialize", egl.initialize);
-        find(library, "eglBindAPI", egl.bind_api);
-        find(library, "eglCreateContext", egl.create_context);
-        find(library, "eglDestroyContext", egl.destroy_context);
-        find(library, "eglMakeCurrent", egl.make_current);
+        library.find("eglGetProcAddress", egl.address);
+        library.find("eglInitialize", egl.initialize);
+        library.find("eglBindAPI", egl.bind_api);
+        library.find("eglCreateContext", egl.create_context);
+        library.find("eglDestroyContext", egl.destroy_context);
+        library.find("eglMakeCurrent", egl.make_current);
         const auto display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.address("eglGetPlatformDisplayEXT"));
         if (display == nullptr) throw std::runtime_error("libEGL.so.1 knows no platforms");
         // A graphics card would draw other bytes.

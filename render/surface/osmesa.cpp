@@ -1,12 +1,11 @@
 // Offscreen drawing by OSMesa.
 #include "surface/osmesa.hpp"
 
-#include <dlfcn.h>
-
 #include <array>
 #include <stdexcept>
 #include <string>
 
+#include "surface/loaded_library.hpp"
 #include "surface/memory_context.hpp"
 
 namespace achilles {
@@ -15,8 +14,7 @@ namespace {
 
 constexpr const char* library_name = "libOSMesa.so.8";
 
-// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand, and
-// a machine without it gets a sentence.
+// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand.
 struct OsMesa {
     decltype(&osmesa::OSMesaCreateContextAttribs) create;
     decltype(&osmesa::OSMesaDestroyContext) destroy;
@@ -24,22 +22,14 @@ struct OsMesa {
     decltype(&osmesa::OSMesaGetProcAddress) address;
 };
 
-template <class Function>
-void find(void* library, const char* name, Function& function) {
-    function = reinterpret_cast<Function>(dlsym(library, name));
-    if (function == nullptr) throw std::runtime_error(std::string(library_name) + " lacks " + name);
-}
-
 const OsMesa& os_mesa() {
     static const OsMesa loaded = [] {
-        // Never closed: its compiler keeps threads and exit handlers.
-        void* library = dlopen(library_name, RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr) throw std::runtime_error(std::string(library_name) + " is missing");
+        const LoadedLibrary library(library_name);
         OsMesa mesa{};
-        find(library, "OSMesaCreateContextAttribs", mesa.create);
-        find(library, "OSMesaDestroyContext", mesa.destroy);
-        find(library, "OSMesaMakeCurrent", mesa.make_current);
-        find(library, "OSMesaGetProcAddress", mesa.address);
+        library.find("OSMesaCreateContextAttribs", mesa.create);
+        library.find("OSMesaDestroyContext", mesa.destroy);
+        library.find("OSMesaMakeCurrent", mesa.make_current);
+        library.find("OSMesaGetProcAddress", mesa.address);
         return mesa;
     }();
     return loaded;

@@ -11,6 +11,7 @@
 #include "render/support.hpp"
 #include "surface/curves.hpp"
 #include "surface/events.hpp"
+#include "surface/loaded_library.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {
@@ -310,6 +311,15 @@ TEST(Window, without_a_display_there_is_a_message) {
     EXPECT_FALSE(Window::display_available());
     EXPECT_NE(complaint([] { Window window(support::options(), "achilles"); }).find("window"), std::string::npos);
     if (before != nullptr) setenv("DISPLAY", kept.c_str(), 1);
+}
+
+TEST(LoadedLibrary, names_itself_and_what_it_lacks) {
+    EXPECT_EQ(complaint([] { LoadedLibrary("libnone.so.1"); }), "libnone.so.1 is missing");
+    const LoadedLibrary library("libm.so.6");
+    double (*cosine)(double) = nullptr;
+    library.find("cos", cosine);
+    EXPECT_EQ(cosine(0.0), 1.0);
+    EXPECT_EQ(complaint([&] { library.find("no_such_function", cosine); }), "libm.so.6 lacks no_such_function");
 }
 
 }  // namespace
