@@ -7,6 +7,7 @@
 #include "number/ground.hpp"
 #include "output/output.hpp"
 #include "simulate/sampler.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -51,7 +52,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
     std::vector<std::string> columns{"t", "phase"}, units{"s", ""};
     for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(model.dof()); ++i) {
         columns.push_back(model.slot_names()[i]);
-        units.push_back(unit_of(model.description(), columns.back()));
+        units.push_back(printable(unit_of(model.description(), columns.back())));
     }
     columns.insert(columns.end(), {"gap", "gap rate", "lambda", "energy", "j"});
     units.resize(columns.size());

@@ -4,6 +4,7 @@
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/output.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -152,8 +153,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
     if (instants) result["samples"] = samples_of(trajectory, *instants);
-    // Invalid UTF-8 in a title is replaced, never an exception.
-    return result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    // Invalid UTF-8 in a title is replaced, never an exception; where this is read on a terminal, nothing steers it.
+    return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace achilles

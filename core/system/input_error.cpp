@@ -22,6 +22,14 @@ std::size_t character_size(std::string_view text) {
     return size;
 }
 
+// Of a character of at most three bytes.
+unsigned code_point(std::string_view character) {
+    unsigned code = static_cast<unsigned char>(character[0]);
+    if (character.size() > 1) code &= character.size() == 2 ? 0x1FU : 0x0FU;
+    for (const char byte : character.substr(1)) code = code << 6 | (static_cast<unsigned char>(byte) & 0x3FU);
+    return code;
+}
+
 // A terminal obeys it: C0 and C1 control characters, DEL, and U+202A to 202E, U+2066 to 2069, which turn the direction.
 bool steers_terminal(std::string_view character) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
@@ -58,6 +66,21 @@ std::string printable(std::string_view text) {
         const bool stays = text[0] == '\n' || text[0] == '\t' || (size > 0 && !steers_terminal(text.substr(0, size)));
         result += stays ? text.substr(0, size) : "?";
         text.remove_prefix(std::max<std::size_t>(1, size));
+    }
+    return result;
+}
+
+// Below 0x20 there are line breaks between the values alone; within a string the writer has escaped them.
+std::string printable_json(std::string_view json) {
+    std::string result;
+    while (!json.empty()) {
+        const std::size_t size = std::max<std::size_t>(1, character_size(json));
+        const std::string_view character = json.substr(0, size);
+        if (static_cast<unsigned char>(json[0]) >= 0x20 && steers_terminal(character))
+            result += fmt::format("\\u{:04x}", code_point(character));
+        else
+            result += character;
+        json.remove_prefix(size);
     }
     return result;
 }

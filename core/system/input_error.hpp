@@ -20,6 +20,9 @@ std::string shown(std::string_view text);
 // the line break and the tab, broken UTF-8, marks that turn the direction of reading). The rest stays.
 std::string printable(std::string_view text);
 
+// JSON in UTF-8, fit for a terminal and still the same value: what would steer one is written as \u009b.
+std::string printable_json(std::string_view json);
+
 // What is wrong with a subnormal parameter, and what would be right.
 std::string subnormal_parameter(std::string_view name, double value);
 inline constexpr const char* subnormal_hint = "0, or at least 2.3e-308 in size: choose units in which it is larger";

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "app/hands.hpp"
@@ -189,3 +190,24 @@ TEST_F(Strangers, text_steers_no_terminal) {
 
 }  // namespace
 }  // namespace achilles::test
+// Nor does JSON, which still says the same: what is read back holds every character.
+TEST_F(Strangers, json_steers_no_terminal_and_keeps_what_it_says) {
+    const std::string title = "a\x1b[2J\x7F\xC2\x9B[31m\xE2\x80\xAE\xE2\x81\xA6\xC3\xA9\n\"\\";
+    std::string text = drop_text;
+    text.replace(text.find("A ball dropped on the floor"), 27,
+                 "a\\u001b[2J\\u007f\\u009b[31m\\u202e\\u2066\xC3\xA9\\n\\\"\\\\");
+    text.replace(text.find("start = 1.0"), 11, "start = 1.0\nunit = \"m\\u009b\"");
+    folder.put("evil.toml", text);
+    const Answer answer = folder.run("simulate evil.toml --json -");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    EXPECT_EQ(printable(answer.out), answer.out);
+    EXPECT_NE(answer.out.find("\\u007f\\u009b[31m\\u202e\\u2066\xC3\xA9\\n"), std::string::npos) << answer.out;
+    const auto json = nlohmann::json::parse(answer.out);
+    EXPECT_EQ(json["system"]["title"], title);
+    EXPECT_EQ(json["units"]["y"], "m\xC2\x9B");
+    EXPECT_EQ(folder.run("simulate evil.toml --json a.json").status, 0);
+    EXPECT_EQ(held_by("a.json"), answer.out) << "the same run gives the same bytes";
+    EXPECT_EQ(printable(folder.run("simulate evil.toml --csv - --units").out),
+              folder.run("simulate evil.toml --csv - --units").out);
+}
+
