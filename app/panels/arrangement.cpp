@@ -9,7 +9,8 @@ namespace {
 
 // Lengths at scale 1. Below these widths and heights a panel cannot be read.
 constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
-                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F;
+                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F,
+                least_plane = 230.0F, least_plot = 110.0F;
 
 // What the user asked for, or what fits; whole pixels, at least `least`, and where there is room for both also at most
 // `most`.
@@ -53,22 +54,34 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     // Beside a text the events would be too narrow for what a certificate says: they stand below it.
     const bool events_below = editor && low > 0.0F;
     parts.controls = {edge, top, left, events_below ? height : all};
-    const float error = std::min(m.error ? m.error(centre) : 0.0F, height);
     const float timeline = std::min(m.timeline, height);
-    parts.error = {x, top, centre, error};
-    const float said_at = top + error + (error > 0.0F ? 0.6F * between : 0.0F);
-    const float said = std::min(m.caption ? m.caption(centre) : 0.0F, top + height - said_at);
-    parts.caption = {x, said_at, centre, said};
-    const float picture = said_at + said + (said > 0.0F ? 0.6F * between : 0.0F);
     const float lower = top + height - timeline - between;  // the end of what stands above the player
+    const float all_results = m.results ? m.results(centre) : 0.0F;
+    const auto below = [&](float part, float its_height) {
+        return part + its_height + (its_height > 0.0F ? 0.6F * between : 0.0F);
+    };
+    const float caption = m.caption ? m.caption(centre) : 0.0F;
+    // Above the axes stand the numbers and a heading, below them what is to be shown.
+    const float least = (scene.shows("plane") ? least_plane : least_picture) * u;
+    // The message stands above the picture; where that would be too low then, above the plots, which have the height.
+    float error = std::min(m.error ? m.error(centre) : 0.0F, height);
+    const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;
+    const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
+    const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= least_plot * u;
+    if (over_plots) error = 0.0F;
+    parts.error = over_plots ? Rectangle{x + centre + between, top, right, beside} : Rectangle{x, top, centre, error};
+    const float said_at = below(top, error), said = std::min(caption, top + height - said_at);
+    parts.caption = {x, said_at, centre, said};
+    const float picture = below(said_at, said);
     // The picture first: where it would be too low to be one, the results stand back.
-    const float results =
-        std::clamp(m.results ? m.results(centre) : 0.0F, 0.0F, std::max(0.0F, lower - picture - least_picture * u));
+    float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
+    if (results < 0.4F * all_results) results = 0.0F;  // not even a line of them
     const float space = results > 0.0F ? 0.4F * between : 0.0F;
     parts.mechanism = {x, picture, centre, std::max(0.0F, lower - results - space - picture)};
     parts.results = {x, lower - results, centre, results};
     parts.timeline = {x, top + height - timeline, centre, timeline};
-    parts.plots = {x + centre + between, top, right, height};
+    const float plots_at = over_plots ? below(top, beside) : top;
+    parts.plots = {x + centre + between, plots_at, right, top + height - plots_at};
     const float events_x = events_below ? edge : x;
     parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
 

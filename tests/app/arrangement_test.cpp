@@ -89,6 +89,36 @@ TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
         }
 }
 
+// A message takes no room from the configuration plane that its axes need: it stands above the plots then.
+TEST(Arrangement, the_plane_is_never_too_low) {
+    for (const auto& [width, height] : {std::pair{1280.0F, 800.0F}, {1024.0F, 700.0F}, {900.0F, 600.0F}})
+        for (const float error : {0.0F, 60.0F, 130.0F, 200.0F}) {
+            Scene scene;
+            const Measures m = measures(width, height, 1.0F, error);
+            const Arrangement without = arrange(scene, m);
+            scene.perform(command::Show{"plane", true});
+            const Arrangement a = arrange(scene, m);
+            const std::string what = std::to_string(height) + ", error " + std::to_string(error) + ": ";
+            expect_no_overlap(a, m, what);
+            EXPECT_GE(a.mechanism.height, 230.0F) << what;
+            EXPECT_GE(without.mechanism.height, 90.0F) << what;
+            EXPECT_EQ(a.error.height, error) << what << "all of the message is seen";
+            EXPECT_GE(a.plots.height, 100.0F) << what;
+        }
+    for (const auto& [width, height] : {std::pair{1280, 800}, {900, 600}}) {
+        Hands hands("double_pendulum", test::surface(width, height));
+        for (const char* line : {"show plane", "set e 7"}) hands.session.apply(parse_command(line));
+        hands.rest(3);
+        ASSERT_NE(hands.session.error(), "");
+        ASSERT_TRUE(hands.state.places.contains("plane")) << height;
+        EXPECT_GE(hands.state.places.at("plane").height, 60.0F) << height;
+    }
+    // With room for both it stands where it ever stood.
+    Scene scene;
+    const Arrangement a = arrange(scene, measures(1600.0F, 1000.0F, 1.0F, 70.0F));
+    EXPECT_EQ(a.error.x, a.mechanism.x);
+}
+
 TEST(Arrangement, a_splitter_gives_the_share_that_puts_it_where_the_hand_is) {
     for (const char* panel : {"controls", "plots", "events"}) {
         Scene scene;
