@@ -3,34 +3,14 @@
 # changes the run, a text typed into the editor takes effect and is saved, a tour is led on and ended, files are opened and
 # dropped; the window closes with status 0 by Ctrl+Q and by a window manager, also in the middle of a run of minutes.
 #     window_test.sh BUILD_FOLDER
-set -euo pipefail
-
-if [ "${2-}" != inside ]; then
-    # As small a screen as the window needs; no display of the person who runs the tests is touched. Without -noreset the
-    # server starts anew when one explorer has closed, and the next may find it gone.
-    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset" "$0" "$1" inside
-fi
-
-build=$1
-folder=$(mktemp -d)
-explorer=
-trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -rf "$folder"' EXIT
-export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder XDG_STATE_HOME=$folder/state
-
-fail() { echo "window_test: $*" >&2; exit 1; }
-# Waits up to 30 s for a command to succeed.
-await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
+. "$(dirname "$0")/window.sh"
 
 "$build/test_app" --gtest_filter='ExplorerOnDisplay.*' | tee "$folder/bytes"
 grep -q '\[  PASSED  \] 1 test' "$folder/bytes" || fail "the window does not show the bytes of the picture"
 
 read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is | grep '^slider ')
 
-"$build/achilles" explore ball_on_sine --size 1280x800 --record "$folder/journal" &
-explorer=$!
-await xdotool search --onlyvisible --class achilles || fail "no window appears"
-window=$(xdotool search --onlyvisible --class achilles | head -1)
-xdotool windowfocus --sync "$window" || true
+open_window "" ball_on_sine --record "$folder/journal"
 sleep 0.5
 
 xdotool mousemove --window "$window" $((x + width / 3)) "$y" sleep 0.3 mousedown 1 sleep 0.3
@@ -72,23 +52,12 @@ xdotool key Escape sleep 0.5 mousemove --window "$window" 200 300 click 1 sleep 
 saved_twice() { [ "$(grep -c "^save $folder/mine.toml" "$folder/journal")" -ge 2 ]; }
 await saved_twice || fail "the window is deaf after it was to be closed"
 
-close_window() {
-    xdotool key ctrl+q
-    status=0
-    wait "$explorer" || status=$?
-    explorer=
-    [ "$status" -eq 0 ] || fail "the explorer ends with status $status"
-}
 close_window
 
 # A file is opened by its path, the window changes its size, a tour is taken and left, a file is exported; then whoever
 # manages windows asks it to close.
 printf 'unpin\nopen double_pendulum\nsay "First."\nwait 600\nsay "Second."\nwait 600\n' > "$folder/tour.journal"
-"$build/achilles" explore ball_on_sine --size 1280x800 --journal "$folder/tour.journal" --record "$folder/second" &
-explorer=$!
-await xdotool search --onlyvisible --class achilles || fail "no window appears for a tour"
-window=$(xdotool search --onlyvisible --class achilles | head -1)
-xdotool windowfocus --sync "$window" || true
+open_window "for a tour" ball_on_sine --journal "$folder/tour.journal" --record "$folder/second"
 await grep -q '^say "First' "$folder/second" || fail "the tour does not begin"
 grep -q 'Second' "$folder/second" && fail "the tour does not wait"
 xdotool sleep 0.5 key Return
@@ -124,20 +93,13 @@ xdotool key End sleep 0.5 key Home
 "$build/achilles" screenshot --allow-files --journal "$folder/second" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
 "$build/x11_hand" close "$window"
-status=0
-wait "$explorer" || status=$?
-explorer=
-[ "$status" -eq 0 ] || fail "closed from outside the explorer ends with status $status"
+expect_end "closed from outside"
 
 # What was typed and not saved outlives the window that is killed, and is offered to the next; what is recovered and then
 # given up is gone.
 [ -z "$(ls "$folder/state/achilles" 2>/dev/null)" ] || fail "text that was saved or given up is kept"
 for signal in TERM HUP; do
-    "$build/achilles" explore "$folder/mine.toml" --size 1280x800 &
-    explorer=$!
-    await xdotool search --onlyvisible --class achilles || fail "no window appears to be killed"
-    window=$(xdotool search --onlyvisible --class achilles | head -1)
-    xdotool windowfocus --sync "$window" || true
+    open_window "to be killed" "$folder/mine.toml"
     if [ "$signal" = HUP ]; then xdotool sleep 1 key Escape; fi  # what the other left is offered: later
     xdotool sleep 0.5 key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
     xdotool type --delay 40 " lost $signal"
@@ -146,11 +108,7 @@ for signal in TERM HUP; do
     wait "$explorer" || true
     explorer=
 done
-"$build/achilles" explore ball_on_sine --size 1280x800 --record "$folder/third" &
-explorer=$!
-await xdotool search --onlyvisible --class achilles || fail "no window appears to recover in"
-window=$(xdotool search --onlyvisible --class achilles | head -1)
-xdotool windowfocus --sync "$window" || true
+open_window "to recover in" ball_on_sine --record "$folder/third"
 xdotool sleep 1 key Return
 await grep -q "^text .* lost" "$folder/third" || fail "Enter does not recover what was not saved"
 grep -q "^open $folder/mine.toml" "$folder/third" || fail "what is recovered does not belong to its file"
@@ -162,11 +120,7 @@ grep -q "lost" "$folder/mine.toml" && fail "what was not saved is in the file"
 [ "$(ls "$folder/state/achilles" | wc -l)" -eq 2 ] || fail "the texts of two windows are not two files"
 
 # Impacts without end: the window is there at once, and closes at once.
-"$build/achilles" explore ball_on_sine --size 1280x800 --set e=1 --end 1e9 --max-impacts 1000000000 &
-explorer=$!
-await xdotool search --onlyvisible --class achilles || fail "no window appears while a long run is under way"
-window=$(xdotool search --onlyvisible --class achilles | head -1)
-xdotool windowfocus --sync "$window" || true
+open_window "while a long run is under way" ball_on_sine --set e=1 --end 1e9 --max-impacts 1000000000
 sleep 2
 begin=$SECONDS
 close_window

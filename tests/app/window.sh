@@ -1,0 +1,44 @@
+# What the scripts beside this one share: a display of their own with its screen in a file, a folder, an explorer in its
+# window. Sourced first, with the script's arguments; $1 is the folder of the build.
+set -euo pipefail
+
+if [ -z "${ACHILLES_WINDOW_FOLDER-}" ]; then
+    ACHILLES_WINDOW_FOLDER=$(mktemp -d)
+    export ACHILLES_WINDOW_FOLDER
+    # As small a screen as the window needs; no display of the person who runs the tests is touched. Without -noreset the
+    # server starts anew when one explorer has closed, and the next may find it gone.
+    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset -fbdir $ACHILLES_WINDOW_FOLDER" "$0" "$@"
+fi
+
+build=$1
+folder=$ACHILLES_WINDOW_FOLDER
+explorer=
+trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -rf "$folder"' EXIT
+export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder XDG_STATE_HOME=$folder/state
+
+fail() { echo "$(basename "$0" .sh): $*" >&2; exit 1; }
+# Waits up to 30 s for a command to succeed.
+await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
+
+# open_window WHY ARGUMENTS: an explorer with these arguments; its process is $explorer, its window $window.
+open_window() {
+    local why=$1
+    shift
+    "$build/achilles" explore --size 1280x800 "$@" &
+    explorer=$!
+    await xdotool search --onlyvisible --class achilles || fail "no window appears $why"
+    window=$(xdotool search --onlyvisible --class achilles | head -1)
+    xdotool windowfocus --sync "$window" || true
+}
+
+# The explorer has to end by itself, with this status.
+expect_end() {
+    local status=0
+    wait "$explorer" || status=$?
+    explorer=
+    [ "$status" -eq 0 ] || fail "$1 the explorer ends with status $status"
+}
+close_window() {
+    xdotool key ctrl+q
+    expect_end "closed by Ctrl+Q"
+}
