@@ -1,5 +1,7 @@
 #include "cli/dropped.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
@@ -35,7 +37,7 @@ Asked parsed(const std::string& command_line) {
     command.add_option("SYSTEM", asked.system);
     command.add_option("--journal", asked.journal);
     add_view_option(command, asked.views, "");
-    bool allowed = false;  // of no account: what is replayed here writes nothing
+    bool allowed = false;  // of no account: what is replayed here writes nothing, and reads what the window allows
     add_step_option(command, asked.steps, allowed);
     add_run_options(command, asked.settings, asked.overrides);
     // Known, so that their values are not taken for the system.
@@ -57,22 +59,42 @@ const Source* carried(const Origin& origin, Source::Kind kind, const std::string
     return nullptr;
 }
 
-std::string held_by(const std::string& system) {
+// Where the commands go, and who says which files they may come from.
+struct Opening {
+    const std::string& picture;
+    const Trust& trust;
+    std::vector<Command> commands{};
+};
+
+// Whether the file of that name still holds the text. The name is the picture's, and so a stranger's: a path is looked
+// into only where the user lets it. Throws Forbidden where that is to be asked.
+bool is_held(const Source& source, const Opening& opening) {
+    std::error_code problem;
+    if (is_system_path(source.name)) {
+        if (!std::filesystem::is_regular_file(source.name, problem)) return false;
+        const std::optional<bool> may = may_read(source.name, opening.trust);
+        if (!may) {
+            Forbidden question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
+            question.wants = {want(source.name, false)};
+            throw question;
+        }
+        if (!*may) return false;
+    }
     try {
-        return read_text(find_system(system));
+        return read_text(find_system(source.name)) == source.text;
     } catch (const InputError&) {
-        return {};
+        return false;
     }
 }
 
 // Opens what the picture knows under this name.
-void open(const Source& source, std::vector<Command>& commands) {
-    if (held_by(source.name) == source.text) {
-        commands.emplace_back(command::Open{source.name});
+void open(const Source& source, Opening& opening) {
+    if (is_held(source, opening)) {
+        opening.commands.emplace_back(command::Open{source.name});
         return;
     }
-    commands.emplace_back(command::New{});
-    commands.emplace_back(command::Text{source.text});
+    opening.commands.emplace_back(command::New{});
+    opening.commands.emplace_back(command::Text{source.text});
 }
 
 // The run and the plots that a command line asks for.
@@ -102,32 +124,31 @@ void ask(const Asked& asked, const Source& source, std::vector<Command>& command
 }
 
 // The commands of a journal, with what they read taken from the picture. They write nothing, and play nothing again.
-void replay(const std::vector<Command>& journal, const Origin& origin, std::vector<Command>& commands) {
+void replay(const std::vector<Command>& journal, const Origin& origin, Opening& opening) {
     for (const Command& command : journal) {
         if (const auto* opened = std::get_if<command::Open>(&command)) {
-            if (const Source* source = carried(origin, Source::Kind::system, opened->system)) open(*source, commands);
+            if (const Source* source = carried(origin, Source::Kind::system, opened->system)) open(*source, opening);
             continue;
         }
         if (std::holds_alternative<command::Save>(command) || std::holds_alternative<command::Export>(command) ||
             std::holds_alternative<command::Replay>(command) || std::holds_alternative<command::Copy>(command))
             continue;
-        commands.push_back(command);
+        opening.commands.push_back(command);
     }
 }
 
-std::vector<Command> session_of(const Origin& origin) {
+std::vector<Command> session_of(const Origin& origin, Opening& opening) {
     const Asked asked = parsed(origin.command);
     if (asked.kind == "paper") throw std::runtime_error("a picture of the paper shows no session");
     const Source* source = carried(origin, Source::Kind::system, asked.system);
     if (source == nullptr) throw std::runtime_error("it carries no system");
-    std::vector<Command> commands;
-    open(*source, commands);
-    ask(asked, *source, commands);
+    open(*source, opening);
+    ask(asked, *source, opening.commands);
     if (const Source* journal = carried(origin, Source::Kind::journal, asked.journal);
         !asked.journal.empty() && journal != nullptr)
-        replay(parse_journal(journal->text, journal->name), origin, commands);
-    replay(parse_steps(asked.steps), origin, commands);
-    return commands;
+        replay(parse_journal(journal->text, journal->name), origin, opening);
+    replay(parse_steps(asked.steps), origin, opening);
+    return opening.commands;
 }
 
 }  // namespace
@@ -138,9 +159,10 @@ bool is_picture(const std::string& path) {
            ending == ".PDF";
 }
 
-std::vector<Command> session_in(const std::string& picture) {
+std::vector<Command> session_in(const std::string& picture, const Trust& trust) {
+    Opening opening{picture, trust};
     try {
-        return session_of(origin_of(read_text(picture, largest_picture)));
+        return session_of(origin_of(read_text(picture, largest_picture)), opening);
     } catch (const InputError&) {
         throw;
     } catch (const std::runtime_error& problem) {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <deque>
 #include <optional>
 #include <utility>
 
@@ -100,17 +100,6 @@ PanelState panel_state(bool in_window) {
     return state;
 }
 
-// What the files dropped on the window ask for: to replay a journal or what a picture carries, or to open a system, once
-// changes of the text are saved or given up.
-std::vector<Command> dropped(Window& window, Session& session, PanelState& state) {
-    std::vector<Command> commands;
-    for (const std::string& file : window.dropped()) {
-        const bool replays = std::filesystem::path(file).extension() == ".journal" || is_picture(file);
-        request(session, state, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
-    }
-    return commands;
-}
-
 // Seconds since it was last asked, none the first time.
 class Clock {
  public:
@@ -152,7 +141,7 @@ class Explorer {
         state_.on_tour = tour_.runs();
         pass_time();
         std::vector<Command> commands = explorer(session_, state_);
-        for (Command& command : dropped(window_, session_, state_)) commands.push_back(std::move(command));
+        take_dropped(commands);
         if (!commands.empty()) {
             lead_on(PanelState::OnTour::stop);  // the hand takes over
             replayed_ = 0;
@@ -165,8 +154,10 @@ class Explorer {
         if (state_.editor.may_close) window_.close();
         // A run that is under way is asked now and then how far it is.
         constexpr double progress_seconds = 0.25;
-        window_.keep_drawing(session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_),
-                             session_.under_way() != nullptr ? progress_seconds : 0.0);
+        const bool is_next = !dropped_.empty() && !is_asking();
+        window_.keep_drawing(
+            session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
+            session_.under_way() != nullptr ? progress_seconds : 0.0);
     }
 
     // The window was closed: what is not saved was given up. Tells the record what is not told yet.
@@ -177,7 +168,7 @@ class Explorer {
 
  private:
     void pass_time() {
-        if ((!session_.playing() && !tour_.runs()) || state_.journal_question) return clock_.stop();
+        if ((!session_.playing() && !tour_.runs()) || state_.file_question) return clock_.stop();
         const double seconds = clock_.elapsed();
         // Playing is seeking, by the clock; nothing a journal would keep.
         if (!tour_.runs()) return play_on(session_, seconds);
@@ -193,10 +184,7 @@ class Explorer {
             return;
         }
         try {
-            if (is_picture(replay->journal))
-                begin(session_in(replay->journal));
-            else
-                replay_file(find_journal(replay->journal));
+            begin_replay(replay->journal);
         } catch (const InputError& problem) {
             give_up(problem);
         }
@@ -214,28 +202,49 @@ class Explorer {
         session_.refuse(problem);
     }
 
-    // What it wants of files is asked once. Those that one journal replays were named by it, and are asked about as well.
-    void replay_file(const std::filesystem::path& file) {
-        const auto answer = answers_.find(std::filesystem::absolute(file));
-        Trust trust = trust_;
-        if (answer != answers_.end() && answer->second) trust.files = Trust::Files::allowed;
+    bool is_asking() const {
+        return state_.file_question || state_.editor.asking != EditorState::Asking::nothing || state_.editor.waiting;
+    }
+
+    // Files dropped on the window, one after the other: what one asks is answered, and what it replays is done, before the
+    // next. A journal and what a picture carries are replayed; a system is opened, once changes of the text are saved or
+    // given up. A hand that drops takes over from a tour.
+    void take_dropped(std::vector<Command>& commands) {
+        const std::vector<std::string> files = window_.dropped();
+        dropped_.insert(dropped_.end(), files.begin(), files.end());
+        if (dropped_.empty() || is_asking() || (tour_.runs() && files.empty())) return;
+        const std::string file = dropped_.front();
+        dropped_.pop_front();
+        const bool replays = std::filesystem::path(file).extension() == ".journal" || is_picture(file);
+        request(session_, state_, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
+    }
+
+    // Of a journal, or of what a picture carries. Every file that it wants is asked about once, whoever wants it next;
+    // one no, and nothing of a journal is done. Those that one journal replays were named by it, and ask as well.
+    void begin_replay(const std::string& name) {
+        const std::string file = is_picture(name) ? name : find_journal(name).string();
         try {
-            const std::vector<Command> journal = parse_trusted(journal_file(file), file.string(), trust);
+            const std::vector<Command> journal =
+                is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
             replayed_ += journal.size();
             if (replayed_ > most_replayed)
-                throw Forbidden(file.string(), {}, fmt::format("a session replays at most {} commands", most_replayed));
+                throw Forbidden(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
             begin(journal);
         } catch (const Forbidden& problem) {
-            if (problem.wants.empty() || answer != answers_.end()) throw;
-            state_.journal_question = JournalQuestion{file.string(), problem.wants, {}};
+            // What it may already is not among these: what was asked among them was refused.
+            const auto& wants = problem.wants;
+            if (wants.empty() || std::any_of(wants.begin(), wants.end(),
+                                             [&](const std::string& want) { return trust_.answered.contains(want); }))
+                throw;
+            state_.file_question = FileQuestion{file, wants.front(), wants.size() - 1, {}};
         }
     }
 
     void take_answer() {
-        if (!state_.journal_question || !state_.journal_question->answer) return;
-        const JournalQuestion question = *std::exchange(state_.journal_question, std::nullopt);
-        answers_[std::filesystem::absolute(question.journal)] = *question.answer;
-        take(command::Replay{question.journal});
+        if (!state_.file_question || !state_.file_question->answer) return;
+        const FileQuestion question = *std::exchange(state_.file_question, std::nullopt);
+        trust_.answered[question.want] = *question.answer;
+        take(command::Replay{question.asker});
     }
 
     // What is typed is kept as it comes: no signal, no crash and no display that goes away takes it.
@@ -308,8 +317,8 @@ class Explorer {
     Recovery recovery_;
     std::vector<Unsaved> unsaved_;  // by earlier windows, not offered yet
     Trust trust_;
-    std::map<std::filesystem::path, bool> answers_;  // whether a journal may use files
-    std::size_t replayed_ = 0;                       // commands of journals since the hand did something
+    std::deque<std::string> dropped_;  // files that wait for their turn
+    std::size_t replayed_ = 0;         // commands of journals since the hand did something
     Clock clock_;
     double waited_ = 0.0;
 };

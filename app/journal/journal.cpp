@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "cli/assets.hpp"
@@ -49,15 +50,17 @@ bool is_named(const std::string& path, const Trust& trust) {
     });
 }
 
-// Why a command of a journal must not have the file; empty: it may.
-std::string against(const FileUse& use, const Trust& trust) {
+// Whether somebody allowed it. A picture that is made again carries what is read and writes nothing.
+bool is_allowed(const FileUse& use, const Trust& trust) {
+    if (use.path.empty() || trust.files != Trust::Files::refused || (is_named(use.path, trust) && !use.writes))
+        return true;
+    const auto answer = trust.answered.find(want(use.path, use.writes));
+    return answer != trust.answered.end() && answer->second;
+}
+
+bool would_overwrite(const FileUse& use, const Trust& trust) {
     std::error_code problem;
-    if (use.path.empty() || trust.files == Trust::Files::imagined) return {};
-    if (trust.files == Trust::Files::refused && !(is_named(use.path, trust) && !use.writes))
-        return fmt::format("this journal would {} {}", use.writes ? "write" : "read", use.path);
-    if (use.writes && fs::exists(use.path, problem))
-        return fmt::format("there is a file {} already, and a journal overwrites nothing", use.path);
-    return {};
+    return use.writes && trust.files != Trust::Files::imagined && fs::exists(use.path, problem);
 }
 
 void drop_overwrite(Command& command) {
@@ -78,23 +81,35 @@ Trust trust_of(bool allow_files, std::vector<fs::path> named) {
     return {allow_files ? Trust::Files::allowed : Trust::Files::refused, std::move(named)};
 }
 
+std::string want(const std::string& file, bool writes) {
+    std::error_code problem;
+    return (writes ? "write " : "read ") + fs::absolute(file, problem).lexically_normal().string();
+}
+
+std::optional<bool> may_read(const std::string& file, const Trust& trust) {
+    if (is_allowed({file}, trust)) return true;
+    return trust.answered.contains(want(file, false)) ? std::optional(false) : std::nullopt;
+}
+
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust) {
-    const bool may_allow = trust.files == Trust::Files::refused;
     std::vector<Command> commands;
     std::optional<Forbidden> refused;
+    std::set<std::string> wanted;
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
         if (commands.size() == most_replayed)
             throw Forbidden(name, at, fmt::format("a session replays at most {} commands", most_replayed));
         const FileUse use = file_use(command);
-        if (const std::string reason = against(use, trust); !reason.empty()) {
-            if (!refused)
-                refused.emplace(name, at, reason,
-                                may_allow ? "if you trust it: --allow-files" : "save or export to another file",
-                                std::string(line));
-            std::error_code problem;
-            const fs::path path = fs::absolute(use.path, problem).lexically_normal();
-            if (may_allow) refused->wants.push_back((use.writes ? "write " : "read ") + path.string());
+        const auto refuse = [&](const std::string& reason, const char* hint) {
+            if (!refused) refused.emplace(name, at, reason, hint, std::string(line));
+        };
+        if (!is_allowed(use, trust)) {
+            refuse(fmt::format("this journal would {} {}", use.writes ? "write" : "read", use.path),
+                   "if you trust it: --allow-files");
+            if (wanted.insert(want(use.path, use.writes)).second) refused->wants.push_back(want(use.path, use.writes));
+        } else if (would_overwrite(use, trust)) {
+            refuse(fmt::format("there is a file {} already, and a journal overwrites nothing", use.path),
+                   "save or export to another file");
         }
         drop_overwrite(command);
         commands.push_back(std::move(command));

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +28,7 @@ struct Trust {
     };
     Files files = Files::refused;
     std::vector<std::filesystem::path> named;  // by the user: these may be read
+    std::map<std::string, bool> answered{};    // "write /home/me/a.toml": whether it may, where the user was asked
 };
 Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named);
 
@@ -36,8 +39,13 @@ constexpr std::size_t most_replayed = 10000;
 // a picture.
 struct Forbidden : InputError {
     using InputError::InputError;
-    std::vector<std::string> wants;  // "write /home/me/a.toml", where it is about files that somebody may allow
+    std::vector<std::string> wants;  // want(), each once, where it is about files that somebody may allow
 };
+// What is asked about a file: "read /home/me/a.toml".
+std::string want(const std::string& file, bool writes);
+// Whether what comes from anybody may read this file; nothing: the user is to be asked.
+std::optional<bool> may_read(const std::string& file, const Trust& trust);
+
 // parse_journal() of a journal that may come from anybody. `overwrite` in it counts for nothing. Throws Forbidden, and
 // InputError as there.
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust);

@@ -178,17 +178,16 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     if (button("Cancel", state) || is_escape()) give_up(editor);
 }
 
-// A journal may come from anybody: nothing is allowed by Enter.
-void journal_dialog(PanelState& state) {
-    constexpr std::size_t most_shown = 8;
-    JournalQuestion& question = *state.journal_question;
+// A journal or a picture may come from anybody: nothing is allowed by Enter.
+void file_dialog(PanelState& state) {
+    FileQuestion& question = *state.file_question;
+    const std::string more = question.more == 0   ? ""
+                             : question.more == 1 ? ", and then one more file"
+                                                  : fmt::format(", and then {} more files", question.more);
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(fmt::format("The journal {} would", question.journal).c_str());
-    for (std::size_t i = 0; i < std::min(question.wants.size(), most_shown); ++i)
-        ImGui::TextUnformatted(("    " + question.wants[i]).c_str());
-    if (question.wants.size() > most_shown)
-        ImGui::TextUnformatted(fmt::format("    and {} more", question.wants.size() - most_shown).c_str());
-    ImGui::TextUnformatted("Allow it only if you know who wrote it. It writes over no file.");
+    for (const std::string& line : {question.asker + " would", "    " + question.want + more + ".",
+                                    std::string("Allow it only if you know who made it. It writes over no file.")})
+        ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     if (button("Allow", state)) question.answer = true;
@@ -295,8 +294,8 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     const bool is_free = editor.asking == Asking::nothing;
-    question_dialog("A journal wants files", state.journal_question, is_free, [&] { journal_dialog(state); });
-    question_dialog("Text that was not saved", state.recovery_question, is_free && !state.journal_question,
+    question_dialog("A file is wanted", state.file_question, is_free, [&] { file_dialog(state); });
+    question_dialog("Text that was not saved", state.recovery_question, is_free && !state.file_question,
                     [&] { recovery_dialog(state); });
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });

@@ -40,11 +40,12 @@ struct EditorState {
     bool may_close = false;          // now nothing is lost by it
 };
 
-// What a journal that is replayed wants of files, and what the user says to it.
-struct JournalQuestion {
-    std::string journal;
-    std::vector<std::string> wants;  // "write /home/me/a.toml"
-    std::optional<bool> answer;      // whether it may
+// A file that a journal or a picture wants, and what the user says to it.
+struct FileQuestion {
+    std::string asker;           // the journal or the picture
+    std::string want;            // "write /home/me/a.toml"
+    std::size_t more = 0;        // files that it wants after this one
+    std::optional<bool> answer;  // whether it may
 };
 
 // Text that an earlier window left unsaved, and what becomes of it.
@@ -130,7 +131,7 @@ struct PanelState {
     bool show_impacts = false;       // in the event list: each, not folded into one line
     std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
-    std::optional<JournalQuestion> journal_question;  // asked until it is answered
+    std::optional<FileQuestion> file_question;  // asked until it is answered
     std::optional<RecoveryQuestion> recovery_question;
     TypedValue typed;
     PressedSlider pressed;

@@ -5,6 +5,10 @@
 #include <imgui_internal.h>
 
 #include <cstdlib>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/open.hpp"
 
@@ -81,6 +85,34 @@ struct Hands {
             hand);
         for (const Command& command : commands) session.apply(command);
         return found;
+    }
+    // Every letter that a frame shows, window by window, without the spaces: whoever painted it, it is a glyph of a font.
+    std::string letters() {
+        std::string text;
+        std::vector<Command> commands;
+        surface.step(
+            [&] {
+                commands = explorer(session, state);
+                std::map<std::pair<float, float>, ImWchar> glyphs;  // by their first corner in the texture
+                for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
+                    for (const ImFontGlyph& glyph : font->Glyphs)
+                        if (glyph.Visible != 0) glyphs[{glyph.U0, glyph.V0}] = static_cast<ImWchar>(glyph.Codepoint);
+                for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+                    if (!window->Active || window->Hidden) continue;
+                    for (const ImDrawVert& vertex : window->DrawList->VtxBuffer) {
+                        const auto glyph = glyphs.find({vertex.uv.x, vertex.uv.y});
+                        char letter[5] = {};
+                        if (glyph != glyphs.end()) text += ImTextCharToUtf8(letter, glyph->second);
+                    }
+                }
+            },
+            hand);
+        for (const Command& command : commands) session.apply(command);
+        return text;
+    }
+    bool says(std::string text) {
+        std::erase(text, ' ');
+        return letters().find(text) != std::string::npos;
     }
     // Where a control is now, its middle.
     Point middle(const std::string& place) const {

@@ -9,6 +9,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
+#include "cli/dropped.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
 #include "system/input_error.hpp"
@@ -131,21 +132,80 @@ TEST_F(Strangers, work_has_a_limit) {
     refused("screenshot ./s.toml --journal j", replays, "at most 10000 commands");
 }
 
-// In a window the user is asked, once, and Enter says nothing.
-TEST(JournalQuestion, is_asked_and_answered) {
+// In a window the user is asked about each file, and Enter says nothing.
+TEST(FileQuestion, is_asked_and_answered) {
     Hands hands("ball_on_sine");
     for (const bool allowed : {false, true}) {
-        hands.state.journal_question = JournalQuestion{"a.journal", {"write /home/me/a.toml", "read /b.toml"}, {}};
+        hands.state.file_question = FileQuestion{"a.journal", "write /home/me/a.toml", 1, {}};
         hands.rest(3);
+        EXPECT_TRUE(hands.says("write /home/me/a.toml, and then one more file")) << hands.letters();
         hands.press(key::enter);
-        ASSERT_TRUE(hands.state.journal_question);
-        EXPECT_FALSE(hands.state.journal_question->answer);
+        ASSERT_TRUE(hands.state.file_question);
+        EXPECT_FALSE(hands.state.file_question->answer);
         hands.click(allowed ? "dialog Allow" : "dialog Refuse");
-        EXPECT_EQ(hands.state.journal_question->answer, allowed);
-        hands.state.journal_question.reset();
+        EXPECT_EQ(hands.state.file_question->answer, allowed);
+        hands.state.file_question.reset();
         hands.rest(3);
     }
     EXPECT_TRUE(hands.all.empty());
+}
+
+// A yes is for one file, in one direction: every other is asked about as well.
+TEST_F(Strangers, a_yes_is_for_one_file) {
+    const auto path = [&](const char* name) { return (folder.path() / name).string(); };
+    folder.put("a.toml", drop_text);
+    const std::string text = "open " + path("a.toml") + "\nsave " + path("b.toml") + "\nopen " + path("a.toml") +
+                             "\nexport " + path("c.svg") + "\n";
+    Trust trust;
+    std::vector<std::string> asked;
+    for (int i = 0; i < 4; ++i) {
+        try {
+            EXPECT_EQ(parse_trusted(text, "x.journal", trust).size(), 4U);
+            break;
+        } catch (const Forbidden& problem) {
+            ASSERT_FALSE(problem.wants.empty());
+            EXPECT_EQ(problem.wants.size(), 3U - asked.size());
+            asked.push_back(problem.wants.front());
+            trust.answered[problem.wants.front()] = true;
+        }
+    }
+    EXPECT_EQ(asked, (std::vector<std::string>{"read " + path("a.toml"), "write " + path("b.toml"),
+                                               "write " + path("c.svg")}));
+    EXPECT_THROW(parse_trusted("save " + path("a.toml"), "x.journal", trust), Forbidden);
+    trust.answered["write " + path("b.toml")] = false;
+    EXPECT_THROW(parse_trusted(text, "x.journal", trust), Forbidden);
+    // What is allowed overwrites nothing all the same, and is not asked about.
+    trust.answered["write " + path("a.toml")] = true;
+    try {
+        parse_trusted("save " + path("a.toml"), "x.journal", trust);
+        FAIL();
+    } catch (const Forbidden& problem) {
+        EXPECT_TRUE(problem.wants.empty());
+        EXPECT_NE(std::string(problem.what()).find("overwrites nothing"), std::string::npos);
+    }
+}
+
+// A picture names files, too: none is looked into unasked, and without it the picture has its own text.
+TEST_F(Strangers, a_picture_that_is_dropped_reads_no_file_unasked) {
+    folder.put("own.toml", drop_text);
+    const std::string own = (folder.path() / "own.toml").string(), picture = (folder.path() / "p.svg").string();
+    ASSERT_EQ(folder.run("figure " + own + " --set y=2 --out p.svg").status, 0);
+    Trust trust;
+    try {
+        session_in(picture, trust);
+        FAIL();
+    } catch (const Forbidden& question) {
+        EXPECT_EQ(question.wants, std::vector<std::string>{"read " + own});
+    }
+    trust.answered["read " + own] = true;
+    EXPECT_EQ(session_in(picture, trust).front(), Command(command::Open{own}));
+    trust.answered["read " + own] = false;
+    EXPECT_EQ(session_in(picture, trust).front(), Command(command::New{}));
+    EXPECT_EQ(session_in(picture, trust_of(false, {own})).front(), Command(command::Open{own})) << "named by the user";
+    std::filesystem::remove(own);
+    EXPECT_EQ(session_in(picture, {}).front(), Command(command::New{})) << "nothing to be asked about";
+    ASSERT_EQ(::mkfifo(own.c_str(), 0600), 0);
+    EXPECT_EQ(session_in(picture, {}).front(), Command(command::New{})) << "nor does it wait for a pipe";
 }
 
 // An escape sequence in a title, a source, a command, a name or a refusal reaches no terminal.
@@ -188,8 +248,6 @@ TEST_F(Strangers, text_steers_no_terminal) {
     EXPECT_TRUE(clean(folder.run("reproduce p.png")));
 }
 
-}  // namespace
-}  // namespace achilles::test
 // Nor does JSON, which still says the same: what is read back holds every character.
 TEST_F(Strangers, json_steers_no_terminal_and_keeps_what_it_says) {
     const std::string title = "a\x1b[2J\x7F\xC2\x9B[31m\xE2\x80\xAE\xE2\x81\xA6\xC3\xA9\n\"\\";
@@ -211,3 +269,5 @@ TEST_F(Strangers, json_steers_no_terminal_and_keeps_what_it_says) {
               folder.run("simulate evil.toml --csv - --units").out);
 }
 
+}  // namespace
+}  // namespace achilles::test

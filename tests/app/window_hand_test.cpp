@@ -319,7 +319,7 @@ TEST(Dropped, a_picture_opens_as_a_session) {
         0);
     ASSERT_TRUE(is_picture(picture));
     Session session = test::session("ball_on_sine");
-    for (const Command& command : session_in(picture)) session.apply(command);
+    for (const Command& command : session_in(picture, {})) session.apply(command);
     EXPECT_EQ(session.error(), "");
     EXPECT_EQ(session.description().title, test::system("double_pendulum").title);
     EXPECT_EQ(*session.value("g"), 2.0);
@@ -332,12 +332,12 @@ TEST(Dropped, a_picture_opens_as_a_session) {
     ASSERT_EQ(folder.run("figure ./own.toml --set e=0.3 --view height --out b.svg").status, 0);
     std::filesystem::remove(own);
     Session other = test::session("ball_on_sine");
-    for (const Command& command : session_in(figure)) other.apply(command);
+    for (const Command& command : session_in(figure, {})) other.apply(command);
     EXPECT_EQ(other.error(), "");
     EXPECT_EQ(other.document().file, "");
     EXPECT_EQ(*other.value("e"), 0.3);
     EXPECT_EQ(other.plotted().list().size(), 1U);
-    EXPECT_THROW(session_in(ACHILLES_SOURCE_DIR "/README.md"), InputError);
+    EXPECT_THROW(session_in(ACHILLES_SOURCE_DIR "/README.md", {}), InputError);
 }
 
 }  // namespace

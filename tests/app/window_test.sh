@@ -84,11 +84,21 @@ await grep -q '^grid 3 2' "$folder/second" || fail "a journal that is dropped is
 timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
 await grep -q '^open impact_oscillator' "$folder/second" || fail "a picture that is dropped is not opened as a session"
 await grep -q '^seek 3' "$folder/second" || fail "a picture that is dropped does not lead to what it shows"
-# A journal that wants to write files is asked about first; Escape refuses.
+# A journal that wants to write files is asked about first; Escape refuses. What is dropped meanwhile waits for the answer.
 printf 'save %s/stolen.toml\n' "$folder" > "$folder/greedy.journal"
 timeout 30 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
-xdotool sleep 1 key Return sleep 0.5 key Escape sleep 0.5
+"$build/achilles" screenshot --set e=0.25 --do "seek 4" --size 700x500 --out "$folder/own.png" "$folder/mine.toml"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/own.png" || fail "nobody takes a file while a question is open"
+xdotool sleep 0.8 key Return sleep 0.3
+grep -q '^seek 4' "$folder/second" && fail "a question is lost in what is dropped after it"
+xdotool key Escape sleep 0.8
 [ ! -e "$folder/stolen.toml" ] || fail "a journal that is dropped writes a file unasked"
+# Nor does a picture read a file unasked that it names: refused, it brings its own text.
+grep -q '^seek 4' "$folder/second" && fail "a picture that is dropped reads a file unasked"
+xdotool key Escape
+await grep -q '^seek 4' "$folder/second" || fail "what is dropped while a question is open is lost"
+[ "$(grep -c "^open $folder/mine.toml" "$folder/second")" -eq 1 ] || fail "a file is opened that was refused"
+xdotool key ctrl+z sleep 0.3 key ctrl+z sleep 0.3  # back to a text that needs no saving
 xdotool key End sleep 0.5 key Home
 "$build/achilles" screenshot --allow-files --journal "$folder/second" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
