@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
@@ -50,17 +51,39 @@ Verdict to_save(const Document& document, const std::string& path) {
     if (path.empty() || !target.has_filename()) return {"the path of the file to write", false, false};
     if (!fs::is_directory(folder, problem)) return {"there is no such folder", false, false};
     if (fs::is_directory(target, problem)) return {"this is a folder", false, false};
-    if (!fs::exists(target, problem)) return {"", true, false};
+    if (!fs::exists(target, problem))
+        return {"goes to " + fs::absolute(target, problem).lexically_normal().string(), true, false};
     if (!document.file.empty() && fs::equivalent(target, document.file, problem)) return {"", true, false};
     return {"There is a file of this name. Overwrite it?", true, true};
 }
 
-Verdict to_take_away(const std::string& path) {
+bool is_figure(const std::string& ending) { return ending == ".svg" || ending == ".png" || ending == ".pdf"; }
+
+Verdict to_take_away(const std::string& path, int plot) {
     const std::string ending = fs::path(path).extension().string();
-    if (!path.empty() && ending != ".svg" && ending != ".png" && ending != ".pdf" && ending != ".json" &&
-        ending != ".csv" && ending != ".journal")
+    if (!path.empty() && plot > 0 && !is_figure(ending)) return {"end it in .svg, .png or .pdf", false, false};
+    if (!path.empty() && !is_figure(ending) && ending != ".json" && ending != ".csv" && ending != ".journal")
         return {"end it in .svg, .png, .pdf, .json, .csv or .journal", false, false};
     return to_save(Document(), path);
+}
+
+// "contact force" as a part of a file's name.
+std::string as_name(const std::string& title) {
+    std::string name;
+    for (const char c : title) {
+        const bool stays = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (stays || (!name.empty() && name.back() != '_')) name += stays ? c : '_';
+    }
+    while (!name.empty() && name.back() == '_') name.pop_back();
+    return name;
+}
+
+// With a number where there is such a file already: Enter alone writes it.
+std::string free_name(const std::string& stem, const std::string& ending) {
+    std::error_code problem;
+    std::string name = stem + ending;
+    for (int i = 2; fs::exists(name, problem) && i < 1000; ++i) name = fmt::format("{}-{}{}", stem, i, ending);
+    return name;
 }
 
 // A window in the middle, which keeps everything else from the hand.
@@ -109,7 +132,7 @@ bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
     remember(state, "path");
     const Verdict verdict = judge(expanded(editor.path));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
-    ImGui::TextUnformatted(verdict.note.empty() ? " " : verdict.note.c_str());
+    ImGui::TextUnformatted(verdict.note.empty() ? " " : fitted(verdict.note, remaining().width).c_str());
     ImGui::PopStyleColor();
     const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
     ImGui::SameLine();
@@ -143,10 +166,12 @@ void take_away_dialog(PanelState& state, const Session& session, Commands& comma
         if (button("Cancel", state) || is_escape()) give_up(state.editor);
         return;
     }
-    if (!path_chosen("Export", state, to_take_away)) return;
+    const int plot = state.editor.plot;
+    const auto judge = [plot](const std::string& path) { return to_take_away(path, plot); };
+    if (!path_chosen("Export", state, judge)) return;
     const std::string file = expanded(state.editor.path);
     close(state.editor);
-    commands.emplace_back(command::Export{file, to_take_away(file).asks});
+    commands.emplace_back(command::Export{file, judge(file).asks, plot});
 }
 
 // Nothing keeps what waited any longer.
@@ -256,8 +281,14 @@ void ask_to_save(const Session& session, PanelState& state) {
     state.editor.asking = EditorState::Asking::save;
 }
 
-void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending) {
-    state.editor.path = fs::path(session.system()).stem().string() + ending;
+void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot) {
+    std::string stem = fs::path(session.system()).stem().string();
+    if (plot > 0) {
+        const std::string title = as_name(session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
+        stem += "-" + (title.empty() ? fmt::format("plot_{}", plot) : title);
+    }
+    state.editor.path = free_name(stem, ending);
+    state.editor.plot = plot;
     state.editor.asking = EditorState::Asking::take_away;
 }
 

@@ -33,6 +33,7 @@ struct EditorState {
     enum class Asking { nothing, open, save, unsaved, take_away };
     Asking asking = Asking::nothing;
     std::string path;                // typed in a dialog
+    int plot = 0;                    // that is taken away alone, from 1; 0: all of them
     bool keeps_path = false;         // what was entered was wrong: more letters go there
     std::optional<Command> waiting;  // to be done once the changes are saved or given up
     bool has_saved = false;          // the command to save has been given, what waits may follow
@@ -216,7 +217,7 @@ bool request_close(const Session& session, PanelState& state);
 // Begin to ask for a path. Saving asks where the text has no file yet.
 void ask_to_open(PanelState& state);
 void ask_to_save(const Session& session, PanelState& state);
-void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending);
+void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot = 0);
 void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 
 }  // namespace achilles

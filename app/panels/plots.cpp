@@ -258,7 +258,7 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     const bool pressed = ImGui::InvisibleButton(id.c_str(), {label_width(title, size) + arrow, row.height});
     remember(state, id);
     const bool lit = ImGui::IsItemHovered();
-    tooltip("choose what is plotted");
+    tooltip("choose what is plotted, or save this plot as a figure");
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_label(list, row.x, row.y + 0.5F * (row.height - 1.2F * size), title, text_color(), size);
     const float x = row.x + label_width(title, size) + units(5.0F), y = std::floor(row.y + 0.5F * row.height);

@@ -28,11 +28,11 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
 }
 
 // The plots as views of the system's file, where they are nothing else and no pinned run stands behind them.
-std::optional<Words> views_of(const Session& session) {
+std::optional<Words> views_of(const Session& session, const Plots& plots) {
     if (session.pinned() != nullptr) return std::nullopt;
     const auto& views = session.description().views;
     Words words;
-    for (const Plot& plot : session.plotted().list()) {
+    for (const Plot& plot : plots.list()) {
         const auto named = [&](const ViewDescription& view) { return view.name == plot.view.name; };
         const auto own = std::find_if(views.begin(), views.end(), named);
         const bool is_own = own != views.end() && own->x.text == plot.view.x.text &&
@@ -44,27 +44,27 @@ std::optional<Words> views_of(const Session& session) {
     return words;
 }
 
-Words figure_words(const Session& session, const std::string& name) {
+Words figure_words(const Session& session, const Plots& plots, const std::string& name) {
     Words words{"figure", name};
     const Words options = run_options(session);
     words.insert(words.end(), options.begin(), options.end());
-    if (const auto views = views_of(session))
+    if (const auto views = views_of(session, plots))
         words.insert(words.end(), views->begin(), views->end());
     else
-        add_steps(words, figure_steps(session));
-    words.insert(words.end(), {"--columns", std::to_string(session.plotted().columns())});
+        add_steps(words, figure_steps(session, plots));
+    words.insert(words.end(), {"--columns", std::to_string(plots.columns())});
     return words;
 }
 
-std::string figure_bytes(const Session& session, const std::string& format) {
+std::string figure_bytes(const Session& session, const Plots& plots, const std::string& format) {
     const std::string& name = session.system();
     const Origin origin{"Achilles " + version(),
-                        command_line(figure_words(session, name)),
+                        command_line(figure_words(session, plots, name)),
                         "",
                         {{Source::Kind::system, name, session.description().source_text}}};
     PublicationStyle style;
-    style.columns = session.plotted().columns();
-    const Figure figure = figure_of(session, style);
+    style.columns = plots.columns();
+    const Figure figure = figure_of(session, plots, style);
     PictureSize size;
     size.scale *= publication_scale;
     const Notes carried = notes(origin, {{name, &session.trajectory()}});
@@ -72,10 +72,10 @@ std::string figure_bytes(const Session& session, const std::string& format) {
 }
 
 // Of what cannot be drawn here (a library that is missing) only the message matters.
-std::string drawn(const Session& session, const std::string& file, const std::string& format) {
+std::string drawn(const Session& session, const Plots& plots, const std::string& file, const std::string& format) {
     if (format == "pdf") need_pdf_writer(file);
     try {
-        return figure_bytes(session, format);
+        return figure_bytes(session, plots, format);
     } catch (const InputError&) {
         throw;
     } catch (const std::runtime_error& problem) {
@@ -83,10 +83,12 @@ std::string drawn(const Session& session, const std::string& file, const std::st
     }
 }
 
-std::string bytes_of(const Session& session, const std::string& file) {
+std::string bytes_of(const Session& session, const std::string& file, int plot) {
     std::string ending = fs::path(file).extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    if (ending == ".svg" || ending == ".png" || ending == ".pdf") return drawn(session, file, ending.substr(1));
+    const Plots plots = plot > 0 ? session.plotted().only(plot) : session.plotted();
+    if (ending == ".svg" || ending == ".png" || ending == ".pdf") return drawn(session, plots, file, ending.substr(1));
+    if (plot > 0) throw InputError(file, {}, "one plot is a figure", "end it in .svg, .png or .pdf");
     if (ending == ".json") return to_json(session.trajectory());
     if (ending == ".csv") return to_csv(session.trajectory());
     if (ending == ".journal") return journal_text(recipe(session));
@@ -97,8 +99,11 @@ std::string bytes_of(const Session& session, const std::string& file) {
 }  // namespace
 
 Figure figure_of(const Session& session, const PublicationStyle& style) {
+    return figure_of(session, session.plotted(), style);
+}
+
+Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style) {
     const Theme theme = light_theme();
-    const Plots& plots = session.plotted();
     std::vector<Panel> panels = plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print);
     const Trajectory* pinned = session.pinned();
     const bool behind = pinned != nullptr && pinned->model == session.model();
@@ -112,22 +117,23 @@ Figure figure_of(const Session& session, const PublicationStyle& style) {
     return figure;
 }
 
-void take_away(const Session& session, const std::string& file, bool overwrite) {
+void take_away(const Session& session, const command::Export& what) {
+    const std::string& file = what.file;
     if (file.empty() || file == "-") throw InputError({}, {}, "a file to export to is missing");
     std::error_code ignored;
-    if (!overwrite && fs::exists(file, ignored))
+    if (!what.overwrite && fs::exists(file, ignored))
         throw InputError(file, {}, "there is a file already",
                          "export under another name, or overwrite it: export FILE overwrite");
     OutputFiles files;
     files.add(file);  // before the work
-    files.put(file, bytes_of(session, file));
+    files.put(file, bytes_of(session, file, what.plot));
     files.commit();
 }
 
 std::string command_for(const Session& session, const std::string& what) {
     const std::string name = name_anywhere(session.system()), stem = fs::path(name).stem().string();
     if (what == "figure") {
-        Words words = figure_words(session, name);
+        Words words = figure_words(session, session.plotted(), name);
         words.insert(words.end(), {"--out", stem + ".svg"});
         return shell_line(words);
     }

@@ -74,7 +74,15 @@ void read(bool& value, const How& how, Reading& from) {
     if (!value && (from.word() != how.no || how.no.empty())) throw from.error(filled(how.complaint, from.word()));
     ++from.at;
 }
-void read(int& value, const How&, Reading& from) { value = from.line.whole_number(from.at++); }
+void read(int& value, const How& how, Reading& from) {
+    if (!how.after.empty()) {
+        if (from.at_end() || from.word() != how.after) return;
+        if (++from.at; from.at_end()) throw from.line.error(from.line.word(from.at - 1).column, from.usage);
+    }
+    value = from.line.whole_number(from.at);
+    if (!how.after.empty() && value < 1) throw from.error(filled(how.complaint, value));
+    ++from.at;
+}
 void read(double& value, const How& how, Reading& from) {
     const bool is_zero = !how.zero.empty() && from.word() == how.zero;
     value = is_zero ? 0.0 : from.line.number(from.at);
@@ -114,7 +122,10 @@ std::string written(bool value, const How& how) {
     const std::string_view word = value ? how.yes : how.no;
     return how.is_name || word.empty() ? "" : fmt::format(" {}", word);
 }
-std::string written(int value, const How&) { return fmt::format(" {}", value); }
+std::string written(int value, const How& how) {
+    if (how.after.empty()) return fmt::format(" {}", value);
+    return value == 0 ? "" : fmt::format(" {} {}", how.after, value);
+}
 std::string written(double value, const How& how) {
     return value == 0.0 && !how.zero.empty() ? fmt::format(" {}", how.zero) : fmt::format(" {}", value);
 }
@@ -139,6 +150,7 @@ std::pair<std::size_t, std::size_t> count(const How& how) {
     if (std::same_as<Value, Words>) return {1, 10};
     if (std::same_as<Value, Given>) return {1, 2};
     if (std::same_as<Value, Values>) return {2, 96};
+    if (!how.after.empty()) return {0, 2};
     return {std::same_as<Value, bool> && how.no.empty() ? 0 : 1, 1};
 }
 

@@ -225,8 +225,11 @@ struct Done {  // with this change: what follows is another one, be it of the sa
 struct Export {
     std::string file;  // what goes there, its ending tells: .svg, .png the plots; .json, .csv the run; .journal all
     bool overwrite = false;  // whatever file may be there
-    static constexpr auto said = Said("export", "write: export FILE, or: export FILE overwrite", Change::view,
-                                      &Export::file, Field(&Export::overwrite, command::overwrite));
+    int plot = 0;            // this one alone; 0: all
+    static constexpr auto said = Said(
+        "export", "write: export FILE, or: export FILE overwrite; one plot alone: export FILE plot 2", Change::view,
+        &Export::file, Field(&Export::plot, {.after = "plot", .complaint = "plots count from 1: there is no plot {}"}),
+        Field(&Export::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> copied_things{"explorer", "figure", "run"};
 struct Copy {

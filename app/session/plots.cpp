@@ -120,6 +120,13 @@ Plots Plots::carried_over(const std::shared_ptr<const Model>& model) const {
     return result;
 }
 
+Plots Plots::only(int number) const {
+    Plots one = *this;
+    one.list_ = {one.at(number)};
+    one.columns_ = one.rows_ = 1;
+    return one;
+}
+
 Plot& Plots::at(int number) {
     if (number < 1 || static_cast<std::size_t>(number) > list_.size())
         throw refusal(fmt::format("there is no plot {}: the grid has {}", number, list_.size()));

@@ -25,6 +25,9 @@ class Plots {
     // The same choice for another text of the system, as far as its expressions mean something there.
     Plots carried_over(const std::shared_ptr<const Model>& model) const;
 
+    // One of them, from 1, alone. Throws InputError if there is none of this number.
+    Plots only(int number) const;
+
     const std::vector<Plot>& list() const { return list_; }  // row by row: columns() * rows() of them
     int columns() const { return columns_; }
     int rows() const { return rows_; }

@@ -172,10 +172,10 @@ std::vector<std::string> run_options(const Session& session) {
     return words;
 }
 
-std::vector<Command> figure_steps(const Session& session) {
+std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
     std::vector<Command> steps;
     if (pinned_beside(session)) steps = run_steps(session, session.run());
-    append(steps, steps_to(session.plotted(), true));
+    append(steps, steps_to(plots, true));
     return steps;
 }
 

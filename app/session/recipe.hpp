@@ -15,7 +15,7 @@ std::vector<Command> recipe(const Session& session);
 // The options that make of a system's file the run that was asked for: --set e=0.3 --end 30.
 std::vector<std::string> run_options(const Session& session);
 // After these options: what puts the pinned run beside it, and leads to the plots.
-std::vector<Command> figure_steps(const Session& session);
+std::vector<Command> figure_steps(const Session& session, const Plots& plots);
 // The same, and everything else that is seen.
 std::vector<Command> explorer_steps(const Session& session);
 

@@ -27,7 +27,7 @@ void Session::perform(const command::Export& command) {
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
         throw refusal("the run is still under way", "export again when it is there");
     if (library_.before_writing) library_.before_writing(command.file);
-    if (library_.exports) take_away(*this, command.file, command.overwrite);
+    if (library_.exports) take_away(*this, command);
     const std::filesystem::path file(command.file);
     notice_ =
         fmt::format("{} is written", (file.is_absolute() ? file : library_.folder / file).lexically_normal().string());

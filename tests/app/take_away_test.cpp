@@ -1,6 +1,7 @@
 // What a session gives away leads back to it: figures, data, journals, command lines.
 #include "pictures/take_away.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -164,6 +165,30 @@ TEST(Export, writes_whole_files_or_says_why_not) {
         EXPECT_NE(session.error().find(says), std::string::npos) << session.error();
     }
     EXPECT_EQ(folder.files().size(), 5U);
+}
+
+// With what it was made from: it is made again by itself, and leaves the other plots where they are.
+TEST(Export, takes_one_plot_alone) {
+    for (const std::string& journal : changes) {
+        if (journal.find("text") != std::string::npos) continue;
+        const test::Folder folder;
+        Session session = test::session("ball_on_sine");
+        apply(session, journal);
+        const std::string before = to_text(session);
+        const auto count = static_cast<int>(session.plotted().list().size());
+        session.apply(command::Export{(folder.path() / "one.svg").string(), false, count});
+        ASSERT_EQ(session.error(), "") << journal;
+        EXPECT_EQ(to_text(session), before);
+        const test::Answer answer = folder.run("reproduce one.svg --out again.svg");
+        EXPECT_EQ(answer.status, 0) << journal << answer.err;
+        EXPECT_EQ(test::content(folder.path() / "one.svg"), test::content(folder.path() / "again.svg")) << answer.out;
+        EXPECT_NE(answer.out.find("--columns 1"), std::string::npos) << answer.out;
+        session.apply(command::Export{(folder.path() / "two.svg").string(), false, count + 1});
+        EXPECT_NE(session.error().find(fmt::format("there is no plot {}", count + 1)), std::string::npos);
+        session.apply(command::Export{(folder.path() / "run.json").string(), false, 1});
+        EXPECT_NE(session.error().find("end it in .svg, .png or .pdf"), std::string::npos) << session.error();
+        EXPECT_EQ(folder.files().size(), 2U);
+    }
 }
 
 // A run that is cancelled, or not there yet, is nobody's result.
