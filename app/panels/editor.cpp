@@ -29,9 +29,16 @@ const char* reason_against_editing(const std::string& text) {
     return nullptr;
 }
 
+// The line, from 1, in which two texts begin to differ.
+int first_difference(const std::string& a, const std::string& b) {
+    const auto at = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
+    return 1 + static_cast<int>(std::count(a.begin(), at, '\n'));
+}
+
 // Another text than the one that was typed: opened, new, or from a journal.
 void follow_session(const Session& session, EditorState& editor) {
     if (session.document().text == editor.known) return;
+    if (!editor.known.empty()) editor.go_to = first_difference(editor.known, session.document().text);
     editor.text = editor.known = session.document().text;
     editor.resting = 0.0;
     ++editor.revision;  // the widget begins anew: its cursor and its undo belong to the old text
@@ -89,16 +96,15 @@ void paint_problem(const Page& page, const std::string& text, Location at, ImDra
     list->PopClipRect();
 }
 
-// The widget itself, without its frame: the page is painted behind it. True if a letter was typed.
-bool typed(EditorState& editor, ImVec2 size, bool read_only) {
+// The widget itself, without its frame: the page is painted behind it. True if a letter was typed. It takes letters back
+// one by one, unless the text is no system: then undo is the session's.
+bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
     const ImGuiID id = ImGui::GetID(text_id);
     // Escape would take back everything that was typed since the text was clicked.
     int& escape = ImGui::GetIO().KeyMap[ImGuiKey_Escape];
     const int was = std::exchange(escape, ImGui::GetActiveID() == id ? -1 : escape);
-    const ImGuiInputTextFlags flags =
-        ImGuiInputTextFlags_AllowTabInput | (read_only ? ImGuiInputTextFlags_ReadOnly : ImGuiInputTextFlags_None);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, 0U);
-    ImGui::InputTextMultiline(text_id, &editor.text, size, flags);
+    ImGui::InputTextMultiline(text_id, &editor.text, size, ImGuiInputTextFlags_AllowTabInput | more);
     ImGui::PopStyleColor();
     escape = was;
     return ImGui::IsItemEdited();
@@ -130,7 +136,10 @@ void show_text(const Session& session, PanelState& state, float height) {
     list->AddRectFilled(low, high, packed(session.theme().background), units(4.0F));
     list->AddRectFilled(low, {low.x + gutter - units(1.0F), high.y}, packed(faint_color(), 0.08F));
     ImGui::SetCursorScreenPos({all.x + gutter, all.y});
-    const bool has_typed = typed(editor, {all.width - gutter, height}, reason_against_editing(editor.text) != nullptr);
+    ImGuiInputTextFlags more = ImGuiInputTextFlags_None;
+    if (reason_against_editing(editor.text) != nullptr) more |= ImGuiInputTextFlags_ReadOnly;
+    if (!session.document().problems.empty()) more |= ImGuiInputTextFlags_NoUndoRedo;
+    const bool has_typed = typed(editor, {all.width - gutter, height}, more);
     remember(state, "text");
     const bool was_left = ImGui::IsItemDeactivated();
     editor.is_active = ImGui::IsItemActive();
@@ -185,7 +194,7 @@ void show_problems(const Session& session, EditorState& editor, float height) {
         ImGui::BeginGroup();
         show_message(problem.what(), width);
         ImGui::EndGroup();
-        tooltip("click to go to line " + std::to_string(problem.at.line));
+        tooltip(fmt::format("click to go to line {}; Ctrl+Z in the text: back to the last that runs", problem.at.line));
         if (problem.at.line > 0 && ImGui::IsItemClicked()) editor.go_to = problem.at.line;
     }
     ImGui::EndChild();
@@ -218,6 +227,16 @@ void show_buttons(const Session& session, PanelState& state, Commands& commands)
     if (button("Save", "to the file it came from (Ctrl+S)")) save_or_ask(session, state, commands);
     ImGui::SameLine(0.0F, space);
     if (button("Save as\u2026", "to another file")) ask_to_save(session, state);
+}
+
+// In a text that is no system: back to the last that was one, at once; redo has this one.
+void use_undo(const Session& session, EditorState& editor, Commands& commands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!editor.is_active || session.document().problems.empty() || !session.can_undo() || !io.KeyCtrl || io.KeyShift ||
+        !ImGui::IsKeyPressed('Z', false))
+        return;
+    hand_over_text(editor, commands);
+    commands.emplace_back(command::Undo{});
 }
 
 // Which file it is, and whether it holds what is seen.
@@ -276,6 +295,7 @@ void show_editor(const Session& session, PanelState& state, Commands& commands) 
         show_problems(session, editor, below);
     }
     if (editor.resting >= pause) hand_over_text(editor, commands);
+    use_undo(session, editor, commands);
 }
 
 }  // namespace achilles

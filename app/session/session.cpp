@@ -76,7 +76,10 @@ void Session::restore(Moment back) {
 
 void Session::perform(const command::Undo&) {
     if (!can_undo()) throw refusal("there is nothing to undo");
-    restore(history_.undo(moment()));
+    // To the last system there was: texts on the way to a mistake are only to be done again.
+    Moment back = history_.undo(moment());
+    while (!back.document.problems.empty() && can_undo()) back = history_.undo(std::move(back));
+    restore(std::move(back));
 }
 
 void Session::perform(const command::Redo&) {
