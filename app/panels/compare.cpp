@@ -54,6 +54,23 @@ void row_of_times(const std::string& name, const std::vector<double>& pinned, co
     if (i < pinned.size() || i < present.size()) row(name, text(pinned), text(present), "");
 }
 
+// What was changed between the runs: parameters, and where they start.
+void rows_of_values(const SystemDescription& description, const Run& pinned, const Run& present) {
+    const auto value = [](const std::string& name, const std::string& unit, double before, double after) {
+        const double factor = unit == "rad" ? degrees(1.0) : 1.0;
+        if (before != after) row(name, before * factor, after * factor);
+    };
+    for (std::size_t i = 0; i < description.parameters.size(); ++i)
+        value(typeset_name(description.parameters[i].name), description.parameters[i].unit, pinned.parameters[i],
+              present.parameters[i]);
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const auto at = static_cast<Eigen::Index>(i);
+        const CoordinateDescription& coordinate = description.coordinates[i];
+        value(typeset_name(coordinate.name) + "(0)", coordinate.unit, pinned.q[at], present.q[at]);
+        value(typeset_name(coordinate.name + "'") + "(0)", coordinate.unit, pinned.v[at], present.v[at]);
+    }
+}
+
 std::string eps_of(const Trajectory& trajectory) {
     const Truncation& t = trajectory.run.options.truncation;
     if (t.eps_q == t.eps_v && t.eps_v == t.eps_t) return number(t.eps_q, "{:.3g}");
@@ -73,6 +90,7 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
     if (show_card_title("Comparison with the pinned run", same_system ? "" : "of another system", state))
         commands.emplace_back(command::Pin{false});
     row("", "pinned", "present", "change", true);
+    if (same_system) rows_of_values(session.description(), pinned.run, present.run);
     row("conditions", kind_of(pinned), kind_of(present), "");
     row("\u03b5", eps_of(pinned), eps_of(present), "");
     const auto zeno_before = times_of(pinned, Event::Kind::zeno), zeno_after = times_of(present, Event::Kind::zeno);
