@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "panels/widgets.hpp"
-#include "surface/frame.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -129,9 +129,9 @@ void use_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
     for (const Shown& panel : panels)
-        if (ImGui::IsKeyPressed(panel.key, false))
+        if (is_pressed(panel.key, false))
             commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
-    if (ImGui::IsKeyPressed('D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+    if (is_pressed('D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
 }
 
 }  // namespace

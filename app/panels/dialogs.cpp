@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -120,7 +121,7 @@ void give_up(EditorState& editor) {
     close(editor);
 }
 
-bool is_escape() { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false); }
+bool is_escape() { return is_pressed(key::escape, false); }
 
 // The line to type a path in, what is to say about it, and two buttons. True when the path is chosen.
 template <class Judge>
@@ -229,7 +230,7 @@ void recovery_dialog(PanelState& state) {
         fmt::format("The text of {} was not saved when its window ended ({}).", question.name, question.when).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    const bool entered = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+    const bool entered = is_pressed(key::enter, false);
     if (button("Recover", state) || entered) question.answer = Answer::recover;
     ImGui::SameLine();
     if (button("Discard", state)) question.answer = Answer::discard;
@@ -261,10 +262,10 @@ void go_on_if_saved(const Session& session, EditorState& editor, Commands& comma
 void take_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
-    if (ImGui::IsKeyPressed('S', false)) save_or_ask(session, state, commands);
-    if (ImGui::IsKeyPressed('O', false)) ask_to_open(state);
-    if (ImGui::IsKeyPressed('N', false)) request(session, state, command::New{}, commands);
-    if (ImGui::IsKeyPressed('E', false)) toggle_editor(session, state, commands);
+    if (is_pressed('S', false)) save_or_ask(session, state, commands);
+    if (is_pressed('O', false)) ask_to_open(state);
+    if (is_pressed('N', false)) request(session, state, command::New{}, commands);
+    if (is_pressed('E', false)) toggle_editor(session, state, commands);
 }
 
 }  // namespace

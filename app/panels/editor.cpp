@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 #include "system/input_error.hpp"
 
@@ -101,8 +102,8 @@ void paint_problem(const Page& page, const std::string& text, Location at, ImDra
 bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
     const ImGuiID id = ImGui::GetID(text_id);
     // Escape would take back everything that was typed since the text was clicked.
-    int& escape = ImGui::GetIO().KeyMap[ImGuiKey_Escape];
-    const int was = std::exchange(escape, ImGui::GetActiveID() == id ? -1 : escape);
+    float& escape = time_held(key::escape);
+    const float was = std::exchange(escape, ImGui::GetActiveID() == id ? -1.0F : escape);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, 0U);
     ImGui::InputTextMultiline(text_id, &editor.text, size, ImGuiInputTextFlags_AllowTabInput | more);
     ImGui::PopStyleColor();
@@ -233,7 +234,7 @@ void show_buttons(const Session& session, PanelState& state, Commands& commands)
 void use_undo(const Session& session, EditorState& editor, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!editor.is_active || session.document().problems.empty() || !session.can_undo() || !io.KeyCtrl || io.KeyShift ||
-        !ImGui::IsKeyPressed('Z', false))
+        !is_pressed('Z', false))
         return;
     hand_over_text(editor, commands);
     commands.emplace_back(command::Undo{});

@@ -12,6 +12,7 @@
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -228,7 +229,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     remember(state, "impacts");
     tooltip("list every impact; without, those in a row are one line, which a click opens");
     ImGui::SameLine(right - width - units(16.0F) - copy_width);
-    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed('C', false);
+    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && is_pressed('C', false);
     if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
     remember(state, "copy events");
     tooltip("the chosen event, or all, as a table with every digit, for a spreadsheet (Ctrl+C)");

@@ -7,6 +7,7 @@
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "session/history.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -109,7 +110,7 @@ void show_card(const Session& session, const std::string& message) {
 void use_keys(const Session& session, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput || !io.KeyCtrl) return;
-    const bool z = ImGui::IsKeyPressed('Z'), again = ImGui::IsKeyPressed('Y') || (z && io.KeyShift);
+    const bool z = is_pressed('Z'), again = is_pressed('Y') || (z && io.KeyShift);
     if (again && session.can_redo()) commands.emplace_back(command::Redo{});
     if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
 }
@@ -132,8 +133,7 @@ void begin_change(PanelState& state, Commands& commands) {
 // For the panels; whatever stands before them takes Escape for itself.
 bool escape_pressed() {
     const bool is_covered = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) && !is_covered &&
-           !ImGui::GetIO().WantTextInput;
+    return is_pressed(key::escape, false) && !is_covered && !ImGui::GetIO().WantTextInput;
 }
 
 bool is_part_of_change(const Command& command) { return goes_on(command, command); }

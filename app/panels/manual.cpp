@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -25,7 +26,7 @@ void show_page(PanelState& state) {
     ImGui::TextUnformatted(state.manual_text.data(), state.manual_text.data() + state.manual_text.size());
     ImGui::PopFont();
     ImGui::EndChild();
-    const bool escape = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+    const bool escape = is_pressed(key::escape, false);
     if (ImGui::Button("Close") || escape) ImGui::CloseCurrentPopup();
     remember(state, "Close the manual");
     ImGui::EndPopup();

@@ -13,6 +13,7 @@
 #include "expression/read_number.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -176,7 +177,7 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
     show_field(slider, state, width);
     const bool is_entered = ImGui::IsItemDeactivated(), is_active = ImGui::IsItemActive();
     if (ImGui::IsItemEdited()) typed.wrong.clear();
-    const bool gives_up = !is_active && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+    const bool gives_up = !is_active && is_pressed(key::escape);
     if (gives_up || (is_entered && typed.text == typed.as_it_was)) {
         typed.id.clear();
         return false;

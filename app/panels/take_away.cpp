@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "panels/widgets.hpp"
-#include "surface/frame.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -95,7 +95,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     }
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
     const bool keys = !ImGui::GetIO().WantTextInput;
-    if (word_button("next", "go on at once (Enter)", state) || (keys && ImGui::IsKeyPressed(key::enter, false)))
+    if (word_button("next", "go on at once (Enter)", state) || (keys && is_pressed(key::enter, false)))
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||

@@ -8,7 +8,7 @@
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
 #include "panels/widgets.hpp"
-#include "surface/frame.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -93,7 +93,7 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
                                 packed(text_color()));
     }
-    const bool space_pressed = !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(' ', false);
+    const bool space_pressed = !ImGui::GetIO().WantTextInput && is_pressed(' ', false);
     if (!pressed && !space_pressed) return;
     if (session.playing())
         commands.insert(commands.end(), {command::Pause{}, command::Seek{session.time()}});
@@ -160,10 +160,10 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
 // Left and right step from event to event, Home and End go to the ends.
 void use_keys(const Session& session, Commands& commands) {
     if (ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
-    if (ImGui::IsKeyPressed(key::left)) commands.emplace_back(command::Step{-1});
-    if (ImGui::IsKeyPressed(key::right)) commands.emplace_back(command::Step{1});
-    if (ImGui::IsKeyPressed(key::home)) commands.emplace_back(command::Seek{0.0});
-    if (ImGui::IsKeyPressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
+    if (is_pressed(key::left)) commands.emplace_back(command::Step{-1});
+    if (is_pressed(key::right)) commands.emplace_back(command::Step{1});
+    if (is_pressed(key::home)) commands.emplace_back(command::Seek{0.0});
+    if (is_pressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
 // The event whose sign is under the mouse.

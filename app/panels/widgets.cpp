@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "paint/label.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -108,7 +109,7 @@ void tooltip(const std::string& text) {
 bool take_escape(PanelState& state) { return std::exchange(state.escape, false); }
 
 void close_by_escape() {
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) ImGui::CloseCurrentPopup();
+    if (is_pressed(key::escape, false)) ImGui::CloseCurrentPopup();
 }
 
 Rectangle remaining() {

@@ -23,7 +23,7 @@ struct SurfaceOptions {
     std::filesystem::path fonts;      // folder that holds DejaVuSans.ttf and DejaVuSansMono.ttf
 };
 
-// Keys as ImGui::IsKeyDown and IsKeyPressed number them here. Letters, digits and space are their upper case ASCII
+// Keys, as is_pressed (surface/imgui_version.hpp) numbers them. Letters, digits and space are their upper case ASCII
 // code, by the user's keyboard layout.
 namespace key {
 constexpr int escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260, remove = 261;

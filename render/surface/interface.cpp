@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <stdexcept>
 
 #include "figure/label.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -74,32 +74,6 @@ void shape(ImGuiStyle& style) {
     style.WindowPadding = {10.0F, 10.0F};
 }
 
-void map_keys(ImGuiIO& io) {
-    constexpr std::pair<ImGuiKey_, int> keys[] = {{ImGuiKey_Tab, key::tab},
-                                                  {ImGuiKey_LeftArrow, key::left},
-                                                  {ImGuiKey_RightArrow, key::right},
-                                                  {ImGuiKey_UpArrow, key::up},
-                                                  {ImGuiKey_DownArrow, key::down},
-                                                  {ImGuiKey_PageUp, key::page_up},
-                                                  {ImGuiKey_PageDown, key::page_down},
-                                                  {ImGuiKey_Home, key::home},
-                                                  {ImGuiKey_End, key::end},
-                                                  {ImGuiKey_Insert, key::insert},
-                                                  {ImGuiKey_Delete, key::remove},
-                                                  {ImGuiKey_Backspace, key::backspace},
-                                                  {ImGuiKey_Space, ' '},
-                                                  {ImGuiKey_Enter, key::enter},
-                                                  {ImGuiKey_Escape, key::escape},
-                                                  {ImGuiKey_KeyPadEnter, key::keypad_enter},
-                                                  {ImGuiKey_A, 'A'},
-                                                  {ImGuiKey_C, 'C'},
-                                                  {ImGuiKey_V, 'V'},
-                                                  {ImGuiKey_X, 'X'},
-                                                  {ImGuiKey_Y, 'Y'},
-                                                  {ImGuiKey_Z, 'Z'}};
-    for (const auto& [name, number] : keys) io.KeyMap[name] = number;
-}
-
 }  // namespace
 
 Interface::Interface(const SurfaceOptions& options) : options_(options) {
@@ -119,7 +93,7 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     io.ConfigWindowsMoveFromTitleBarOnly = true;
     io.ConfigInputTextCursorBlink = false;  // a window that waits for letters can sleep
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
-    map_keys(io);
+    prepare_keys(io);
     restyle(options.scale, options.dark);
 }
 
@@ -193,13 +167,7 @@ void apply(const Input& input) {
     io.MouseDown[ImGuiMouseButton_Middle] = input.middle;
     io.MouseWheel = static_cast<float>(input.wheel);
     io.MouseWheelH = static_cast<float>(input.wheel_sideways);
-    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
-    for (const int code : input.keys)
-        if (code >= 0 && code < IM_ARRAYSIZE(io.KeysDown)) io.KeysDown[code] = true;
-    io.KeyCtrl = io.KeysDown[key::left_control] || io.KeysDown[key::right_control];
-    io.KeyShift = io.KeysDown[key::left_shift] || io.KeysDown[key::right_shift];
-    io.KeyAlt = io.KeysDown[key::left_alt] || io.KeysDown[key::right_alt];
-    io.KeySuper = io.KeysDown[key::left_super] || io.KeysDown[key::right_super];
+    hold_keys(io, input.keys);
     if (!input.text.empty()) io.AddInputCharactersUTF8(input.text.c_str());
 }
 

@@ -11,6 +11,7 @@
 #include "render/support.hpp"
 #include "surface/curves.hpp"
 #include "surface/events.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/loaded_library.hpp"
 #include "surface/window.hpp"
 
@@ -127,7 +128,7 @@ TEST(Offscreen, takes_a_mouse_and_a_keyboard) {
         ImGui::SetNextItemWidth(300.0F);
         ImGui::SliderFloat("s", &value, 0.0F, 1.0F);
         ImGui::InputText("name", typed.data(), typed.size());
-        space = space || ImGui::IsKeyPressed(' ');
+        space = space || is_pressed(' ');
         ImGui::End();
     };
     Input hand;
