@@ -13,6 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "system/description.hpp"
@@ -60,6 +61,33 @@ std::vector<char*> environment() {
     return all;
 }
 
+struct Written {
+    std::string pdf, problems;  // the first is empty where there is none
+};
+
+// What the writer makes of an SVG in this format, so many points wide.
+Written written(std::FILE* svg, const std::string& format, double points) {
+    const File out = temporary(), problems = temporary();
+    ::lseek(::fileno(svg), 0, SEEK_SET);  // also after a writer that has read
+    std::string wide = fmt::format("--width={:.3f}pt", points), kind = "--format=" + format;
+    std::string name = writer, ratio = "--keep-aspect-ratio", unlimited = "--unlimited";
+    std::array<char*, 6> words{name.data(), kind.data(), ratio.data(), unlimited.data(), wide.data(), nullptr};
+    std::vector<char*> variables = environment();
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(svg), 0);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), 1);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(problems.get()), 2);
+    pid_t process = 0;
+    const int problem = ::posix_spawnp(&process, writer, &actions, nullptr, words.data(), variables.data());
+    ::posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    const bool is_done = problem == 0 && ::waitpid(process, &status, 0) == process && status == 0;
+    std::string pdf = is_done ? content(out.get()) : "";
+    if (!pdf.starts_with("%PDF")) pdf.clear();
+    return {std::move(pdf), content(problems.get())};
+}
+
 }  // namespace
 
 void need_pdf_writer(const std::string& file) {
@@ -70,28 +98,16 @@ void need_pdf_writer(const std::string& file) {
 
 std::string pdf_of_svg(const std::string& svg, int width) {
     constexpr double page_pixels = 1200.0, page_points = 170.0 / 25.4 * 72.0;
-    const File in = temporary(), out = temporary(), problems = temporary();
+    const File in = temporary();
     if (std::fwrite(svg.data(), 1, svg.size(), in.get()) != svg.size() || std::fflush(in.get()) != 0)
         throw std::runtime_error("a temporary file cannot be written");
-    std::rewind(in.get());
-    std::string wide = fmt::format("--width={:.3f}pt", width * page_points / page_pixels);
-    std::string name = writer, format = "--format=pdf", ratio = "--keep-aspect-ratio", unlimited = "--unlimited";
-    std::array<char*, 6> words{name.data(), format.data(), ratio.data(), unlimited.data(), wide.data(), nullptr};
-    std::vector<char*> variables = environment();
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(in.get()), 0);
-    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), 1);
-    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(problems.get()), 2);
-    pid_t process = 0;
-    const int problem = ::posix_spawnp(&process, writer, &actions, nullptr, words.data(), variables.data());
-    ::posix_spawn_file_actions_destroy(&actions);
-    int status = 0;
-    const bool is_done = problem == 0 && ::waitpid(process, &status, 0) == process && status == 0;
-    std::string pdf = is_done ? content(out.get()) : "";
-    if (!pdf.starts_with("%PDF"))
-        throw std::runtime_error(fmt::format("{} has written no PDF: {}", writer, content(problems.get())));
-    return pdf;
+    const double points = width * page_points / page_pixels;
+    // Cairo 1.18 compresses what notes are added to, but in PDF 1.4; where that cannot be asked for, cairo is older.
+    std::string pdf = written(in.get(), "pdf1.4", points).pdf;
+    if (!pdf.empty()) return pdf;
+    Written last = written(in.get(), "pdf", points);
+    if (last.pdf.empty()) throw std::runtime_error(fmt::format("{} has written no PDF: {}", writer, last.problems));
+    return std::move(last.pdf);
 }
 
 }  // namespace achilles

@@ -9,7 +9,8 @@ namespace achilles {
 void need_pdf_writer(const std::string& file);
 
 // The PDF of an SVG file of so many pixels' width: 1200 pixels are 170 mm wide, as on a page. The same SVG gives the
-// same bytes; notes of the SVG are not in them. Throws std::runtime_error if rsvg-convert cannot do it.
+// same bytes; notes of the SVG are not in them. It is PDF 1.4 where rsvg-convert can be asked for that. Throws
+// std::runtime_error if rsvg-convert cannot do it.
 std::string pdf_of_svg(const std::string& svg, int width);
 
 }  // namespace achilles

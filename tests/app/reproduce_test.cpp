@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "app/program.hpp"
 #include "core/deny_executable.hpp"
@@ -351,6 +352,26 @@ TEST(Figure, is_written_as_pdf) {
     EXPECT_NEAR(std::stod(pdf.substr(pdf.find(box) + box.size())), 170.0 / 25.4 * 72.0, 0.02);  // 170 mm in points
     ASSERT_EQ(folder.run("figure ball_on_sine --end 5 --do \"export c.pdf\" --out d.svg --allow-files").status, 0);
     EXPECT_EQ(content(folder.path() / "c.pdf").substr(0, 5), "%PDF-");
+}
+
+// From cairo 1.18 on rsvg-convert compresses the end of a PDF, where notes stand, unless it is asked for PDF 1.4.
+TEST(Figure, is_a_pdf_that_notes_can_be_added_to) {
+    const Folder folder, tools;
+    std::filesystem::create_symlink("/usr/bin/timeout", tools.path() / "timeout");
+    const std::filesystem::path writer = tools.path() / "rsvg-convert";
+    std::ofstream(writer) << "#!/bin/sh\n"
+                             "case \"$*\" in\n"
+                             "*--format=pdf1.4*) printf '%%PDF-1.4\\n1 0 obj\\n<< /Producer (sh)\\n>>\\nendobj\\n';\n"
+                             "    printf 'trailer\\n<< /Info 1 0 R\\n>>\\nstartxref\\n9\\n%%%%EOF\\n' ;;\n"
+                             "*) printf '%%PDF-1.7\\nstartxref\\n9\\n%%%%EOF\\n' ;;\n"
+                             "esac\n";
+    std::filesystem::permissions(writer, std::filesystem::perms::owner_all);
+    const Answer answer =
+        folder.run("figure ball_on_sine --end 5 --view height --out a.pdf", "PATH='" + tools.path().string() + "'");
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    const std::string pdf = content(folder.path() / "a.pdf");
+    EXPECT_EQ(pdf.substr(0, 8), "%PDF-1.4");
+    EXPECT_NE(pdf.find("/Producer (sh)\n%Achilles notes\n"), std::string::npos) << pdf;
 }
 
 TEST(Figure, TooLittleMemoryIsAMessage) {
