@@ -68,6 +68,7 @@ void shape(ImGuiStyle& style) {
     style.WindowRounding = style.ChildRounding = 0.0F;  // panels tile the window
     style.FrameRounding = style.GrabRounding = style.PopupRounding = style.TabRounding = 4.0F;
     style.ScrollbarRounding = 6.0F;
+    style.GrabMinSize = 10.0F;  // ImGui's own is 12 since 1.88
     style.WindowBorderSize = 1.0F;
     style.FramePadding = {8.0F, 4.0F};
     style.ItemSpacing = {8.0F, 6.0F};
