@@ -29,7 +29,7 @@ recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 done_with() {
     echo "$1: $actions actions of $2"
     [ "$actions" -le "$2" ] || fail "the task '$1' takes $actions actions, and may take $2"
-    sleep 0.4
+    settle
     mkdir "$folder/$1"
     cp "$folder/Xvfb_screen0" "$folder/$1/screen"
     cp "$folder/record" "$folder/$1/record"
@@ -41,7 +41,7 @@ done_with() {
 "$build/achilles" new "$folder/mine" > /dev/null
 cd "$folder"  # files go there
 open_window "" ball_on_sine --record "$folder/record"
-sleep 0.5
+settle
 
 # The second Zeno time and its interval: the pointer rests on it.
 point zeno

@@ -42,3 +42,16 @@ close_window() {
     xdotool key ctrl+q
     expect_end "closed by Ctrl+Q"
 }
+
+# Every thread of the explorer sleeps: it has drawn what it was told.
+is_asleep() { ! sed 's/.*) //' /proc/"$explorer"/task/*/stat | grep -qv '^S'; }
+# Until the window shows what was done, also where other work keeps it from drawing at once: it sleeps, and its screen is as
+# it was some time ago.
+settle() {
+    for _ in $(seq 60); do
+        cp "$folder/Xvfb_screen0" "$folder/before"
+        sleep 0.4
+        if is_asleep && cmp -s "$folder/Xvfb_screen0" "$folder/before"; then return 0; fi
+    done
+    fail "the window does not come to rest"
+}
