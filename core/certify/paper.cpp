@@ -44,7 +44,7 @@ PaperConditions::PaperConditions(const Model& model, const Run& run, const Groun
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
 bool PaperConditions::fails_at_point(const Collision& collision) {
-    set_state(point_, State{collision.before.q, collision.restart});
+    set_state(point_, collision.with(collision.restart));
     point_.run();
     const double e = mid(e_), w = collision.speed, a = -point_.hddot();
     if (!(a > 0.0) || !(e < 1.0)) return true;
@@ -167,7 +167,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.a_max = b.a_max.hi();
     // The sharper interval for tau_inf (theory.md 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
     const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
-    set_zeno_time(certificate, collision.t, wait,
+    set_zeno_time(certificate, collision.before.t, wait,
                   estimated_wait(trend_at(trend_, collision), mid(e_), collision.speed));
     const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
     certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();

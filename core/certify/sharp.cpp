@@ -199,7 +199,7 @@ void SharpConditions::begin_box(const Collision& collision) {
 void SharpConditions::predict_radii(const Collision& collision, const Trend& trend) {
     const double e = mid(e_), w = collision.speed;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), h = e * w * e * w / (2.0 * trend.a);
-    set_state(guess_, State{collision.before.q, collision.tangential});
+    set_state(guess_, collision.with(collision.tangential));
     for (const double sigma : {w, -w}) {
         guess_.input(sigma_) = sigma;
         guess_.run();
@@ -237,7 +237,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     c.certified = true;
     c.conditions = Conditions::sharp;
     c.reinitialization = truncation_.reinitialization;
-    set_zeno_time(c, collision.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
+    set_zeno_time(c, collision.before.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
     Interval q(0.0), v(0.0);
     for (std::size_t i = 0; i < dof_; ++i) {
         q = q + square(Interval(need_q_[i]));

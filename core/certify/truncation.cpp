@@ -22,7 +22,7 @@ Interval norm(const std::vector<Interval>& x) {
 }
 
 Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision) {
-    set_state(terms, State{collision.before.q, collision.tangential});
+    set_state(terms, collision.with(collision.tangential));
     terms.run();
     return {-terms.hddot(), -terms.rate(), -terms.by_sigma()};
 }

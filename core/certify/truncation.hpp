@@ -13,11 +13,12 @@ namespace achilles {
 
 // Everything the conditions may look at.
 struct Collision {
-    double t = 0.0;      // tau_k
-    State before;        // (q, v-), h(q) = 0
+    State before;        // (q, v-) at tau_k, h(q) = 0
     double speed = 0.0;  // w = |hdot| before
     Vector tangential;   // s = v- - n hdot
     Vector restart;      // after re-initialisation: s, or v*
+    // The same place and time with another velocity.
+    State with(const Vector& v) const { return {before.q, v, before.t}; }
 };
 
 // No certificate is made but on a Ground: whoever constructs the conditions shows one, and the questions stand on one

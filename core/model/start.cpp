@@ -37,7 +37,7 @@ void Model::check(const Run& run) const {
     }
     if (mistakes.count() == before) {
         auto start = evaluator(start_, run.parameters);
-        set_state(start, State{run.q, run.v});
+        set_state(start, run.start());
         start.run();
         mistakes.attempt([&] { check_restitution(run); });
         // What follows from an energy or a gap without a value has none either: it is told once.
@@ -62,7 +62,7 @@ namespace {
 // is too large.
 Mistake no_value(const Model& model, const Run& run, Location at, const char* what,
                  std::span<const Expression> expressions) {
-    const State state{run.q, run.v};
+    const State state = run.start();
     const auto part = first_undefined(model, run.parameters, expressions, state, box_of(state));
     if (!part) return {at, fmt::format("{} is not finite at the start", what), {}};
     return {at,
@@ -83,7 +83,7 @@ void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& 
 
 // The gap has a value and is not clearly negative, and where there is contact there is a normal.
 void Model::check_gap(const Run& run) const {
-    const State start{run.q, run.v};
+    const State start = run.start();
     auto gap = evaluator<Interval>(gap_, run.parameters);
     set_state(gap, start);
     gap.run();
@@ -128,7 +128,7 @@ void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double
     const auto blame = [&](const Text& text, const char* what, const std::vector<Expression>& parts) {
         const Program program(parts, layout_.slots());
         auto value = evaluator(program, run.parameters);
-        set_state(value, State{run.q, run.v});
+        set_state(value, run.start());
         value.run();
         for (std::size_t i = 0; i < parts.size(); ++i)
             if (!std::isfinite(value.output(i))) throw no_value(*this, run, text.at, what, parts);

@@ -21,6 +21,9 @@ struct Slots {
     std::uint32_t count = 0;             // all inputs
     std::uint32_t parameters_begin = 0;  // the parameters among them
     std::uint32_t parameters_end = 0;
+    // The input behind the parameters is the time, if there is one.
+    std::uint32_t clock() const { return parameters_end; }
+    bool has_clock() const { return parameters_end < count; }
 };
 
 struct Instruction {
@@ -69,6 +72,8 @@ class Evaluator {
     }
 
     Scalar& input(std::size_t slot) { return registers_[slot]; }
+    // The time, of a program that has it among its inputs.
+    Scalar& clock() { return registers_[program_->slots_.clock()]; }
     const Scalar& output(std::size_t index) const { return registers_[program_->outputs_[index]]; }
     std::size_t output_count() const { return program_->outputs_.size(); }
 

@@ -100,6 +100,8 @@ struct Run {
     Options options;
     std::vector<double> parameters;
     Vector q, v;
+    // Where it starts.
+    State start() const { return {q, v, 0.0}; }
 
     // Of runs of one system.
     friend bool operator==(const Run&, const Run&) = default;

@@ -1,4 +1,4 @@
-// Coordinates and rates. At most eight, so vectors of them live on the stack.
+// Where a system is: coordinates, rates, time. At most eight coordinates, so vectors of them live on the stack.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,9 +11,10 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_coordinates, 1>;
 
 struct State {
     Vector q, v;
+    double t = 0.0;  // s
 };
 
-// Puts a state into the inputs of a program (slots 0 .. 2n - 1, see model/derive.hpp).
+// Puts a state into the inputs of a program (slots 0 .. 2n - 1 and the clock, see model/derive.hpp).
 template <class Evaluator>
 void set_state(Evaluator& evaluator, const State& state) {
     const auto n = state.q.size();
@@ -21,6 +22,7 @@ void set_state(Evaluator& evaluator, const State& state) {
         evaluator.input(static_cast<std::size_t>(i)) = state.q[i];
         evaluator.input(static_cast<std::size_t>(n + i)) = state.v[i];
     }
+    evaluator.clock() = state.t;
 }
 
 }  // namespace achilles

@@ -27,6 +27,7 @@ class SeriesCompiler {
         next_series_ = 1 + slots.parameters_begin;
         forms_.resize(count);
         for (std::uint32_t i = 0; i < slots.parameters_begin; ++i) forms_[i] = {{1 + i, one}};
+        if (uses_clock()) start_clock();
         for (std::uint32_t reg = first_moving_; reg < count; ++reg) {
             const Instruction& in = program_.instructions_[reg - first];
             function_registers_.emplace(std::pair(in.operation, in.a), reg);
@@ -39,6 +40,7 @@ class SeriesCompiler {
             series_.outputs_.push_back(output);
             if (as_series) series_.plan_.outputs.push_back(written_apart(operand(output)));
         }
+        if (series_.plan_.clock != 0) series_.plan_.rules.push_back({series_.plan_.clock});
         series_.registers_ = next_register_;
         series_.plan_.series = (next_series_ + SeriesPlan::aligned - 1) / SeriesPlan::aligned * SeriesPlan::aligned;
         place_sums();
@@ -67,7 +69,25 @@ class SeriesCompiler {
                operation == Operation::acos || operation == Operation::real_power;
     }
 
-    bool moves(std::uint32_t reg) const { return reg < program_.slots_.parameters_begin || reg >= first_moving_; }
+    bool moves(std::uint32_t reg) const {
+        return reg < program_.slots_.parameters_begin || reg >= first_moving_ || is_clock(reg);
+    }
+
+    // ---- time ----
+
+    bool is_clock(std::uint32_t reg) const { return program_.slots_.has_clock() && reg == program_.slots_.clock(); }
+    bool uses_clock() const {
+        const auto& all = program_.instructions_;
+        const auto uses = [&](const Instruction& in) { return is_clock(in.a) || is_clock(in.b); };
+        return std::any_of(all.begin() + static_cast<std::ptrdiff_t>(program_.fixed_), all.end(), uses) ||
+               std::any_of(program_.outputs_.begin(), program_.outputs_.end(), [&](auto reg) { return is_clock(reg); });
+    }
+    // What reads the time reads a copy: the series itself is gone where an order ends (SeriesPlan::clock).
+    void start_clock() {
+        const std::uint32_t clock = series_.plan_.clock = next_series_++, copy = next_series_++;
+        combine(copy, {clock, 0, 0}, {one, one, one});
+        forms_[program_.slots_.clock()] = {{copy, one}};
+    }
 
     // ---- coefficients ----
 

@@ -43,9 +43,14 @@ class SeriesEvaluator {
         program_->fix(zero_.numbers().data(), coefficients_.data(), factors_.data());
     }
 
-    // Evaluates order 0 at these values of the moving inputs.
-    void begin(const Number* inputs) {
+    // Evaluates order 0 at these values of the moving inputs, at a time that passes at this rate: 1, or what a unit is
+    // long in which the series are.
+    void begin(const Number* inputs, const Number& time = 0.0, const Number& rate = 1.0) {
         std::copy_n(inputs, inputs_, zero_.numbers().data());
+        if (program_->plan_.clock != 0) {
+            zero_.clock() = time;
+            tables_.now[program_->plan_.clock] = rate;
+        }
         zero_.run();
         std::fill_n(tables_.now + program_->plan_.series, sums_.count(), Number(0.0));  // sums of order 1
         program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());

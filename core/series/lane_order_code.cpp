@@ -36,7 +36,7 @@ class LaneOrderWriter {
           lanes_(lanes),
           code_(now, scratch, Width::eight),
           by_left_(lanes.sums.size()),
-          all_held_(2 * plan.coordinates() + plan.rules.size() <= code_.room()),
+          all_held_(plan.clock == 0 && 2 * plan.coordinates() + plan.rules.size() <= code_.room()),
           one_group_(lanes.sums.size() <= most_sums) {
         std::iota(by_left_.begin(), by_left_.end(), 0u);
         std::stable_sort(by_left_.begin(), by_left_.end(),

@@ -119,6 +119,7 @@ class LaneStepperOver final : public LaneStepper {
     // The series at the state where the step starts. True where they are numbers.
     Mask expand(Expansion& motion, const LaneStep& step, ContactSet held) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
+        step_.time() = step.t;
         const auto start = step_.expand(motion.series, motion.order, held, Number(step.until) - step.t);
         return start.numbers & start.regular;
     }

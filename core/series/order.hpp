@@ -37,6 +37,9 @@ struct SeriesPlan {
     // which is an input.
     std::vector<std::uint32_t> outputs;
     std::uint32_t events = 0;  // of the outputs, the last
+    // The series of the time that passes; 0: there is none. Before order 1 it is set to 1 (to the duration of a unit of
+    // what the series are in), and the last rule takes that away, so that all further orders are nothing.
+    std::uint32_t clock = 0;
 
     std::size_t coordinates() const { return outputs.size() - events; }
     std::uint32_t event(std::size_t i) const { return outputs[coordinates() + i]; }

@@ -43,6 +43,7 @@ class ProgramOver {
         evaluator_.fix();
     }
     Number& input(std::size_t slot) { return evaluator_.input(slot); }
+    Number& clock() { return evaluator_.clock(); }
     const Number& output(std::size_t index) const { return evaluator_.output(index); }
     // All registers, the inputs first.
     std::vector<Number>& numbers() { return LaneAccess::registers_of(evaluator_); }

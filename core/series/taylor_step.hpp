@@ -78,8 +78,10 @@ class TaylorStep {
     struct Start {
         Condition<Number> numbers, regular;
     };
-    // Of the state where the step starts, to be set before it is expanded; of a held contact only the state_error counts.
+    // Of the state where the step starts, to be set before it is expanded; of a held contact only the state_error counts,
+    // and the time (s) only where the motion depends on it.
     GapOver<Number>& gap(std::size_t contact) { return gaps_[contact]; }
+    Number& time() { return time_; }
     // The series at the state whose q and v stand in row 0, to the order that the policy finds is needed for `longest`
     // (s), along the motion that holds these contacts.
     template <class OrderPolicy>
@@ -139,6 +141,7 @@ class TaylorStep {
     double tolerance_;
     std::vector<Number> rows_, units_;
     std::vector<GapOver<Number>> gaps_;  // where the step starts
+    Number time_ = 0.0;                  // the same
     ContactSet held_;
     int order_ = 0;  // of the last expansion
 };
@@ -154,7 +157,7 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
         set_unit(i, 1.0 + abs(c[i]));
     }
     if (!any(start.numbers)) return start;
-    series.begin(c);
+    series.begin(c, time_);
     for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + contacts() + i) > 0.0);
     for (std::size_t i = 0; i < contacts(); ++i) {
         events[i] = is_open(i) ? gaps_[i].h : series.start(dof_ + i);

@@ -19,15 +19,14 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 void Execution::land(const Contact& contact) {
     if (!(contact.hdot < 0.0)) {
-        stop(Outcome::Kind::undecided,
-             "an impact whose speed is zero to within rounding at " + where(next_.t, next_.state));
+        stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(next_.state));
         return;
     }
     if (record_.impacts() >= run_.options.max_impacts) {
         const bool elastic = restitution_ >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
              fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
-                         next_.t, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
+                         next_.state.t, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
         return;
     }
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
@@ -37,7 +36,7 @@ void Execution::land(const Contact& contact) {
     const Vector tangential = reinitialize(contact, next_.state.v, Reinitialization::kinetic);
     const Reinitialization kind = run_.options.truncation.reinitialization;
     const bool kinetic = kind == Reinitialization::kinetic;
-    Collision collision{next_.t, next_.state, -contact.hdot, tangential,
+    Collision collision{next_.state, -contact.hdot, tangential,
                         kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
     if (restitution_ == 0.0) {
         capture(contact, collision);
@@ -50,7 +49,7 @@ void Execution::land(const Contact& contact) {
         } else {
             stop(Outcome::Kind::undecided,
                  "flights became shorter than floating point resolves, and no truncation is certified at " +
-                     where(next_.t, next_.state));
+                     where(next_.state));
         }
     } else {
         bounce(contact, restitution_);
@@ -72,7 +71,7 @@ std::optional<Certificate> Execution::prove(
 // Newton's law, and the flight it starts.
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
-    record_.impact(next_.t, next_.state, v_after, -contact.hdot);
+    record_.impact(next_.state, v_after, -contact.hdot);
     next_.state.v = v_after;
     const double hdot = -e * contact.hdot;
     next_.start = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
@@ -85,7 +84,7 @@ void Execution::bounce(const Contact& contact, double e) {
 // Cheap and sufficient: the last step was so long, and what it fell so much, that too_short_to_resolve() need not look.
 bool Execution::is_well_resolved(double speed) const {
     const double q = next_.state.q.cwiseAbs().maxCoeff();
-    return last_step_ > 1e-6 * (1.0 + next_.t) && last_step_ * speed > 1e-8 * (1.0 + q);
+    return last_step_ > 1e-6 * (1.0 + next_.state.t) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
 
 // theory.md 6.3: the next flight, to leading order, is lower than four roundings of h or shorter than four of t. The first
@@ -93,22 +92,23 @@ bool Execution::is_well_resolved(double speed) const {
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;
-    const double a = -kinematics_->normal_acceleration({collision.before.q, collision.tangential});
+    const double a = -kinematics_->normal_acceleration(collision.with(collision.tangential));
     if (!(a > 0.0)) return false;
-    return u * u / (2.0 * a) < 4.0 * kinematics_->gap_error(collision.before) || 2.0 * u / a < 4.0 * ulp(collision.t);
+    return u * u / (2.0 * a) < 4.0 * kinematics_->gap_error(collision.before) ||
+           2.0 * u / a < 4.0 * ulp(collision.before.t);
 }
 
 // e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and the completion is exact.
 void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
-    const Interval hddot = kinematics_->normal({collision.before.q, collision.restart}).hddot;
+    const Interval hddot = kinematics_->normal(collision.with(collision.restart)).hddot;
     if (certainly_negative(hddot)) {
         Certificate certificate;
         certificate.certified = true;
         certificate.conditions = run_.options.truncation.conditions;
         certificate.reinitialization = Reinitialization::kinetic;
-        certificate.zeno_low = certificate.zeno_high = certificate.zeno_time = next_.t;
+        certificate.zeno_low = certificate.zeno_high = certificate.zeno_time = next_.state.t;
         certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
@@ -121,7 +121,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
     } else {
         stop(Outcome::Kind::undecided,
              "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +
-                 where(next_.t, next_.state));
+                 where(next_.state));
     }
 }
 
@@ -130,15 +130,15 @@ void Execution::capture(const Contact& contact, const Collision& before) {
 // The collision is the last impact that is drawn: the bouncing after it is replaced by the constrained motion. The
 // phase changes at the best estimate of the Zeno time.
 void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
-    record_.impact(next_.t, next_.state, impact(contact, next_.state.v, restitution_), collision.speed);
-    next_.state = {collision.before.q, collision.restart};
+    record_.impact(next_.state, impact(contact, next_.state.v, restitution_), collision.speed);
+    next_.state = collision.with(collision.restart);
     next_.start = {};
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
     event.t = certificate.zeno_time;
-    event.truncation =
-        Event::Truncation{collision.t, collision.before.q, collision.before.v, collision.restart, collision.speed};
+    event.truncation = Event::Truncation{collision.before.t, collision.before.q, collision.before.v, collision.restart,
+                                         collision.speed};
     event.certificate = std::move(certificate);
     begin_stretch(ContactSet::of(0), std::min(event.t, run_.options.end_time));
 }
@@ -147,12 +147,12 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
 void Execution::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
-    next_.t = event.t;
+    next_.state.t = event.t;
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
-    record_.close(next_.t);
-    record_.open(Phase::Kind::constrained, next_.t);
+    record_.close(next_.state.t);
+    record_.open(Phase::Kind::constrained, next_.state.t);
     begin_stretch(ContactSet::of(0), run_.options.end_time);
 }
 
@@ -162,20 +162,20 @@ void Execution::pass_zeno_point() {
 void Execution::release() {
     if (completing())
         return stop(Outcome::Kind::undecided,
-                    "the contact force vanishes before the Zeno time at " + where(next_.t, next_.state));
+                    "the contact force vanishes before the Zeno time at " + where(next_.state));
     if (!certainly_positive(kinematics_->normal(next_.state).jerk)) {
         stop(Outcome::Kind::undecided,
-             "the contact force touches zero and h''' > 0 is not proved at " + where(next_.t, next_.state));
+             "the contact force touches zero and h''' > 0 is not proved at " + where(next_.state));
         return;
     }
     Event event;
     event.kind = Event::Kind::release;
-    event.t = next_.t;
+    event.t = next_.state.t;
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
-    record_.close(next_.t);
-    record_.open(Phase::Kind::hybrid, next_.t);
+    record_.close(next_.state.t);
+    record_.open(Phase::Kind::hybrid, next_.state.t);
     next_.start = {{0.0, 0.0}, 3};
     begin_stretch({}, run_.options.end_time);
 }

@@ -73,8 +73,8 @@ std::string undefined_in(const Model& model, const Run& run, const State& state,
 
 }  // namespace
 
-std::string edge_of_domain(const Model& model, const Run& run, double t, const State& state) {
-    const double scale = std::max(1e-3, std::abs(t));
+std::string edge_of_domain(const Model& model, const Run& run, const State& state) {
+    const double scale = std::max(1e-3, std::abs(state.t));
     for (const double reach : {1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9}) {
         Values box = box_of(state);
         for (Eigen::Index i = 0; i < state.q.size(); ++i) {

@@ -12,7 +12,7 @@ namespace achilles {
 // as they stand in T, V, h or the equations of motion), a function at an edge where it is not smooth (sqrt(x^2) where
 // x = 0), or a mass matrix that is not positive definite. Interval evaluation over the box of that line: a pole between
 // two floating-point numbers is not missed. A sentence without a full stop; empty if there is none.
-std::string edge_of_domain(const Model& model, const Run& run, double t, const State& state);
+std::string edge_of_domain(const Model& model, const Run& run, const State& state);
 
 // The same at the state itself, to within rounding, for a contact: also where dh = 0, so that there is no normal.
 std::string edge_of_contact(const Model& model, const Run& run, const State& state);

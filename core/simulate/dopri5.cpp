@@ -40,7 +40,7 @@ class Dopri5 : public Stepper {
           gaps_(model.contacts()) {}
 
     void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
-    StepFailure do_step(double longest, double first, double least) override;
+    StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override { return to_; }
@@ -52,9 +52,9 @@ class Dopri5 : public Stepper {
     long evaluations() const override { return evaluations_; }
 
  private:
-    void derivative(const Values& y, Values& dydt);
+    void derivative(const Values& y, Values& dydt, double passed);
     auto system() {
-        return [this](const Values& y, Values& dydt, double) { derivative(y, dydt); };
+        return [this](const Values& y, Values& dydt, double passed) { derivative(y, dydt, passed); };
     }
     void guess_first_step();
     void set(double dt);
@@ -83,18 +83,21 @@ class Dopri5 : public Stepper {
     double span_ = 0.0;
     double natural_ = 0.0;     // the step the error control would take next; 0: not known
     State from_, to_;          // the last step's ends
+    double time_ = 0.0;        // s, where it starts,
+    double begun_ = 0.0;       // by Odeint's own clock
     std::vector<Gap> gaps_;    // at `from`
     bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
     std::array<Values, 5> nodes_;
     long evaluations_ = 0;
 };
 
-// y' = (v, f, hdot, hddot) in flight, (v, f_c, h''', 0) in contact. Where M is not positive definite the derivative is NaN, and with it
+// After a time has passed by Odeint's clock, y' = (v, f, hdot, hddot) in flight, (v, f_c, h''', 0) in contact. Where M is not positive definite the derivative is NaN, and with it
 // the step.
-void Dopri5::derivative(const Values& y, Values& dydt) {
+void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
     ++evaluations_;
     MotionTerms<Evaluator<double>>& motion = *motion_;
     for (std::size_t i = 0; i < 2 * dof_; ++i) motion.input(i) = y[i];
+    motion.clock() = time_ + (passed - begun_);
     motion.run();
     bool regular = true;
     for (std::size_t i = 0; i < dof_; ++i) regular = regular && motion.pivot(i) > 0.0;
@@ -122,6 +125,8 @@ void Dopri5::initialize(ContactSet held, const State& state, std::span<const Gap
     if (motion_ == nullptr || held != held_) motion_ = &model_->lazily(motions_, held, parameters_);
     held_ = held;
     to_ = state;
+    time_ = state.t;
+    begun_ = 0.0;
     gaps_.assign(gaps.begin(), gaps.end());
     continuing_ = false;
     if (natural_ == 0.0) guess_first_step();
@@ -131,7 +136,7 @@ void Dopri5::initialize(ContactSet held, const State& state, std::span<const Gap
 void Dopri5::guess_first_step() {
     Values dydt(width());
     const Values y = values_of(to_);
-    derivative(y, dydt);
+    derivative(y, dydt, begun_);
     double size = 1e-3, rate = 1e-3;
     for (std::size_t i = 0; i < 2 * dof_; ++i) {
         size = std::max(size, std::abs(y[i]));
@@ -144,6 +149,7 @@ void Dopri5::set(double dt) {
     Values y = values_of(from_);
     if (!held_.empty()) {  // hddot of the state itself
         for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
+        motion_->clock() = time_;
         motion_->run();
     }
     for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
@@ -152,6 +158,7 @@ void Dopri5::set(double dt) {
         if (is_open(contact)) y[i + 1] = gaps_[contact].hdot;
     }
     dense_.initialize(y, 0.0, dt);
+    begun_ = 0.0;
 }
 
 // What a step that never became finite means: the state itself tells.
@@ -196,7 +203,9 @@ StepFailure Dopri5::advance(double dt, double least) {
     return finite ? StepFailure::step_too_small : failure_here();
 }
 
-StepFailure Dopri5::do_step(double longest, double first, double least) {
+StepFailure Dopri5::do_step(double time, double longest, double first, double least) {
+    time_ = time;
+    begun_ = continuing_ ? dense_.current_time() : 0.0;
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
     for (std::size_t contact = 0; continuing_ && contact < gaps_.size(); ++contact) {

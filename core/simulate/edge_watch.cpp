@@ -38,11 +38,11 @@ double EdgeWatch::sign_of(const Edge& edge, double start) const {
 
 // The motion of a step is a polynomial in theta, whatever the method; so the distances are series in theta. They need
 // as many orders as it takes them to become small.
-double EdgeWatch::safe_part(const Stepper& stepper) {
+double EdgeWatch::safe_part(const Stepper& stepper, double time) {
     motion_.clear();
     const std::size_t degree = stepper.coefficients(motion_);
     motion_.resize(motion_.size() + block_, 0.0);
-    series_.begin(motion_.data());
+    series_.begin(motion_.data(), time, stepper.current_time());
     for (std::size_t i = 0; i < distances_.size(); ++i) {
         const double start = series_.start(i);
         signs_[i] = sign_of(edges_[i], start);

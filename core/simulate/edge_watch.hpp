@@ -13,11 +13,11 @@ class EdgeWatch {
  public:
     EdgeWatch(const Model& model, const Run& run);
 
-    // The part (0, 1] of the stepper's last step along which every distance from an edge stays above an eighth of what
+    // The part (0, 1] of the stepper's last step, from this time on, along which every distance from an edge stays above an eighth of what
     // it was at the start, or is known at all, and nothing that hides grows by more than exp(Edge::growth). To an edge
     // that is met the steps shorten to nothing; one that is passed closely, as sqrt(x^2 + y^2) may pass its, is passed
     // in steps that see it.
-    double safe_part(const Stepper& stepper);
+    double safe_part(const Stepper& stepper, double time);
 
  private:
     double safe_part(Polynomial& distance) const;

@@ -14,11 +14,9 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
     const bool flying = request.held.empty();
-    if (request.begins)
-        flow_->start(request.held, request.t, request.state, std::span(&request.start.gap, 1), request.first_step);
+    if (request.begins) flow_->start(request.held, request.state, std::span(&request.start.gap, 1), request.first_step);
     result_.flow = flow_;
     result_.steps = 0;
-    result_.t = request.t;
     result_.state = &request.state;
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : flying ? find_impact() : find_release();
@@ -44,7 +42,6 @@ bool EventStepper::end_step_after(double duration) { return flow_->redo_step(dur
 // The flow's last step, as it stands, is what came.
 void EventStepper::end_step(double gap) {
     result_.steps = 1;
-    result_.t = flow_->end_time();
     result_.duration = flow_->duration();
     result_.state = &flow_->end();
     result_.gap = gap;

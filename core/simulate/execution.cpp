@@ -10,8 +10,8 @@
 
 namespace achilles {
 
-std::string where(double t, const State& state) {
-    std::string text = fmt::format("t = {:.9g}, q = (", t);
+std::string where(const State& state) {
+    std::string text = fmt::format("t = {:.9g}, q = (", state.t);
     for (Eigen::Index i = 0; i < state.q.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", state.q[i]);
     text += "), v = (";
     for (Eigen::Index i = 0; i < state.v.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", state.v[i]);
@@ -58,7 +58,7 @@ bool Execution::restart(const Run& run) {
 // In flight, in contact, or at an impact, which comes first.
 void Execution::begin() {
     next_ = {};
-    next_.state = {run_.q, run_.v};
+    next_.state = run_.start();
     begin_stretch({}, run_.options.end_time);
     const Contact contact = kinematics_->at(next_.state);
     next_.start = {{contact.h, contact.hdot}, 0};
@@ -69,7 +69,7 @@ void Execution::begin() {
         at_impact = contact.hdot < -error;
         if (std::abs(contact.hdot) <= error) start_in_contact(kinematics_->normal(next_.state));
     }
-    record_.open(!next_.held.empty() ? Phase::Kind::constrained : Phase::Kind::hybrid, next_.t);
+    record_.open(!next_.held.empty() ? Phase::Kind::constrained : Phase::Kind::hybrid, next_.state.t);
     if (at_impact) land(contact);
 }
 
@@ -86,7 +86,7 @@ void Execution::start_in_contact(const ContactKinematics::Normal& normal) {
     } else {
         stop(Outcome::Kind::undecided,
              "the contact force and its rate are zero to within rounding: contact or release cannot be decided at " +
-                 where(next_.t, next_.state));
+                 where(next_.state));
     }
 }
 
@@ -100,13 +100,13 @@ const StepRequest* Execution::next() {
     } else if (record_.steps() >= run_.options.max_steps) {
         stop(Outcome::Kind::too_many_steps,
              fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time",
-                         record_.steps(), next_.t));
+                         record_.steps(), next_.state.t));
     } else if (record_.bytes() >= run_.options.memory) {
         stop(Outcome::Kind::out_of_memory,
              fmt::format(
                  "{} steps and {} impacts by t = {:.9g} take the {:.4g} MB that the run may have: it may have more "
                  "(memory), or end earlier",
-                 record_.steps(), record_.impacts(), next_.t, run_.options.memory / 1e6));
+                 record_.steps(), record_.impacts(), next_.state.t, run_.options.memory / 1e6));
     } else if (stalled_ > most_stalled) {
         // Steps of the resolution of time, one after the other, round back to the same state for ever.
         stop_at(StepFailure::step_too_small);
@@ -130,15 +130,15 @@ void Execution::note_beginning() {
     beginning_.stalled = stalled_;
 }
 
-bool Execution::is_time_left() const { return next_.until - next_.t > 1e-15 * std::abs(next_.t); }
+bool Execution::is_time_left() const { return next_.until - next_.state.t > 1e-15 * std::abs(next_.state.t); }
 
 // Tells the watch how far the run is, and asks whether it shall go on. Once a step: every impact and every release lies
 // between two.
 bool Execution::is_cancelled() {
-    watch_->time.store(next_.t, std::memory_order_relaxed);
+    watch_->time.store(next_.state.t, std::memory_order_relaxed);
     watch_->impacts.store(record_.impacts(), std::memory_order_relaxed);
     if (!watch_->stop.stop_requested()) return false;
-    stop(Outcome::Kind::cancelled, fmt::format("cancelled at t = {:.9g}", next_.t));
+    stop(Outcome::Kind::cancelled, fmt::format("cancelled at t = {:.9g}", next_.state.t));
     return true;
 }
 
@@ -181,8 +181,7 @@ void Execution::advance(const StepResult& result) {
     } else {
         record_.steps(result.steps, result.gap);
     }
-    stalled_ = result.t - next_.t > 0x1p-51 * std::abs(next_.t) ? 0 : stalled_ + 1;
-    next_.t = result.t;
+    stalled_ = result.state->t - next_.state.t > 0x1p-51 * std::abs(next_.state.t) ? 0 : stalled_ + 1;
     last_step_ = result.duration;
 }
 
@@ -212,7 +211,7 @@ void Execution::ask_exactly() {
 // ---- the end ----
 
 std::string Execution::doubt(const StepResult& result) const {
-    const std::string place = where(next_.t, next_.state);
+    const std::string place = where(next_.state);
     if (!next_.held.empty())
         return "the contact force comes closer to zero than the integration knows it just after " + place;
     const std::string known =
@@ -224,10 +223,10 @@ std::string Execution::doubt(const StepResult& result) const {
 }
 
 void Execution::stop_at(StepFailure failure) {
-    const std::string place = where(next_.t, next_.state);
+    const std::string place = where(next_.state);
     if (failure == StepFailure::not_a_number)
         return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
-    const std::string edge = edge_of_domain(*model_, run_, next_.t, next_.state);
+    const std::string edge = edge_of_domain(*model_, run_, next_.state);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, just after {}", edge, place));
     if (failure == StepFailure::left_the_domain)
         return stop(Outcome::Kind::left_the_domain,
@@ -237,18 +236,18 @@ void Execution::stop_at(StepFailure failure) {
 
 void Execution::fail_projection() {
     stop(Outcome::Kind::left_the_domain,
-         fmt::format("{}, at {}", edge_of_contact(*model_, run_, next_.state), where(next_.t, next_.state)));
+         fmt::format("{}, at {}", edge_of_contact(*model_, run_, next_.state), where(next_.state)));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
 void Execution::run_out_of_memory() {
     stop(Outcome::Kind::out_of_memory,
-         fmt::format("{} steps by t = {:.9g}, and the system has no memory for more", record_.steps(), next_.t));
+         fmt::format("{} steps by t = {:.9g}, and the system has no memory for more", record_.steps(), next_.state.t));
 }
 
 Trajectory Execution::finish() {
-    Trajectory trajectory = record_.finish(next_.t, next_.state, std::move(*outcome_), evaluations_);
+    Trajectory trajectory = record_.finish(next_.state, std::move(*outcome_), evaluations_);
     trajectory.statistics.certificate_seconds = proving_;
     return trajectory;
 }

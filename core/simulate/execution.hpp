@@ -19,8 +19,8 @@
 
 namespace achilles {
 
-// An instant and a state in words, for messages.
-std::string where(double t, const State& state);
+// A state in words, for messages.
+std::string where(const State& state);
 
 class Execution {
  public:
@@ -41,7 +41,7 @@ class Execution {
     // or by what accept() was told. It stands until accept(), and until then next() says the same.
     const StepRequest* next();
 
-    // Takes what came of the last request: the motion stands at the result's t and state, and then
+    // Takes what came of the last request: the motion stands at the result's state, and then
     //     no_event        goes on from there
     //     impact          flies on by Newton's law, or goes on in contact to the Zeno point, where that is certified
     //     force_vanishes  flies on, where h''' > 0 is proved

@@ -14,7 +14,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     const Run& run = trajectory.run;
     auto energy = model.evaluator(model.energy(), run.parameters);
     const auto energy_at = [&](const Vector& v) {
-        set_state(energy, State{impact.q, v});
+        set_state(energy, State{impact.q, v, impact.t});
         energy.run();
         return energy.total();
     };
@@ -25,12 +25,12 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     reason.energy_after = energy_at(impact.v_after);
 
     ContactKinematics surface(model, run);
-    const State before{impact.q, impact.v_before};
+    const State before{impact.q, impact.v_before, impact.t};
     const Contact contact = surface.at(before);
-    const Collision collision{impact.t, before, std::abs(contact.hdot),
+    const Collision collision{before, std::abs(contact.hdot),
                               reinitialize(contact, before.v, Reinitialization::kinetic),
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
-    reason.normal_acceleration = surface.normal_acceleration({impact.q, collision.restart});
+    reason.normal_acceleration = surface.normal_acceleration(collision.with(collision.restart));
     if (reason.normal_acceleration < 0.0) reason.attempt = truncation_conditions(model, run)->prove_any(collision);
     return reason;
 }
@@ -38,7 +38,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
 ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const Event& release = trajectory.events[event];
     const Model& model = *trajectory.model;
-    const State state{release.q, release.v_after};
+    const State state{release.q, release.v_after, release.t};
     ContactKinematics surface(model, trajectory.run);
     const double W = surface.at(state).W;
     ReleaseReason reason;

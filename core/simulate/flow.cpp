@@ -11,9 +11,9 @@ Flow::Flow(const Model& model, const Run& run)
       model_(&model),
       parameters_(run.parameters) {}
 
-void Flow::start(ContactSet held, double t, const State& state, std::span<const Gap> gaps, double first_step) {
+void Flow::start(ContactSet held, const State& state, std::span<const Gap> gaps, double first_step) {
     held_ = held;
-    t_ = end_ = t;
+    t_ = end_ = state.t;
     span_ = 0.0;
     first_ = first_step;
     to_ = state;
@@ -32,10 +32,10 @@ StepFailure Flow::step(double until) {
     const State& start = end();
     if (moved_) stepper_->initialize(held_, start, gaps_);
     moved_ = false;
-    StepFailure failure = stepper_->do_step(longest, first_, least());
+    StepFailure failure = stepper_->do_step(t_, longest, first_, least());
     first_ = 0.0;
     if (edges_ && failure == StepFailure::none) {
-        const double theta = edges_->safe_part(*stepper_);
+        const double theta = edges_->safe_part(*stepper_, t_);
         if (theta < 1.0) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
     }
     if (failure != StepFailure::none) return failure;
@@ -77,7 +77,7 @@ void Flow::shift_end(double dt) {
         to_.v[i] += dt * a;
     }
     span_ += dt;
-    end_ = t_ + span_;
+    to_.t = end_ = t_ + span_;
     moved_ = true;
 }
 

@@ -16,9 +16,9 @@ class Flow {
  public:
     Flow(const Model& model, const Run& run);
 
-    // Starts a stretch at (t, state) that holds these contacts. In flight the first step is at most `first_step` (s); 0
+    // Starts a stretch at this state that holds these contacts. In flight the first step is at most `first_step` (s); 0
     // leaves it to the stepper. One gap for each contact; of a held one's only the state_error counts.
-    void start(ContactSet held, double t, const State& state, std::span<const Gap> gaps, double first_step);
+    void start(ContactSet held, const State& state, std::span<const Gap> gaps, double first_step);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
     // domain inside a step the step is shortened, until it is too short to be a step: that is the failure. So it is
     // where one comes to an edge inside (model/edges.hpp).
@@ -37,7 +37,9 @@ class Flow {
     double duration() const { return span_; }
     double end_time() const { return end_; }
     const State& end() const {
-        if (!fetched_) to_ = stepper_->current_state();
+        if (fetched_) return to_;
+        to_ = stepper_->current_state();
+        to_.t = end_;
         fetched_ = true;
         return to_;
     }

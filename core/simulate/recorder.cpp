@@ -107,13 +107,13 @@ void Recorder::step(const Flow& flow, double gap) {
         statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.total() - reference_) / scale_);
 }
 
-void Recorder::impact(double t, const State& before, const Vector& v_after, double speed) {
+void Recorder::impact(const State& before, const Vector& v_after, double speed) {
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
     if (keep_ == Keep::end) return;
     Event event;
     event.kind = Event::Kind::impact;
-    event.t = t;
+    event.t = before.t;
     event.q = before.q;
     event.v_before = before.v;
     event.v_after = v_after;
@@ -128,9 +128,9 @@ void Recorder::event(Event event) {
     trajectory_.events.push_back(std::move(event));
 }
 
-Trajectory Recorder::finish(double t, const State& state, Outcome outcome, long evaluations) {
-    close(t);
-    trajectory_.end_time = t;
+Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluations) {
+    close(state.t);
+    trajectory_.end_time = state.t;
     trajectory_.end = state;
     trajectory_.end_phase = phase();
     trajectory_.outcome = std::move(outcome);

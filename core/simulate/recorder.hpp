@@ -38,7 +38,7 @@ class Recorder {
     // Steps of which the end alone is kept.
     void steps(long count, double least_gap);
     // An impact at this state before it.
-    void impact(double t, const State& before, const Vector& v_after, double speed);
+    void impact(const State& before, const Vector& v_after, double speed);
     // Any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
@@ -47,7 +47,7 @@ class Recorder {
     double bytes() const;
 
     // Ends the run. The recorder is empty afterwards.
-    Trajectory finish(double t, const State& state, Outcome outcome, long evaluations);
+    Trajectory finish(const State& state, Outcome outcome, long evaluations);
 
  private:
     Keep keep_;

@@ -20,7 +20,7 @@ State Sampler::state(const Piece& piece, double t) const {
     const auto n = trajectory_.run.q.size();
     const double theta =
         piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
-    State state{Vector::Zero(n), Vector::Zero(n)};
+    State state{Vector::Zero(n), Vector::Zero(n), t};
     for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
         const double* block = trajectory_.coefficients.data() + piece.first + 2 * static_cast<std::size_t>(n) * k;
         for (Eigen::Index i = 0; i < n; ++i) {
@@ -84,7 +84,7 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
                 !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
             const bool is_left_out = stride > 1 && event.t < until;
             if (event.kind == Event::Kind::impact && !shown && !is_left_out)
-                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before});
+                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before, event.t});
             ++j;
         }
         return any;

@@ -24,7 +24,7 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t co
                        const std::function<Run(std::size_t)>& run_of,
                        const std::function<void(std::size_t, Attempt&&)>& take)
     : step_(model->lane_programs().coordinates),
-      end_{Vector(model->dof()), Vector(model->dof())},
+      end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
       has_lanes_(model->edges().empty() && !model->motion({}).series.is_partial() &&
                  !model->motion(ContactSet::of(0)).series.is_partial()),
@@ -57,7 +57,8 @@ void SideBySide::begin(std::size_t index) {
     }
     if (refusal) return take_(index, std::move(*refusal));
     raise_to_least(run.options);
-    if (!has_lanes_ || run.options.method != Method::taylor) return take_(index, simulate(model_, run, nullptr, Keep::end));
+    if (!has_lanes_ || run.options.method != Method::taylor)
+        return take_(index, simulate(model_, run, nullptr, Keep::end));
     go_on(member_for(index, run), false);
 }
 
@@ -168,7 +169,7 @@ void SideBySide::gather(bool flying) {
             step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
         }
         const auto& [gap, multiplicity, asked_again] = request.start;
-        step_.t[lane] = request.t;
+        step_.t[lane] = request.state.t;
         step_.until[lane] = request.until;
         step_.state_error[lane] = gap.state_error;
         if (!flying) continue;
@@ -197,8 +198,8 @@ bool SideBySide::read(std::size_t lane, bool flying) {
         end_.q[i] = step_.q_and_v[static_cast<std::size_t>(i)][lane];
         end_.v[i] = step_.q_and_v[static_cast<std::size_t>(n + i)][lane];
     }
+    end_.t = step_.t[lane];
     result_.state = &end_;
-    result_.t = step_.t[lane];
     result_.duration = step_.duration[lane];
     result_.gap = flying ? step_.end_h[lane] : step_.least_gap[lane];
     result_.evaluations = result_.steps;

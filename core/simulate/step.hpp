@@ -16,14 +16,13 @@ struct EventStart {
     bool asked_again = false;  // the step before was ended where it entered its remainder (theory-truncation.md 6)
 };
 
-// A step of smooth motion, from t to `until` at the latest, or to the first event in (t, until]: in flight the gap
+// A step of smooth motion, from the state's t to `until` at the latest, or to the first event in (t, until]: in flight the gap
 // closes, in contact the contact force vanishes. A zero at t itself is none, as often as start.multiplicity says.
 struct StepRequest {
     ContactSet held;
-    double t = 0.0;           // s
-    State state;              // at t
-    EventStart start;         // at t
-    double until = 0.0;       // s, > t
+    State state;
+    EventStart start;         // at that state
+    double until = 0.0;       // s, > state.t
     double first_step = 0.0;  // s, where a flight begins: a length that is known to be sensible; 0: none is
     long most = 1;            // as many steps may be made at once where none has an event
     bool begins = true;       // a stretch of motion begins here; else the step goes on from where the last one ended
@@ -31,23 +30,23 @@ struct StepRequest {
     bool plain = false;       // steps that show at once that they have no event, or just an impact, may answer it
 };
 
-// What came of a request: in (request.t, t) there is no event, at t what `end` says.
+// What came of a request: from its state to that of the result there is no event, and there what `end` says.
 struct StepResult {
     enum class End : char {
         no_event,        // none: the next step starts there, as `start` says
         impact,          // in flight: the gap closes, as `contact` says; `state` is on the surface, before the impact
         force_vanishes,  // in contact
-        doubt,           // none, but whether one follows just after t cannot be told
+        doubt,           // none, but whether one follows just after cannot be told
         off_surface,     // `state` cannot be moved onto the surface, on which it belongs
-        no_step          // no step could be made, for the reason of `failure`: t and `state` are those of the request
+        no_step          // no step could be made, for the reason of `failure`: `state` is that of the request
     };
     End end = End::no_event;
-    // Steps that were made. Where there is none, t is that of the request: an event there is one that the end of the
+    // Steps that were made. Where there is none, its t is that of the request: an event there is one that the end of the
     // step before had come to, within its remainder. Then `state` may still be moved onto the surface.
     long steps = 0;
-    double t = 0.0, duration = 0.0;  // s; of the last step
-    const State* state = nullptr;    // it stands until the next step
-    double gap = 0.0;                // at t; the least of several steps' ends
+    double duration = 0.0;         // s; of the last step
+    const State* state = nullptr;  // it stands until the next step
+    double gap = 0.0;              // there; the least of several steps' ends
     EventStart start;
     Contact contact;
     double remainder = 0.0;  // doubt in flight: what the gap is known to

@@ -1,7 +1,7 @@
 // One step of a smooth motion after the other, with dense output: what an integrator must offer to the flow.
 //
 // The calls bear the names that Boost.Odeint gives to those of a dense-output stepper. Time runs from 0 in every step,
-// so that the shortest flight late in a run has all its digits. Besides (q, v), every step carries the event function of
+// so that the shortest flight late in a run has all its digits; what depends on the time is told when a step begins. Besides (q, v), every step carries the event function of
 // each contact: the gap where it is open, hddot of the free motion where it is held.
 #pragma once
 
@@ -27,13 +27,13 @@ class Stepper {
     // Stands at a state, ready to step on from there while these contacts are held. One gap for each contact; of a held
     // one's only the state_error counts.
     virtual void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) = 0;
-    // One accepted step from where the stepper stands, not longer than `longest`; `first` > 0 is a step that is known
-    // to be sensible after an impact. `least` is the shortest that time can resolve.
-    virtual StepFailure do_step(double longest, double first, double least) = 0;
+    // One accepted step from where the stepper stands, at this time, not longer than `longest`; `first` > 0 is a step that
+    // is known to be sensible after an impact. `least` is the shortest that time can resolve.
+    virtual StepFailure do_step(double time, double longest, double first, double least) = 0;
     // The last step again, from the same state, with this duration.
     virtual StepFailure redo_step(double duration, double least) = 0;
 
-    // The last step: [0, current_time], and what is reached there.
+    // The last step: [0, current_time], and what is reached there (its t has no meaning).
     virtual double current_time() const = 0;
     virtual const State& current_state() = 0;
 

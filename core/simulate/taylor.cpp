@@ -69,7 +69,8 @@ void Taylor::evaluate(double duration) {
     std::copy_n(reached.data() + dof_, dof_, to_.v.data());
 }
 
-StepFailure Taylor::do_step(double longest, double, double least) {
+StepFailure Taylor::do_step(double time, double longest, double, double least) {
+    step_.time() = time;
     if (const StepFailure failure = expand(longest); failure != StepFailure::none) return failure;
     const double step = std::min(longest, motion_->order.natural_step(step_));
     if (!(step > least)) return StepFailure::step_too_small;

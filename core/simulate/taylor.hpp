@@ -16,7 +16,7 @@ class Taylor : public Stepper {
     Taylor(const Model& model, const Run& run);
 
     void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
-    StepFailure do_step(double longest, double first, double least) override;
+    StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override;

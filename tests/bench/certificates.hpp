@@ -17,10 +17,10 @@ inline std::vector<Collision> collisions(const Trajectory& trajectory) {
     std::vector<Collision> result;
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::impact) continue;
-        const State before{event.q, event.v_before};
+        const State before{event.q, event.v_before, event.t};
         const Contact contact = surface.at(before);
         const auto kind = trajectory.run.options.truncation.reinitialization;
-        result.push_back({event.t, before, -contact.hdot, reinitialize(contact, before.v, Reinitialization::kinetic),
+        result.push_back({before, -contact.hdot, reinitialize(contact, before.v, Reinitialization::kinetic),
                           reinitialize(contact, before.v, kind)});
     }
     return result;

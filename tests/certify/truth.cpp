@@ -83,8 +83,7 @@ std::optional<State> Trials::zeno_equilibrium(const Run& run) {
 void Trials::certify(Trial& trial, const State& before) {
     const Contact contact = ContactKinematics(*model_, trial.run).at(before);
     const auto collision = [&](Reinitialization kind) {
-        return Collision{0.0, before, std::abs(contact.hdot),
-                         reinitialize(contact, before.v, Reinitialization::kinetic),
+        return Collision{before, std::abs(contact.hdot), reinitialize(contact, before.v, Reinitialization::kinetic),
                          reinitialize(contact, before.v, kind)};
     };
     trial.kinetic.collision = collision(Reinitialization::kinetic);

@@ -97,7 +97,7 @@ double order(const std::string& system, Reinitialization kind, double later, dou
     ContactKinematics surface(*model, run);
     double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
     for (const Event& event : test::events_of(truth, Event::Kind::impact)) {
-        const State before{event.q, event.v_before};
+        const State before{event.q, event.v_before, event.t};
         const Contact contact = surface.at(before);
         if (event.impact_speed > 0.05 || event.impact_speed < least_speed) continue;
         auto cut = run;
@@ -199,7 +199,7 @@ struct Cuts {
             ++all;
             const Contact contact = surface.at({last.q, last.v_before});
             const Vector s = reinitialize(contact, last.v_before, Reinitialization::kinetic);
-            const Collision collision{last.t, {last.q, last.v_before}, -contact.hdot, s, s};
+            const Collision collision{{last.q, last.v_before, last.t}, -contact.hdot, s, s};
             if (truncation_conditions(*trajectory.model, trajectory.run)->certify(collision)) ++late;
         }
     }

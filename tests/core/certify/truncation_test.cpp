@@ -118,10 +118,10 @@ std::vector<Cut> cuts_of(const std::string& system) {
     std::vector<Cut> cuts;
     for (const Event& event : trajectory.events) {
         if (event.t >= zeno.t || event.kind != Event::Kind::impact) break;
-        const State before{event.q, event.v_before};
+        const State before{event.q, event.v_before, event.t};
         const Contact contact = surface.at(before);
         const Vector s = reinitialize(contact, before.v, Reinitialization::kinetic);
-        const auto c = conditions->prove_any({event.t, before, -contact.hdot, s, s});
+        const auto c = conditions->prove_any({before, -contact.hdot, s, s});
         if (!c) continue;
         EXPECT_LE(c->zeno_low, zeno.t);
         EXPECT_GE(c->zeno_high, zeno.t);
@@ -161,7 +161,7 @@ TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
     auto run = model->default_run();
     run.parameters[0] = 1e-290;
     const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
-    const Collision collision{0.0, {q, v}, 1e-295, s, s};
+    const Collision collision{{q, v}, 1e-295, s, s};
     const auto conditions = truncation_conditions(*model, run);
     EXPECT_FALSE(conditions->certify(collision));
     const auto widest = conditions->prove_any(collision);

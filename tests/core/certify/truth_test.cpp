@@ -288,11 +288,11 @@ TEST(Truth, EveryLieIsCaught) {
 // conditions prove of it.
 struct FloorCollision {
     FloorCollision(const Plane& plane, double w) : model(model_of(plane)), run(model->default_run()) {
-        state = {run.q, run.v};
+        state = run.start();
         state.v[1] = -w;
         Vector s = run.v;
         s[1] = 0.0;
-        certificate = truncation_conditions(*model, run)->prove_any({0.0, state, w, s, s});
+        certificate = truncation_conditions(*model, run)->prove_any({state, w, s, s});
     }
     std::shared_ptr<const Model> model;
     Run run;

@@ -182,7 +182,7 @@ TEST_P(Grounds, GiveTheSameCertificate) {
         const Trajectory trajectory = simulate(model, run);
         const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
         const Event::Truncation& cut = *zeno.truncation;
-        Collision collision{cut.t, {cut.q, cut.v_before}, cut.impact_speed, cut.v, cut.v};
+        Collision collision{{cut.q, cut.v_before, cut.t}, cut.impact_speed, cut.v, cut.v};
         const auto asked = [&, &system = *model, &asking = run] {
             const auto conditions = truncation_conditions(system, asking);
             return std::pair(conditions->certify(collision), conditions->prove_any(collision));
@@ -210,7 +210,7 @@ TEST_P(Grounds, HoldCertificatesOfDenormalSize) {
     auto run = model->default_run();
     run.parameters[0] = 1e-290;
     const Vector q = Vector::Constant(1, 0.0), v = Vector::Constant(1, -1e-295), s = Vector::Constant(1, 0.0);
-    const Collision collision{0.0, {q, v}, 1e-295, s, s};
+    const Collision collision{{q, v}, 1e-295, s, s};
     const auto usual = truncation_conditions(*model, run)->prove_any(collision);
     const Computing computing(GetParam());
     const auto now = truncation_conditions(*model, run)->prove_any(collision);

@@ -32,7 +32,7 @@ class Told : public testing::Test {
         StepResult result;
         result.end = end;
         result.steps = result.evaluations = 1;
-        result.t = t;
+        state_.t = t;
         result.duration = t;
         result.state = &state_;
         result.gap = state_.q[0];
@@ -52,7 +52,7 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->held.empty());
-    EXPECT_EQ(request->t, 0.0);
+    EXPECT_EQ(request->state.t, 0.0);
     EXPECT_EQ(request->until, 10.0);
     EXPECT_EQ(request->start.multiplicity, 1);
     EXPECT_EQ(request->start.gap.hdot, 1.0);
@@ -63,7 +63,7 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     execution.accept(at(0.5));
     request = execution.next();
     ASSERT_NE(request, nullptr);
-    EXPECT_EQ(request->t, 0.5);
+    EXPECT_EQ(request->state.t, 0.5);
     EXPECT_EQ(request->state.q[0], 0.375);
     EXPECT_EQ(request->start.gap.h, 0.375);
     EXPECT_EQ(request->start.multiplicity, 0);
@@ -80,7 +80,7 @@ TEST_F(Told, BouncesOrCompletes) {
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->held.empty());
     EXPECT_TRUE(request->begins);
-    EXPECT_EQ(request->t, 2.0);
+    EXPECT_EQ(request->state.t, 2.0);
     EXPECT_EQ(request->state.v[0], 0.5);
     EXPECT_EQ(request->start.gap.hdot, 0.5);
     EXPECT_EQ(request->start.multiplicity, 1);
@@ -106,7 +106,7 @@ TEST_F(Told, BouncesOrCompletes) {
     EXPECT_EQ(request->held, ContactSet::of(0));
     EXPECT_TRUE(request->begins);
     EXPECT_EQ(request->until, 10.0);
-    result.t = 10.0;
+    state_.t = 10.0;
     completing.accept(result);
     EXPECT_EQ(completing.next(), nullptr);
     EXPECT_EQ(completing.next(), nullptr);
@@ -145,7 +145,7 @@ TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->exactly && request->begins);
-    EXPECT_EQ(request->t, 0.0);
+    EXPECT_EQ(request->state.t, 0.0);
     EXPECT_EQ(request->state.q[0], 0.0);
     EXPECT_EQ(request->start.multiplicity, 1);
     EXPECT_EQ(request->most, run_.options.max_steps);
@@ -176,7 +176,7 @@ TEST_F(Told, AsksExactlyForOneStretchOnly) {
     request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->exactly);
-    EXPECT_EQ(request->t, 2.0);
+    EXPECT_EQ(request->state.t, 2.0);
 }
 
 TEST_F(Told, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
@@ -197,12 +197,12 @@ TEST_F(Told, LandsWithoutAStep) {
     execution.accept(at(1.999999));
     ASSERT_NE(execution.next(), nullptr);
     StepResult result = at(2.0, End::impact);
-    result.t = 1.999999;
+    state_.t = 1.999999;
     result.steps = 0;
     execution.accept(result);
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
-    EXPECT_EQ(request->t, 1.999999);
+    EXPECT_EQ(request->state.t, 1.999999);
     EXPECT_EQ(request->state.q[0], 0.0);
     EXPECT_EQ(request->state.v[0], 0.5);
     EXPECT_EQ(request->most, run_.options.max_steps - 1);
@@ -295,11 +295,11 @@ TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
         if (released) {
             EXPECT_TRUE(request->held.empty());
         }
-        const double t = request->t, until = request->until;
+        const double t = request->state.t, until = request->until;
         const ContactSet held = request->held;
         const StepResult& result = stepper.step(*request);
-        EXPECT_GT(result.t, t);
-        EXPECT_LE(result.t, until);
+        EXPECT_GT(result.state->t, t);
+        EXPECT_LE(result.state->t, until);
         event = result.end != End::no_event;
         released = result.end == End::force_vanishes;
         EXPECT_TRUE(!event || result.end == (held.empty() ? End::impact : End::force_vanishes));
