@@ -31,12 +31,13 @@ PaperConditions::PaperConditions(const Model& model, const Run& run, const Groun
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
+      autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       point_(model.evaluator(model.definition7_terms(), run.parameters)),
       trend_(model.evaluator(model.bouncing().trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
+             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), model.bouncing().variables),
       box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
       contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
       rates_(model.evaluator<Interval>(model.bouncing().rates, run.parameters)) {}
@@ -58,7 +59,7 @@ bool PaperConditions::fails_at_point(const Collision& collision) {
 }
 
 std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collision& collision, double eps_q,
-                                                                    double eps_v) {
+                                                                    double eps_v, double eps_t) {
     std::vector<Interval> box, n, f, g, v;
     for (std::size_t i = 0; i < dof_; ++i)
         box.push_back(around(collision.before.q[static_cast<Eigen::Index>(i)], eps_q));
@@ -68,8 +69,12 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
         v.emplace_back(collision.restart[k]);
     }
     for (std::size_t i = 0; i < 2 * dof_; ++i) box_.input(i) = box[i];
+    const Interval start = autonomous_ ? Interval(collision.before.t) : instant_of(collision, contact_);
+    const Interval while_bouncing(start.lo(), (Interval(start.hi()) + Interval(eps_t)).hi());
+    box_.clock() = while_bouncing;
     box_.run();
     set_state(contact_, collision.before);
+    contact_.clock() = start;
     contact_.run();
     for (std::size_t i = 0; i < dof_; ++i) {
         n.push_back(box_.impulse_direction(i));
@@ -77,6 +82,7 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
         g.push_back(contact_.gradient(i));
     }
     box.emplace_back(0.0);  // sigma: the box holds velocities themselves
+    if (!autonomous_) box.push_back(while_bouncing);
     const Interval a = -hddot_.over(box), eta = norm(n), zeta = norm(f), one(1.0), two(2.0);
     if (!certainly_positive(a) || !eta.is_defined() || !zeta.is_defined()) return std::nullopt;
     Bounds b{Interval(a.lo()),
@@ -106,21 +112,22 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
 
 // Meets the least neighbourhood that satisfies its own conditions from below; see the header.
 std::optional<Certificate> PaperConditions::prove(const Collision& collision, const Truncation& tolerances) {
-    double q = 0.0, v = 0.0;
+    double q = 0.0, v = 0.0, t = 0.0;
     for (int round = 0; round < 40; ++round) {
-        const auto bounds = bounds_over(collision, q, v);
+        const auto bounds = bounds_over(collision, q, v, t);
         if (!bounds) return std::nullopt;  // nor over any larger one
         const double needed_q = (bounds->position * bounds->w).hi(), needed_v = (bounds->velocity * bounds->w).hi();
-        if (!((bounds->time * bounds->w).hi() < tolerances.eps_t) || !(needed_q < tolerances.eps_q) ||
-            !(needed_v < tolerances.eps_v))
+        const double needed_t = (bounds->time * bounds->w).hi();
+        if (!(needed_t < tolerances.eps_t) || !(needed_q < tolerances.eps_q) || !(needed_v < tolerances.eps_v))
             return std::nullopt;
-        if (needed_q < q && needed_v < v) return certificate_of(collision, *bounds);
+        if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) return certificate_of(collision, *bounds);
         // A little more than was asked for, so that the growth comes to an end.
         const auto more = [](double needed, double eps) {
             return std::min(eps, 1.02 * needed + std::numeric_limits<double>::min());
         };
         q = std::max(q, more(needed_q, tolerances.eps_q));
         v = std::max(v, more(needed_v, tolerances.eps_v));
+        t = std::max(t, more(needed_t, tolerances.eps_t));
     }
     return std::nullopt;
 }
@@ -133,6 +140,7 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
         rates_.input(dof_ + i) = b.box[dof_ + i] - b.n[i] * speeds;
     }
     rates_.input(sigma_) = speeds;
+    if (!autonomous_) rates_.clock() = b.box.back();
     rates_.run();
     std::vector<Interval> distance;
     for (std::size_t i = 0; i < dof_; ++i) {

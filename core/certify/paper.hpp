@@ -19,7 +19,8 @@
 //
 // Which eps' <= eps? A smaller V makes every bound smaller (inclusion is monotone), so among all V that satisfy their
 // own conditions there is a least one, and it is met from below: V grows to what its own bounds ask for, until they
-// stand still inside it. Where a bound exceeds eps on the way, no eps' <= eps can succeed; where eps' = eps succeeds,
+// stand still inside it. So does the time, where anything depends on it: all maxima are then over V and the time from
+// tau_k to eps_t' later. Where a bound exceeds eps on the way, no eps' <= eps can succeed; where eps' = eps succeeds,
 // so does the least V, with smaller bounds.
 #pragma once
 
@@ -42,12 +43,13 @@ class PaperConditions : public TruncationConditions {
  private:
     struct Bounds;
     std::optional<Certificate> prove(const Collision& collision, const Truncation& tolerances);
-    std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v);
+    std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v, double eps_t);
     Certificate certificate_of(const Collision& collision, const Bounds& bounds);
     Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& wait);
 
     std::size_t dof_;
     std::uint32_t sigma_;
+    bool autonomous_;
     Truncation truncation_;
     Interval e_;
     Definition7Terms<Evaluator<double>> point_;

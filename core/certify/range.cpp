@@ -67,11 +67,4 @@ Interval Range::over(const std::vector<Interval>& box) {
     return {std::max(plain.lo(), least.lo()), std::min(plain.hi(), greatest.hi())};
 }
 
-std::vector<std::uint32_t> bouncing_slots(const Layout& layout) {
-    std::vector<std::uint32_t> slots;
-    for (std::uint32_t i = 0; i < 2 * layout.dof; ++i) slots.push_back(i);
-    slots.push_back(layout.sigma());
-    return slots;
-}
-
 }  // namespace achilles

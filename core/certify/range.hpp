@@ -39,7 +39,4 @@ class Range {
     Interval at_centre_;                                     // the value there
 };
 
-// The inputs that the programs of model/bouncing.hpp vary with: q, s, sigma.
-std::vector<std::uint32_t> bouncing_slots(const Layout& layout);
-
 }  // namespace achilles

@@ -45,10 +45,11 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Groun
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
+      autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
       e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
       hddot_(Range(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-                   model.evaluator<Interval>(model.bouncing().shadow, run.parameters), bouncing_slots(model.layout())),
+                   model.evaluator<Interval>(model.bouncing().shadow, run.parameters), model.bouncing().variables),
              dof_),
       contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
       trend_(model.evaluator(model.bouncing().trend, run.parameters)),
@@ -59,9 +60,11 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Groun
            std::vector<double>(dof_),
            std::vector<Interval>(dof_),
            {},
-           {}},
+           {},
+           {},
+           0.0},
       shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
-      variables_(2 * dof_ + 1),
+      variables_(model.bouncing().variables.size()),
       need_q_(dof_),
       need_s_(dof_),
       rising_(2 * dof_) {}
@@ -103,6 +106,7 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
         variables_[dof_ + i] = widened(box_.s0[i], box_.s_radius[i]);
     }
     variables_[2 * dof_] = box_.sigma;
+    if (!autonomous_) variables_.back() = {box_.t0.lo(), (Interval(box_.t0.hi()) + Interval(box_.duration)).hi()};
     const Interval a = -hddot_.over(variables_);
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
@@ -119,6 +123,7 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
         variables_[dof_ + i] = box_.s0[i];
     }
     variables_[2 * dof_] = Interval(0.0);
+    if (!autonomous_) variables_.back() = box_.t0;
     const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
@@ -131,7 +136,8 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
 // comparison motion where it starts from v*? If not, X grows to what was asked for, and a fifth more.
 bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
-    bool inside = true;
+    bool inside = autonomous_ || T.hi() < box_.duration;
+    if (!inside) box_.duration = inflated(T.hi());
     for (std::size_t i = 0; i < dof_; ++i) {
         const Interval &A = hddot_.A(i), &n = hddot_.n(i), &B = hddot_.B(i), &D = hddot_.D(i);
         need_q_[i] = times(variables_[dof_ + i] + n * box_.sigma, T);
@@ -178,7 +184,9 @@ void SharpConditions::find_shadow(const Time& time) {
 
 // The box that the collision stands for.
 void SharpConditions::begin_box(const Collision& collision) {
+    if (!autonomous_) box_.t0 = instant_of(collision, contact_);
     set_state(contact_, collision.before);
+    if (!autonomous_) contact_.clock() = box_.t0;
     contact_.run();
     box_.w = abs(contact_.hdot());
     box_.sigma = Interval(-box_.w.hi(), box_.w.hi());
@@ -199,6 +207,7 @@ void SharpConditions::begin_box(const Collision& collision) {
 void SharpConditions::predict_radii(const Collision& collision, const Trend& trend) {
     const double e = mid(e_), w = collision.speed;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), h = e * w * e * w / (2.0 * trend.a);
+    box_.duration = inflated(T);
     set_state(guess_, collision.with(collision.tangential));
     for (const double sigma : {w, -w}) {
         guess_.input(sigma_) = sigma;

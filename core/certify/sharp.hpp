@@ -8,7 +8,8 @@
 //            first with a_min, then with a_max. The interval is cut with the one of third order.
 //
 // inclusion  rho_q = max |v| T and rho_s = max |s'| T inside X's radii prove that X contains the motion until tau_inf:
-//            at a first exit the time passed would be below T, so (q, s) would be strictly inside.
+//            at a first exit the time passed would be below T, so (q, s) would be strictly inside. Where anything
+//            depends on the time, X is a box in (q, s, t): t from tau_k, as far as that is known, to T and more later.
 //
 // Zeno       |q_inf - q*| <= |max |v| T|,   |v_inf - s| <= |max |s'| T|
 //
@@ -51,12 +52,14 @@ class SharpConditions : public TruncationConditions {
 
  private:
     struct Time;
-    // X: a box in (q, s), and sigma. The radii are those beyond the rounding box of the collision.
+    // X: a box in (q, s), sigma and t. The radii are those beyond the rounding box of the collision.
     struct Box {
         std::vector<Interval> q0, s0;  // what the computed state stands for
         std::vector<double> q_radius, s_radius;
         std::vector<Interval> d;  // v* - s where the restart is v*
         Interval w, sigma;
+        Interval t0;            // tau_k
+        double duration = 0.0;  // s
     };
     struct Shadow {
         std::vector<Interval> E_q, E_s;  // at tau_inf
@@ -74,6 +77,7 @@ class SharpConditions : public TruncationConditions {
 
     std::size_t dof_;
     std::uint32_t sigma_;
+    bool autonomous_;
     Truncation truncation_;
     Interval e_;
     ShadowTerms<Range> hddot_;
@@ -88,7 +92,7 @@ class SharpConditions : public TruncationConditions {
     // Of the proof that is tried; vectors, so that no other needs memory of its own.
     Box box_;
     Shadow shadow_;
-    std::vector<Interval> variables_;      // q, s, sigma over the box
+    std::vector<Interval> variables_;      // q, s, sigma, t over the box
     std::vector<double> need_q_, need_s_;  // radii that the last test of the box asked for
     std::vector<double> rising_;           // q', s' just before the impact
 };

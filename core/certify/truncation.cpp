@@ -15,6 +15,18 @@ std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, 
     return std::make_unique<SharpConditions>(model, run, ground);
 }
 
+Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact) {
+    const State& state = collision.before;
+    set_state(contact, state);
+    const auto around = [](double x) { return Interval(x) + Interval(-1.0, 1.0) * Interval(0x1p-53 * std::abs(x)); };
+    for (Eigen::Index i = 0; i < state.q.size(); ++i) contact.input(static_cast<std::size_t>(i)) = around(state.q[i]);
+    contact.clock() = around(state.t);
+    contact.run();
+    const double ulp = 0x1p-52 * std::abs(state.t);  // and that much at most
+    const Interval d = Interval(4.0 * rad(contact.h())) / Interval(collision.speed) + Interval(ulp);
+    return Interval(state.t) + Interval(-d.hi(), d.hi());
+}
+
 Interval norm(const std::vector<Interval>& x) {
     Interval sum(0.0);
     for (const Interval& entry : x) sum = sum + square(entry);

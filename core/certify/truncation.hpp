@@ -56,6 +56,10 @@ std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);
 
+// When a collision is: its time is known to what the gap's rounding and the resolution of time make of it at this speed,
+//     d = (4 err(h) + |hdot| ulp(t))/|hdot|     (theory.md 1.2)
+Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact);
+
 // How -hddot changes at a collision.
 Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision);
 

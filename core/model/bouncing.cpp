@@ -28,6 +28,12 @@ Expression product(const Row& a, const Row& b) {
     return sum;
 }
 
+Row at_velocity(const Row& x, const std::vector<std::uint32_t>& v, const Row& velocity) {
+    Row result;
+    for (const Expression e : x) result.push_back(substitute(e, v, velocity));
+    return result;
+}
+
 Row sum(const Row& a, const Row& b) {
     Row result;
     for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
@@ -48,16 +54,24 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     }
     const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
     const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.impulse_direction);
+    Row velocity;
+    for (std::size_t i = 0; i < count; ++i) velocity.push_back(s[i] + n[i] * sigma);
     const Row slope = along(A, v, n);  // df_c/dv n
-    const Row bend = along(slope, v, n), turn = along(n, q, s), twist = along(n, q, n);
-    Row velocity, B, D, rate;
+    const Row turn = along(n, q, s), twist = along(n, q, n), n_t = derivative(n, layout.t());
+    Row bend = along(slope, v, n), B, D, rate;
+    if (!equations.quadratic_in_rates) bend = at_velocity(bend, v, velocity);
     for (std::size_t i = 0; i < count; ++i) {
-        velocity.push_back(s[i] + n[i] * sigma);
-        B.push_back(slope[i] - turn[i]);
+        B.push_back(slope[i] - turn[i] - n_t[i]);
         D.push_back(half * bend[i] - twist[i]);
         rate.push_back(A[i] + B[i] * sigma + D[i] * power(sigma, 2));
     }
-    const Row ndot = along(n, q, velocity), Bdot = sum(along(B, q, velocity), along(B, v, rate));
+    if (!equations.quadratic_in_rates) {
+        const Row acceleration = at_velocity(A, v, velocity);
+        for (std::size_t i = 0; i < count; ++i)
+            rate[i] = acceleration[i] - (turn[i] + twist[i] * sigma + n_t[i]) * sigma;
+    }
+    const Row ndot = sum(along(n, q, velocity), n_t);
+    const Row Bdot = sum(sum(along(B, q, velocity), along(B, v, rate)), derivative(B, layout.t()));
     const auto row_by_row = [&](const std::vector<std::uint32_t>& variables) {
         Row slopes;
         for (const Row& row : jacobian(A, variables)) slopes.insert(slopes.end(), row.begin(), row.end());
@@ -66,16 +80,20 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
     const Row dA_dq = row_by_row(q), dA_ds = row_by_row(v);
     const Expression hddot_of_v = graph.adopt(equations.hddot), hddot = substitute(hddot_of_v, v, velocity);
     const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
-    const Expression by_sigma = product(by_v, n), rate_along = product(by_q, s) + product(by_v, A);
+    const Expression by_sigma = product(by_v, n),
+                     rate_along = product(by_q, s) + product(by_v, A) + derivative(hddot_of_v, layout.t());
     const Row drift{rate_along, product(by_q, n) + product(by_v, B), product(by_v, D)};
     std::vector<std::uint32_t> variables = q;
     variables.insert(variables.end(), v.begin(), v.end());
     variables.push_back(layout.sigma());
+    if (!equations.autonomous) variables.push_back(layout.t());
 
     const Slots slots = layout.slots();
     const Row slope_of_hddot = gradient(hddot, variables),
               shadow = ShadowTerms<NoOutputs>::list(A, n, B, D, ndot, Bdot, dA_dq, dA_ds, drift);
-    return {Program(Row{hddot}, slots), Program(slope_of_hddot, slots),
+    return {variables,
+            Program(Row{hddot}, slots),
+            Program(slope_of_hddot, slots),
             ProgramOf<BouncingRates>::of(slots, velocity, rate),
             ProgramOf<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
             Program(joined({slope_of_hddot, shadow}), slots)};

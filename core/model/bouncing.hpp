@@ -1,9 +1,13 @@
 // The bouncing in coordinates that impacts do not disturb: (q, s) with s the tangential velocity (theory.md 5.1).
 //
-//     q' = s + n sigma,   s' = A(q,s) + B(q,s) sigma + D(q,s) sigma^2,   sigma = hdot
+//     q' = s + n sigma,   s' = F(q,s,sigma,t) = A + B sigma + D sigma^2,   sigma = hdot
 //
-// A is the constrained acceleration f_c(q, s). Since f_c is a polynomial of degree 2 in the velocity,
-//     B = df_c/dv n - dn/dq s,     D = 1/2 n' (d2f_c/dv2) n - dn/dq n      (v at s)
+// A is the constrained acceleration f_c(q, s, t), and
+//     F = f_c(q, s + n sigma, t) - (dn/dq (s + n sigma) + n_t) sigma
+//     B = df_c/dv n - dn/dq s - n_t,     D = 1/2 n' (d2f_c/dv2) n - dn/dq n
+// with v at s in B. Where f_c is of degree 2 in the velocity so it is in D, which is the same for all sigma. Where a
+// force makes it another function (theory.md 1.2), v is s + n sigma in D, so that D over all sigma' between 0 and sigma
+// holds what Lagrange's remainder needs.
 // In every program here the slots of v hold s, and the slot sigma holds hdot.
 #pragma once
 
@@ -35,7 +39,8 @@ class BouncingRates : public Terms<Base> {
 };
 
 // What bounds the shadow of a bouncing, and how hddot(q, s) moves along it (theory-truncation.md 4):
-//     d/dt = P + Phi sigma + Xi sigma^2,   P = hddot_q s + hddot_s A,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
+//     d/dt = P + Phi sigma + Xi sigma^2
+//     P = hddot_q s + hddot_s A + hddot_t,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
 template <class Base>
 class ShadowTerms : public Terms<Base> {
  public:
@@ -62,8 +67,10 @@ class ShadowTerms : public Terms<Base> {
 };
 
 struct Bouncing {
+    // What the programs vary with: q, s, sigma, and t where anything depends on it.
+    std::vector<std::uint32_t> variables;
     Program hddot;                   // hddot(q, s + n sigma)
-    Program gradient;                // its derivatives with respect to q (n), s (n), sigma
+    Program gradient;                // its derivatives with respect to the variables
     ProgramOf<BouncingRates> rates;  // of q and s
     ProgramOf<TrendTerms> trend;
     Program shadow;  // the gradient again (it shares most of its work with what follows), then ShadowTerms

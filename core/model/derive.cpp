@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
+
+#include "model/rate_polynomial.hpp"
 
 namespace achilles {
 
@@ -71,6 +75,15 @@ Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std
     return b;
 }
 
+// Of degree 2 or less in these symbols, as far as a polynomial can be told.
+bool is_quadratic(Expression expression, const std::vector<std::uint32_t>& slots) {
+    Expression offender;
+    const auto expanded = expand_in_rates(expression, slots, offender);
+    if (!expanded) return false;
+    return std::all_of(expanded->begin(), expanded->end(),
+                       [](const auto& term) { return std::accumulate(term.first.begin(), term.first.end(), 0) <= 2; });
+}
+
 // A quotient whose divisor is never zero: a factor that it shares with the dividend goes.
 Expression cancelled(Expression quotient, Graph& graph) {
     const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
@@ -97,14 +110,18 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
         v_slots.push_back(layout.v(i));
         v.push_back(graph.symbol(layout.v(i)));
     }
+    const std::uint32_t t = layout.t();
     const Factorisation mass(e.M, n, graph);
     e.pivots = mass.pivots();
     e.bias = bias(e.M, e.potential, v, q_slots, graph);
-    e.f = mass.solve(e.bias);
+    Row against(n);  // b - Q
+    for (std::size_t i = 0; i < n; ++i) against[i] = e.bias[i] - e.Q[i];
+    e.f = mass.solve(against);
     for (Expression& f : e.f) f = -f;
 
     e.g = gradient(e.gap, q_slots);
-    e.hdot = dot(e.g, v, graph);
+    e.gap_t = derivative(e.gap, t);
+    e.hdot = dot(e.g, v, graph) + e.gap_t;
     Expression curvature = graph.number(0);  // v'Hv
     const std::vector<Row> H = jacobian(e.g, q_slots);
     for (std::size_t i = 0; i < n; ++i) {
@@ -117,7 +134,8 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
     for (const Expression u : impulse) e.impulse_direction.push_back(u.is_zero() ? u : cancelled(u / e.W, graph));
 
-    e.hddot = curvature + dot(e.g, e.f, graph);
+    const Expression turning = graph.number(2) * dot(derivative(e.g, t), v, graph) + derivative(e.gap_t, t);
+    e.hddot = curvature + turning + dot(e.g, e.f, graph);
     e.lambda = -(e.hddot / e.W);
     for (std::size_t i = 0; i < n; ++i) {
         e.f_c.push_back(e.f[i] - e.impulse_direction[i] * e.hddot);
@@ -125,7 +143,12 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
         e.s.push_back(v[i] - e.impulse_direction[i] * e.hdot);
     }
     e.energy = e.kinetic + e.potential;
-    e.jerk = dot(gradient(e.hddot, q_slots), v, graph) + dot(gradient(e.hddot, v_slots), e.f_c, graph);
+    e.jerk = dot(gradient(e.hddot, q_slots), v, graph) + dot(gradient(e.hddot, v_slots), e.f_c, graph) +
+             derivative(e.hddot, t);
+    e.power = dot(v, e.Q, graph) + derivative(e.potential, t);
+    const auto is_steady = [&](Expression x) { return !depends_on(x, {&t, 1}); };
+    e.autonomous = is_steady(e.gap) && is_steady(e.potential) && std::all_of(e.Q.begin(), e.Q.end(), is_steady);
+    for (const Expression force : e.Q) e.quadratic_in_rates = e.quadratic_in_rates && is_quadratic(force, v_slots);
 }
 
 }  // namespace achilles

@@ -1,7 +1,6 @@
 #include "model/edges.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -45,9 +44,10 @@ std::vector<Edge> edges_of(Expression function, const char* place) {
 std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
     std::vector<std::uint32_t> moving;
     for (std::uint32_t slot = 0; slot < 2 * layout.dof; ++slot) moving.push_back(slot);
-    const std::array<std::pair<Expression, const char*>, 3> written{{{equations.kinetic, "the kinetic energy"},
-                                                                     {equations.potential, "the potential"},
-                                                                     {equations.gap, "the gap"}}};
+    moving.push_back(layout.t());
+    std::vector<std::pair<Expression, const char*>> written{
+        {equations.kinetic, "the kinetic energy"}, {equations.potential, "the potential"}, {equations.gap, "the gap"}};
+    for (const Expression force : equations.Q) written.emplace_back(force, "the forces");
     std::vector<Edge> edges;
     for (const auto& [whole, place] : written) {
         const std::vector<bool> needed = reachable(std::span(&whole, 1));

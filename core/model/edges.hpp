@@ -25,14 +25,14 @@ namespace achilles {
 struct Edge {
     enum class Kind { edge, exponential, hyperbolic };
     static constexpr double growth = 4.0;
-    Expression function;  // as it stands in T, V or h
+    Expression function;  // as it stands in T, V, h or a force
     Expression argument;
     Expression event_function;  // d, above zero where the function is smooth; or u
     const char* place;          // "the gap", for messages
     Kind kind;
 };
 
-// Those of T, V and h whose argument moves; derivatives have no others. Each distance once. Makes nodes in the graph of
+// Those of T, V, h and the forces whose argument moves; derivatives have no others. Each distance once. Makes nodes in the graph of
 // the equations.
 std::vector<Edge> edges_of(const Equations& equations, const Layout& layout);
 

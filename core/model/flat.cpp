@@ -4,7 +4,7 @@
 
 namespace achilles {
 
-bool is_flat(const Model& model, std::span<const double> parameters, const Vector& q) {
+bool is_flat(const Model& model, std::span<const double> parameters, const State& state) {
     const Layout& layout = model.layout();
     const Expression gap = model.equations().gap;
     Graph graph(gap.graph());  // a copy: a model is shared between threads and never changes
@@ -15,7 +15,7 @@ bool is_flat(const Model& model, std::span<const double> parameters, const Vecto
     outputs.push_back(graph.adopt(gap));
     const Program program(outputs, layout.slots());
     auto value = model.evaluator(program, parameters);
-    set_state(value, State{q, Vector::Zero(q.size())});
+    set_state(value, state);
     value.run();
     double slope = 0.0, bend = 0.0;
     for (std::size_t i = 0; i + 1 < outputs.size(); ++i)

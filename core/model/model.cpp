@@ -50,10 +50,11 @@ void Model::compile() {
     normal_acceleration_ = program(e.hddot);
     force_ = program(e.lambda);
     restitution_ = program(e.restitution);
-    contact_terms_ = ProgramOf<ContactTerms>::of(slots, e.gap, e.hdot, e.impulse_direction, e.g, e.W);
+    contact_terms_ = ProgramOf<ContactTerms>::of(slots, e.gap, e.hdot, e.impulse_direction, e.g, e.W, e.gap_t);
     release_terms_ = ProgramOf<ReleaseTerms>::of(slots, e.hddot, e.jerk);
     definition7_terms_ = ProgramOf<Definition7Terms>::of(slots, e.hddot, e.impulse_direction, e.f);
     energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
+    power_ = ProgramOf<PowerTerms>::of(slots, e.power, e.lambda * e.gap_t);
     start_ = ProgramOf<StartTerms>::of(slots, e.f, e.pivots, e.hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;

@@ -1,8 +1,8 @@
 // What the machine evaluates: the equations of motion of one system, derived symbolically once (theory.md 1).
 //
-//     M(q) a + b(q,v) = 0                      free motion,  f = -M^-1 b
+//     M(q) a + b(q,v,t) = Q(q,v,t)             free motion,  f = M^-1 (Q - b)
 //     g = dh,  W = g M^-1 g',  n = M^-1 g'/W    normal direction, g n = 1
-//     hddot = v'Hv + g f                        normal acceleration of the free motion
+//     hdot = g v + h_t,  hddot                  rate of the gap, normal acceleration of the free motion
 //     lambda = -hddot/W,  f_c = f - n hddot     contact force, constrained acceleration
 //     s = v - n hdot                            tangential velocity: impacts do not change it
 //
@@ -55,6 +55,7 @@ class Model {
     const ProgramOf<ReleaseTerms>& release_terms() const { return release_terms_; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return definition7_terms_; }
     const ProgramOf<EnergyTerms>& energy() const { return energy_; }
+    const ProgramOf<PowerTerms>& power() const { return power_; }
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }
@@ -131,6 +132,7 @@ class Model {
     ProgramOf<ReleaseTerms> release_terms_;
     ProgramOf<Definition7Terms> definition7_terms_;
     ProgramOf<EnergyTerms> energy_;
+    ProgramOf<PowerTerms> power_;
     ProgramOf<StartTerms> start_;
 };
 

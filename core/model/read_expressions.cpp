@@ -265,6 +265,8 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
     names[layout.contact()] = "contact";
     names[layout.sigma()] = "sigma";
     names[layout.own()] = "own";
+    names[layout.work()] = "work";
+    names[layout.loss()] = "loss";
     return names;
 }
 
@@ -281,6 +283,10 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     scope.allowed.emplace("gap''", (graph.number(1) - contact) * graph.adopt(equations.hddot));
     scope.allowed.emplace("lambda", contact * graph.adopt(equations.lambda));
     scope.allowed.emplace("energy", graph.adopt(equations.energy));
+    scope.allowed.emplace(
+        "power", graph.adopt(equations.power) - contact * graph.adopt(equations.lambda) * graph.adopt(equations.gap_t));
+    scope.allowed.emplace("work", graph.symbol(layout.work()));
+    scope.allowed.emplace("loss", graph.symbol(layout.loss()));
     return scope;
 }
 
@@ -304,6 +310,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
     equations.potential = potential.value_or(nothing);
     equations.gap = gap.value_or(nothing);
     equations.restitution = restitution.value_or(nothing);
+    equations.Q.assign(layout.dof, nothing);
     if (kinetic && names.complete)
         attempt_within_limits(mistakes, system.kinetic, [&] { read_mass_matrix(system, layout, parts, equations); });
     if (gap && names.complete)
@@ -337,7 +344,8 @@ void check_expressions(const SystemDescription& system, Names names, Mistakes& m
     Graph graph;
     Equations equations;
     read_equations(system, layout, graph, names, equations, mistakes);
-    equations.hdot = equations.hddot = equations.lambda = equations.energy = graph.symbol(layout.t());  // any value
+    equations.hdot = equations.hddot = equations.lambda = equations.energy = equations.power = equations.gap_t =
+        graph.symbol(layout.t());  // any value
     Reader reader(graph, names, mistakes);
     attempt_within_limits(mistakes, system.kinetic, [&] { read_pictures(system, layout, graph, equations, reader); });
 }

@@ -100,7 +100,7 @@ void Model::check_gap(const Run& run) const {
     double slope = 0.0;
     for (std::size_t i = 0; i < layout_.dof; ++i) slope += contact.gradient(i) * contact.gradient(i);
     constexpr double steep = 1e-6;  // with it a gap is not flat where it is 0 to within rounding; the rest is asked
-    if (slope < steep && is_flat(*this, run.parameters, run.q))
+    if (slope < steep && is_flat(*this, run.parameters, start))
         throw Mistake{description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined",
                       flat_hint};
 }

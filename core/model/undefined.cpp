@@ -28,7 +28,13 @@ std::vector<Interval> box_of(const State& state) {
     std::vector<Interval> box;
     for (const double q : state.q) box.emplace_back(q);
     for (const double v : state.v) box.emplace_back(v);
+    box.emplace_back(state.t);
     return box;
+}
+
+void set_box(Evaluator<Interval>& enclosure, const std::vector<Interval>& box) {
+    for (std::size_t i = 0; i + 1 < box.size(); ++i) enclosure.input(i) = box[i];
+    enclosure.clock() = box.back();
 }
 
 std::optional<Undefined> first_undefined(const Model& model, std::span<const double> parameters,
@@ -41,7 +47,7 @@ std::optional<Undefined> first_undefined(const Model& model, std::span<const dou
         if (needed[id]) nodes.emplace_back(&graph, id);
     const Program program(nodes, model.layout().slots());
     auto enclosure = model.evaluator<Interval>(program, parameters);
-    for (std::size_t i = 0; i < box.size(); ++i) enclosure.input(i) = box[i];
+    set_box(enclosure, box);
     enclosure.run();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (enclosure.output(i).is_defined()) continue;

@@ -16,7 +16,7 @@ struct Undefined {
     double value;               // of the operand, at the state
 };
 
-// The first part of some expressions that has no value somewhere in a box of q and v: a function outside its domain, a
+// The first part of some expressions that has no value somewhere in a box of q, v and t: a function outside its domain, a
 // division by zero. Nothing where there is none.
 std::optional<Undefined> first_undefined(const Model& model, std::span<const double> parameters,
                                          std::span<const Expression> expressions, const State& state,
@@ -27,7 +27,8 @@ std::string shortened(const Model& model, Expression expression);
 // Its value at a state.
 double value_at(const Model& model, std::span<const double> parameters, Expression expression, const State& state);
 
-// A state as a box of q and v.
+// A state as a box of q, v and t.
 std::vector<Interval> box_of(const State& state);
+void set_box(Evaluator<Interval>& enclosure, const std::vector<Interval>& box);
 
 }  // namespace achilles

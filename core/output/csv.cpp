@@ -55,6 +55,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
         units.push_back(printable(unit_of(model.description(), columns.back())));
     }
     columns.insert(columns.end(), {"gap", "gap rate", "lambda", "energy", "j"});
+    if (model.equations().has_power()) columns.insert(columns.end(), {"work", "loss"});
     units.resize(columns.size());
     return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
 }
@@ -86,7 +87,12 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         append(text, contact.hdot());
         append(text, sample.contact ? force.output(0) : 0.0);
         append(text, energy.total());
-        text += fmt::format(",{}\n", sample.j);
+        text += fmt::format(",{}", sample.j);
+        if (model.equations().has_power()) {
+            append(text, sample.work);
+            append(text, sample.loss);
+        }
+        text += '\n';
     }
     return text;
 }

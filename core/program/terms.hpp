@@ -51,20 +51,21 @@ class ProgramOf : public Program {
     ProgramOf(const Expressions& outputs, Slots slots) : Program(outputs, slots) {}
 };
 
-// The gap h at (q, v): its rate, n = M^-1 g'/W, g = dh, and W = g M^-1 g' (theory.md 1).
+// The gap h at (q, v, t): its rate, n = M^-1 g'/W, g = dh, W = g M^-1 g', and dh/dt (theory.md 1).
 template <class Base>
 class ContactTerms : public Terms<Base> {
  public:
     using Terms<Base>::Terms;
     static Expressions list(Expression h, Expression hdot, const Expressions& impulse_direction,
-                            const Expressions& gradient, Expression W) {
-        return joined({{h, hdot}, impulse_direction, gradient, {W}});
+                            const Expressions& gradient, Expression W, Expression gap_t) {
+        return joined({{h, hdot}, impulse_direction, gradient, {W, gap_t}});
     }
     decltype(auto) h() const { return this->output(0); }
     decltype(auto) hdot() const { return this->output(1); }
     decltype(auto) impulse_direction(std::size_t i) const { return this->output(2 + i); }
     decltype(auto) gradient(std::size_t i) const { return this->output(2 + this->dof_ + i); }
     decltype(auto) W() const { return this->output(2 + 2 * this->dof_); }
+    decltype(auto) gap_t() const { return this->output(3 + 2 * this->dof_); }
 };
 
 // The acceleration of a motion, the pivots of M, hddot of the free motion at every contact, and of those that are held,
@@ -121,6 +122,17 @@ class EnergyTerms : public Terms<Base> {
     decltype(auto) total() const { return this->output(0); }
     decltype(auto) kinetic() const { return this->output(1); }
     decltype(auto) potential() const { return this->output(2); }
+};
+
+// What changes the energy along a motion: dE/dt where it is free, and what a moving contact that is held takes from it,
+// lambda dh/dt.
+template <class Base>
+class PowerTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression free, Expression taken) { return {free, taken}; }
+    decltype(auto) free() const { return this->output(0); }
+    decltype(auto) taken() const { return this->output(1); }
 };
 
 // What Def. 7 needs over a box: hddot, n and the free acceleration f.

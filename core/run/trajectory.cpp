@@ -1,6 +1,7 @@
 // Names of the kinds of things, and a trajectory as text for golden tests.
 #include "run/trajectory.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -10,6 +11,20 @@ namespace achilles {
 bool is_plastic_landing(const Event& event) {
     return event.kind == Event::Kind::zeno && event.truncation && event.truncation->t == event.t && event.certificate &&
            event.certificate->zeno_low == event.certificate->zeno_high;
+}
+
+State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::Index dof, double t) {
+    const double theta =
+        piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
+    State state{Vector::Zero(dof), Vector::Zero(dof), t};
+    for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
+        const double* block = coefficients.data() + piece.first + 2 * static_cast<std::size_t>(dof) * k;
+        for (Eigen::Index i = 0; i < dof; ++i) {
+            state.q[i] = state.q[i] * theta + block[i];
+            state.v[i] = state.v[i] * theta + block[dof + i];
+        }
+    }
+    return state;
 }
 
 State scale_of(const Trajectory& trajectory) {

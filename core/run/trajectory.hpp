@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,8 +25,12 @@ struct Piece {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    bool contact = false;  // on the surface: a sample is projected to h = 0, hdot = 0
+    bool contact = false;           // on the surface: a sample is projected to h = 0, hdot = 0
+    double work = 0.0, loss = 0.0;  // of the run, until it starts
 };
+
+// The state of a piece's polynomials at a time (s), clamped to the piece.
+State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::Index dof, double t);
 
 struct Phase {
     enum class Kind { hybrid, constrained };
@@ -78,10 +83,11 @@ struct Event {
     enum class Kind { impact, zeno, release };
     Kind kind = Kind::impact;
     double t = 0.0;
-    Vector q, v_before, v_after;  // equal velocities where nothing jumps (release, zeno)
-    double impact_speed = 0.0;    // impact: |hdot| before
-    int impacts = 0;              // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
-    struct Truncation {           // zeno: the impact where the bouncing was cut, and what restarted from it
+    Vector q, v_before, v_after;    // equal velocities where nothing jumps (release, zeno)
+    double impact_speed = 0.0;      // impact: |hdot| before
+    double work = 0.0, loss = 0.0;  // of the run until then, what happens here included
+    int impacts = 0;     // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
+    struct Truncation {  // zeno: the impact where the bouncing was cut, and what restarted from it
         double t = 0.0;
         Vector q, v_before, v;  // v: after re-initialisation
         double impact_speed = 0.0;
@@ -111,7 +117,7 @@ struct Outcome {
 
 struct Statistics {
     long steps = 0, evaluations = 0, impacts = 0;
-    double energy_drift = 0.0;  // largest relative change of the energy inside a smooth stretch, at step ends
+    double energy_drift = 0.0;  // largest relative change of energy less work inside a smooth stretch, at step ends
     double least_gap = 0.0;     // at step ends
     // Wall clock: the only values that may differ between two runs.
     double seconds = 0.0;
@@ -128,6 +134,9 @@ struct Trajectory {
     double end_time = 0.0;
     State end;
     Phase::Kind end_phase = Phase::Kind::hybrid;
+    // E(end) - E(start) = work - loss: what forces, a potential that changes with time and moving surfaces have done on the
+    // system, and what impacts have taken. The work is no number where the ends of steps alone were kept.
+    double work = 0.0, loss = 0.0;
     Outcome outcome;
     Statistics statistics;
 };

@@ -35,7 +35,7 @@ struct LaneStep {
     Eight h, hdot, error, rate_error, known;
     Eight duration;  // of the (last) step, s
     // The contact quantities where it ends, and what the rounding of q does to h.
-    Eight end_h, end_hdot, end_W, rounding;
+    Eight end_h, end_hdot, end_W, end_gap_t, rounding;
     // In contact: how many steps were made, of which only the last may not be plain; the least gap at their ends.
     Eight least_gap;
     long steps = 0;

@@ -84,7 +84,7 @@ class LaneStepperOver final : public LaneStepper {
         falls &= duration > least;
         step_.evaluate(duration, step.q_and_v.data());
         step.duration = duration;
-        land(step, none, falls);
+        land(step, duration, none, falls);
         step.t = select(none | falls, min(Number(step.t) + duration, step.until), step.t);
         say(step, none, falls);
     }
@@ -107,7 +107,7 @@ class LaneStepperOver final : public LaneStepper {
         const auto term = [&](int k) -> const Number& { return terms_[static_cast<std::size_t>(k)]; };
         plain &= step_.stays_negative(contact, span, term) & (span > shortest(step));
         step_.evaluate(span, step.q_and_v.data());
-        plain &= project(step);
+        plain &= project(step, span);
         for (std::size_t i = 0; i < dof_; ++i)
             step.q_and_v[dof_ + i] = Number(step.q_and_v[dof_ + i]) - Number(step.end_hdot) * step.impulse_direction[i];
         return plain;
@@ -210,12 +210,15 @@ class LaneStepperOver final : public LaneStepper {
 
     // ---- the surface ----
 
-    void look(LaneStep& step) {
+    // Where a step ends, after this time.
+    void look(LaneStep& step, const Number& span) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) contact_terms_.input(i) = step.q_and_v[i];
+        contact_terms_.clock() = Number(step.t) + span;
         contact_terms_.run();
         step.end_h = contact_terms_.h();
         step.end_hdot = contact_terms_.hdot();
         step.end_W = contact_terms_.W();
+        step.end_gap_t = contact_terms_.gap_t();
         Number sum = 0.0;
         for (std::size_t i = 0; i < dof_; ++i) {
             step.impulse_direction[i] = contact_terms_.impulse_direction(i);
@@ -226,13 +229,13 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     // The first two rounds of ContactKinematics::project(), which are enough where all is well: true there.
-    Mask project(LaneStep& step) {
-        look(step);
+    Mask project(LaneStep& step, const Number& span) {
+        look(step, span);
         const Mask regular = Number(step.end_W) > 0.0;
         const Mask far = ~(abs(Number(step.end_h)) <= 0.5 * Number(step.rounding));
         if (!any(far)) return regular;
         move_along_normal(step, far);
-        look(step);
+        look(step, span);
         return regular & (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
     }
 
@@ -243,14 +246,14 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     // Those that fall onto the surface; the others stay where they are.
-    void land(LaneStep& step, Mask& none, Mask& falls) {
-        look(step);
+    void land(LaneStep& step, const Number& span, Mask& none, Mask& falls) {
+        look(step, span);
         none &= (Number(step.end_W) > 0.0) & ~(step.end_h < -4.0 * Number(step.rounding));
         falls &= Number(step.end_W) > 0.0;
         const Mask far = falls & (abs(Number(step.end_h)) > 0.5 * Number(step.rounding));
         if (!any(far)) return;
         move_along_normal(step, far);
-        look(step);
+        look(step, span);
         falls &= (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
     }
 

@@ -71,7 +71,7 @@ std::optional<Certificate> Execution::prove(
 // Newton's law, and the flight it starts.
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
-    record_.impact(next_.state, v_after, -contact.hdot);
+    record_.impact(next_.state, v_after, -contact.hdot, exchange(contact, e));
     next_.state.v = v_after;
     const double hdot = -e * contact.hdot;
     next_.start = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
@@ -130,7 +130,11 @@ void Execution::capture(const Contact& contact, const Collision& before) {
 // The collision is the last impact that is drawn: the bouncing after it is replaced by the constrained motion. The
 // phase changes at the best estimate of the Zeno time.
 void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
-    record_.impact(next_.state, impact(contact, next_.state.v, restitution_), collision.speed);
+    // A plastic impact leads to s. Nothing does to the v* of Def. 7.
+    Exchange plastic = exchange(contact, 0.0);
+    if (collision.restart != collision.tangential)
+        plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
+    record_.impact(next_.state, impact(contact, next_.state.v, restitution_), collision.speed, plastic);
     next_.state = collision.with(collision.restart);
     next_.start = {};
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));

@@ -11,7 +11,7 @@ namespace achilles {
 
 namespace {
 
-using Values = std::vector<Interval>;  // q, v
+using Values = std::vector<Interval>;  // q, v, t
 
 // The first undefined part of some expressions over a box, named with the value of its operand at the state; or "".
 std::string undefined_among(const Model& model, const Run& run, std::span<const Expression> expressions,
@@ -28,7 +28,7 @@ std::string first_edge(const Model& model, const Run& run, const State& state, c
         if (edge.kind != Edge::Kind::edge) continue;
         const Program program(std::span(&edge.event_function, 1), model.layout().slots());
         auto distance = model.evaluator<Interval>(program, run.parameters);
-        for (std::size_t i = 0; i < box.size(); ++i) distance.input(i) = box[i];
+        set_box(distance, box);
         distance.run();
         if (certainly_positive(distance.output(0))) continue;
         return fmt::format("{} in {} comes to where it is not smooth, with {} = {:.3g}",
@@ -43,7 +43,7 @@ std::string first_bad_pivot(const Model& model, const Run& run, const State& sta
     const Program program(model.equations().pivots, model.layout().slots());
     auto enclosure = model.evaluator<Interval>(program, run.parameters);
     auto value = model.evaluator(program, run.parameters);
-    for (std::size_t i = 0; i < box.size(); ++i) enclosure.input(i) = box[i];
+    set_box(enclosure, box);
     enclosure.run();
     set_state(value, state);
     value.run();
@@ -65,6 +65,7 @@ std::string undefined_in(const Model& model, const Run& run, const State& state,
     std::string found = look({e.kinetic}, "the kinetic energy");
     if (found.empty()) found = look({e.potential}, "the potential");
     if (found.empty()) found = look({e.gap}, "the gap");
+    if (found.empty()) found = look(e.Q, "the forces");
     if (found.empty()) found = first_edge(model, run, state, box);
     if (found.empty()) found = first_bad_pivot(model, run, state, box);
     if (found.empty()) found = look(e.f, "the equations of motion");
@@ -81,6 +82,7 @@ std::string edge_of_domain(const Model& model, const Run& run, const State& stat
             const double ahead = state.q[i] + reach * scale * state.v[i];
             box[static_cast<std::size_t>(i)] = hull(Interval(state.q[i]), Interval(ahead));
         }
+        box.back() = Interval(state.t, state.t + reach * scale);
         const std::string found = undefined_in(model, run, state, box);
         if (!found.empty()) return found;
     }

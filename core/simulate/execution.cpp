@@ -216,7 +216,7 @@ std::string Execution::doubt(const StepResult& result) const {
         return "the contact force comes closer to zero than the integration knows it just after " + place;
     const std::string known =
         fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g})", result.remainder);
-    if (is_flat(*model_, run_.parameters, next_.state.q))
+    if (is_flat(*model_, run_.parameters, next_.state))
         return fmt::format("{}, and dh vanishes where h = 0, so that contact has no normal, just after {}; {}", known,
                            place, flat_hint);
     return fmt::format("{}: an impact or none cannot be told just after {}", known, place);

@@ -32,6 +32,11 @@ Vector impact(const Contact& contact, const Vector& v_before, double e) {
     return v;
 }
 
+Exchange exchange(const Contact& contact, double e) {
+    const double speed = -contact.hdot, impulse = (1.0 + e) * speed / contact.W;
+    return {-impulse * contact.gap_t, 0.5 * impulse * (1.0 - e) * speed};
+}
+
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind) {
     if (kind == Reinitialization::kinetic) return impact(contact, v_before, 0.0);
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
@@ -56,6 +61,7 @@ void ContactKinematics::look(const State& state, Contact& contact) {
     contact.h = terms_.h();
     contact.hdot = terms_.hdot();
     contact.W = terms_.W();
+    contact.gap_t = terms_.gap_t();
     const auto n = static_cast<Eigen::Index>(dof_);
     contact.impulse_direction.resize(n);
     contact.g.resize(n);
@@ -67,6 +73,7 @@ void ContactKinematics::look(const State& state, Contact& contact) {
 
 double ContactKinematics::gap_error(const State& state) {
     for (std::size_t i = 0; i < dof_; ++i) gap_.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], 0x1p-53);
+    gap_.clock() = rounded(state.t, 0x1p-53);
     gap_.run();
     return rad(gap_.output(0));
 }
@@ -123,6 +130,7 @@ ContactKinematics::Normal ContactKinematics::normal(const State& state) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
         enclosure.input(dof_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
     }
+    enclosure.clock() = rounded(state.t, few_ulps);
     enclosure.run();
     return {enclosure.hddot(), enclosure.jerk()};
 }

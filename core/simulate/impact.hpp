@@ -12,6 +12,7 @@ namespace achilles {
 // The contact quantities at one state (theory.md 1).
 struct Contact {
     double h = 0.0, hdot = 0.0, W = 0.0;
+    double gap_t = 0.0;        // dh/dt where q stands still: less the speed at which the surface comes
     Vector impulse_direction;  // n = M^-1 g'/W, so that g n = 1: the direction of every impulse
     Vector g;                  // dh, as a column
 };
@@ -19,6 +20,13 @@ struct Contact {
 // Newton's impact law: the normal velocity is reversed and scaled, the rest is kept.
 //     v+ = v- - (1 + e) hdot n     (paper (4)).    Law: kinetic energy never rises for 0 <= e <= 1.
 Vector impact(const Contact& contact, const Vector& v_before, double e);
+
+// What an impact does to the energy: dE = work - loss. With the impulse p = (1 + e) |hdot|/W the moving surface does the
+// work -p dh/dt, and p (1 - e) |hdot|/2 is lost.
+struct Exchange {
+    double work = 0.0, loss = 0.0;
+};
+Exchange exchange(const Contact& contact, double e);
 
 // Where the constrained execution restarts.  kinetic: s = v - n hdot;  euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 namespace achilles {
 
-Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep) : keep_(keep) {
+Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep) : keep_(keep), work_(*model, run) {
     if (keep_ == Keep::everything) energy_ = model->evaluator(model->energy(), run.parameters);
     restart(std::move(model), run);
 }
@@ -16,7 +17,10 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.model = std::move(model);
     trajectory_.run = run;
     any_gap_ = false;
-    if (keep_ == Keep::end) return;
+    if (keep_ == Keep::end) {
+        if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
+        return;
+    }
     // A usual run grows no further than this.
     trajectory_.events.reserve(64);
     trajectory_.pieces.reserve(128);
@@ -58,6 +62,7 @@ void Recorder::go_back(const Mark& mark) {
     trajectory_.coefficients.resize(mark.coefficients);
     trajectory_.statistics = mark.statistics;
     scale_ = mark.scale;
+    trajectory_.work = mark.work;
     any_gap_ = mark.any_gap;
 }
 
@@ -78,7 +83,7 @@ void Recorder::stretch(const State& state) {
     if (keep_ == Keep::end) return;
     set_state(energy_, state);
     energy_.run();
-    reference_ = energy_.total();
+    reference_ = energy_.total() - trajectory_.work;
     scale_ = std::abs(energy_.kinetic()) + std::abs(energy_.potential());
 }
 
@@ -98,18 +103,34 @@ void Recorder::step(const Flow& flow, double gap) {
     const double memory = trajectory_.run.options.memory;
     make_room(trajectory_.coefficients, most_coefficients, memory);
     make_room(trajectory_.pieces, 1, memory);
-    trajectory_.pieces.push_back(flow.piece(trajectory_.coefficients));
+    Piece& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
+    piece.work = trajectory_.work;
+    piece.loss = trajectory_.loss;
+    trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
     set_state(energy_, flow.end());
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
     scale_ = std::max(scale_, std::abs(energy_.kinetic()) + std::abs(energy_.potential()));
     if (scale_ > 0.0)
-        statistics.energy_drift = std::max(statistics.energy_drift, std::abs(energy_.total() - reference_) / scale_);
+        statistics.energy_drift =
+            std::max(statistics.energy_drift, std::abs(energy_.total() - trajectory_.work - reference_) / scale_);
 }
 
-void Recorder::impact(const State& before, const Vector& v_after, double speed) {
+Exchange Recorder::exchange_of_jump(const State& before, const State& after, double work) {
+    if (keep_ == Keep::end) return {work, 0.0};
+    const auto energy_at = [&](const State& state) {
+        set_state(energy_, state);
+        energy_.run();
+        return energy_.kinetic();
+    };
+    return {work, work + energy_at(before) - energy_at(after)};
+}
+
+void Recorder::impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange) {
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
+    trajectory_.work += exchange.work;
+    trajectory_.loss += exchange.loss;
     if (keep_ == Keep::end) return;
     Event event;
     event.kind = Event::Kind::impact;
@@ -118,12 +139,16 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed) 
     event.v_before = before.v;
     event.v_after = v_after;
     event.impact_speed = speed;
+    event.work = trajectory_.work;
+    event.loss = trajectory_.loss;
     make_room(trajectory_.events, 1, trajectory_.run.options.memory);
     trajectory_.events.push_back(std::move(event));
 }
 
 void Recorder::event(Event event) {
     if (keep_ == Keep::end) return;
+    event.work = trajectory_.work;
+    event.loss = trajectory_.loss;
     if (event.kind == Event::Kind::zeno) event.impacts = trajectory_.phases.back().impacts;
     trajectory_.events.push_back(std::move(event));
 }

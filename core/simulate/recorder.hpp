@@ -4,7 +4,9 @@
 #include "model/model.hpp"
 #include "run/trajectory.hpp"
 #include "simulate/flow.hpp"
+#include "simulate/impact.hpp"
 #include "simulate/simulate.hpp"
+#include "simulate/work.hpp"
 
 namespace achilles {
 
@@ -19,11 +21,13 @@ class Recorder {
     struct Mark {
         std::size_t pieces, coefficients;
         Statistics statistics;
-        double scale;
+        double scale, work;
         bool any_gap;
     };
     Mark mark() const {
-        return {trajectory_.pieces.size(), trajectory_.coefficients.size(), trajectory_.statistics, scale_, any_gap_};
+        return {trajectory_.pieces.size(), trajectory_.coefficients.size(),
+                trajectory_.statistics,    scale_,
+                trajectory_.work,          any_gap_};
     }
     void go_back(const Mark& mark);
 
@@ -37,8 +41,10 @@ class Recorder {
     void step(const Flow& flow, double gap);
     // Steps of which the end alone is kept.
     void steps(long count, double least_gap);
-    // An impact at this state before it.
-    void impact(const State& before, const Vector& v_after, double speed);
+    // An impact at this state before it, and what it does to the energy.
+    void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange);
+    // The same of a jump to a velocity that no impact leads to: what is lost follows from the energies.
+    Exchange exchange_of_jump(const State& before, const State& after, double work);
     // Any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
@@ -53,7 +59,8 @@ class Recorder {
     Keep keep_;
     Trajectory trajectory_;
     EnergyTerms<Evaluator<double>> energy_;
-    double reference_ = 0.0;  // the energy at the start of the stretch
+    Work work_;
+    double reference_ = 0.0;  // energy less work at the start of the stretch
     double scale_ = 0.0;      // the largest |T| + |V| of the stretch so far
     bool any_gap_ = false;
 };

@@ -3,13 +3,16 @@
 #include <algorithm>
 
 #include "simulate/impact.hpp"
+#include "simulate/work.hpp"
 
 namespace achilles {
 
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
 struct Sampler::Projection {
-    explicit Projection(const Trajectory& trajectory) : surface(*trajectory.model, trajectory.run) {}
+    explicit Projection(const Trajectory& trajectory)
+        : surface(*trajectory.model, trajectory.run), work(*trajectory.model, trajectory.run) {}
     ContactKinematics surface;
+    Work work;
 };
 
 Sampler::Sampler(const Trajectory& trajectory)
@@ -17,22 +20,16 @@ Sampler::Sampler(const Trajectory& trajectory)
 Sampler::~Sampler() = default;
 
 State Sampler::state(const Piece& piece, double t) const {
-    const auto n = trajectory_.run.q.size();
-    const double theta =
-        piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
-    State state{Vector::Zero(n), Vector::Zero(n), t};
-    for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
-        const double* block = trajectory_.coefficients.data() + piece.first + 2 * static_cast<std::size_t>(n) * k;
-        for (Eigen::Index i = 0; i < n; ++i) {
-            state.q[i] = state.q[i] * theta + block[i];
-            state.v[i] = state.v[i] * theta + block[n + i];
-        }
-    }
+    const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
     if (piece.contact) {
         State projected = state;
         if (projection_->surface.project(projected, false)) return projected;
     }
     return state;
+}
+
+double Sampler::work(const Piece& piece, double t) const {
+    return piece.work + projection_->work.along(piece, trajectory_.coefficients, piece.start, t);
 }
 
 Sample Sampler::at(double t) {
@@ -48,12 +45,20 @@ Sample Sampler::at(double t) {
     sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
         sample.state = trajectory_.end;
+        sample.work = trajectory_.work;
+        sample.loss = trajectory_.loss;
         return sample;
     }
     sample.contact = std::prev(piece)->contact;
     sample.state = state(*std::prev(piece), t);
+    sample.work = work(*std::prev(piece), t);
+    sample.loss = std::prev(piece)->loss;
     // The last piece may end at an impact after which no step was made.
-    if (t == trajectory_.end_time) sample.state = trajectory_.end;
+    if (t == trajectory_.end_time) {
+        sample.state = trajectory_.end;
+        sample.work = trajectory_.work;
+        sample.loss = trajectory_.loss;
+    }
     return sample;
 }
 
@@ -72,8 +77,11 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         while (phase + 1 < trajectory_.phases.size() && trajectory_.phases[phase + 1].start <= start) ++phase;
         return trajectory_.phases[phase].kind;
     };
-    const auto add = [&](double t, Phase::Kind in, bool contact, const State& state) {
-        samples.push_back({t, static_cast<int>(j), in, contact, state});
+    const auto add = [&](double t, Phase::Kind in, bool contact, const State& state, double work, double loss) {
+        samples.push_back({t, static_cast<int>(j), in, contact, state, work, loss});
+    };
+    const auto add_from = [&](const Piece& piece, double t, Phase::Kind in) {
+        add(t, in, piece.contact, state(piece, t), work(piece, t), piece.loss);
     };
     // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
     const auto pass_events = [&](double until) {
@@ -84,7 +92,8 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
                 !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
             const bool is_left_out = stride > 1 && event.t < until;
             if (event.kind == Event::Kind::impact && !shown && !is_left_out)
-                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before, event.t});
+                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before, event.t},
+                    j == 0 ? 0.0 : events[j - 1].work, j == 0 ? 0.0 : events[j - 1].loss);
             ++j;
         }
         return any;
@@ -96,16 +105,16 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         const bool fresh = pass_events(piece.start) || samples.empty() || piece.contact != contact || stride > 1;
         contact = piece.contact;
         const Phase::Kind in = kind(piece.start);
-        if (fresh) add(piece.start, in, contact, state(piece, piece.start));
+        if (fresh) add_from(piece, piece.start, in);
         for (int k = 1; k <= between; ++k) {
             const double t = piece.start + (piece.end - piece.start) * k / (between + 1);
-            add(t, in, contact, state(piece, t));
+            add_from(piece, t, in);
         }
-        add(piece.end, in, contact, state(piece, piece.end));
+        add_from(piece, piece.end, in);
     }
     if (pass_events(trajectory_.end_time) || samples.empty())
         add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_phase == Phase::Kind::constrained,
-            trajectory_.end);
+            trajectory_.end, trajectory_.work, trajectory_.loss);
     return samples;
 }
 

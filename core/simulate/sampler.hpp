@@ -15,6 +15,7 @@ struct Sample {
     Phase::Kind phase = Phase::Kind::hybrid;
     bool contact = false;  // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
     State state;
+    double work = 0.0, loss = 0.0;  // of the run until then
 };
 
 // The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
@@ -32,6 +33,7 @@ class Sampler {
  private:
     struct Projection;
     State state(const Piece& piece, double t) const;
+    double work(const Piece& piece, double t) const;
     std::vector<Sample> of_every(std::size_t stride, int between);
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;

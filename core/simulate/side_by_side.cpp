@@ -219,6 +219,7 @@ void SideBySide::read_contact(std::size_t lane) {
     contact.h = step_.end_h[lane];
     contact.hdot = step_.end_hdot[lane];
     contact.W = step_.end_W[lane];
+    contact.gap_t = step_.end_gap_t[lane];
     const auto n = static_cast<Eigen::Index>(step_.impulse_direction.size());
     contact.impulse_direction.resize(n);
     contact.g.resize(n);

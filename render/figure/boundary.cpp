@@ -35,14 +35,14 @@ class Place {
         : run_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
           layout_(trajectory.model->layout()),
           quantities_(view.quantities()),
-          state_{trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size())},
+          state_{trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size()), 0.0},
           pair_(pair) {}
     Point operator()(const Point& q, double t = 0.0, double rate = 0.0) {
         state_.q[static_cast<Eigen::Index>(pair_[0])] = q.x;
         state_.q[static_cast<Eigen::Index>(pair_[1])] = q.y;
         state_.v.setConstant(rate);
+        state_.t = t;
         set_state(run_, state_);
-        run_.input(layout_.t()) = t;
         run_.input(layout_.contact()) = 0.0;
         run_.run();
         return {run_.output(0) * quantities_[0].factor, run_.output(1) * quantities_[1].factor};

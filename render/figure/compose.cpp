@@ -28,7 +28,8 @@ class Values {
           layout_(trajectory.model->layout()) {}
     void set(const Sample& sample) {
         set_state(evaluator_, sample.state);
-        evaluator_.input(layout_.t()) = sample.t;
+        evaluator_.input(layout_.work()) = sample.work;
+        evaluator_.input(layout_.loss()) = sample.loss;
         evaluator_.input(layout_.contact()) = sample.contact ? 1.0 : 0.0;
         evaluator_.run();
     }
@@ -56,7 +57,9 @@ struct Range {
 Sample sample_at(const Event& event) {
     Sample sample;
     sample.t = event.t;
-    sample.state = {event.q, event.v_after};
+    sample.state = {event.q, event.v_after, event.t};
+    sample.work = event.work;
+    sample.loss = event.loss;
     sample.contact = event.kind == Event::Kind::zeno;
     return sample;
 }

@@ -47,7 +47,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     Lens lens;
     lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
     auto flight = model.evaluator(model.motion({}).program, trajectory.run.parameters);
-    set_state(flight, State{zeno.q, zeno.v_after});
+    set_state(flight, State{zeno.q, zeno.v_after, zeno.t});
     flight.run();
     const double a = -flight.hddot(0);
     if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;

@@ -30,7 +30,7 @@ Definition7::Definition7(const Model& model, const Run& run)
       kinetic_(run.options.truncation.reinitialization == Reinitialization::kinetic),
       e_(model.evaluator(model.restitution(), run.parameters).output(0)),
       hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), bouncing_slots(model.layout())),
+             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), model.bouncing().variables),
       box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
       point_(model.evaluator(model.definition7_terms(), run.parameters)),
       surface_(model.evaluator(model.contact_terms(), run.parameters)) {}

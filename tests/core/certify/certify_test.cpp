@@ -22,8 +22,7 @@ double excess(const std::string& system, double radius) {
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
     const auto n = static_cast<std::size_t>(model->dof());
     Range range(model->evaluator<Interval>(model->bouncing().hddot, run.parameters),
-                model->evaluator<Interval>(model->bouncing().gradient, run.parameters),
-                bouncing_slots(model->layout()));
+                model->evaluator<Interval>(model->bouncing().gradient, run.parameters), model->bouncing().variables);
     std::vector<double> centre;
     for (const Vector& part : {zeno.q, zeno.v_after}) centre.insert(centre.end(), part.begin(), part.end());
     std::vector<Interval> box;

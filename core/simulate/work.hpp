@@ -1,0 +1,28 @@
+// What is done on a system along its run: E(t) - E(0) = work - loss (theory.md 1.3).
+#pragma once
+
+#include <span>
+
+#include "model/model.hpp"
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+// Integrates the power along pieces: v'Q + dV/dt, in contact less lambda dh/dt.
+class Work {
+ public:
+    Work(const Model& model, const Run& run);
+
+    // Whether there is any: not where all forces have a potential that, as the gap, does not depend on the time.
+    bool any() const { return any_; }
+    // Over [from, to] inside a piece, in units of the energy. By Gauss's rule of 7 points: a step is shorter than a third of
+    // its series' radius of convergence, so the rule is as exact as the step.
+    double along(const Piece& piece, std::span<const double> coefficients, double from, double to);
+
+ private:
+    bool any_;
+    Eigen::Index dof_;
+    PowerTerms<Evaluator<double>> power_;
+};
+
+}  // namespace achilles
