@@ -16,6 +16,8 @@ class ContactSet {
     constexpr bool empty() const { return bits_ == 0; }
     constexpr int count() const { return std::popcount(bits_); }
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
+    constexpr ContactSet with(std::size_t contact) const { return ContactSet(bits_ | 1u << contact); }
+    constexpr ContactSet without(std::size_t contact) const { return ContactSet(bits_ & ~(1u << contact)); }
 
     friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
     friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }
