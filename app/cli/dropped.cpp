@@ -108,7 +108,7 @@ void ask(const Asked& asked, const Source& source, std::vector<Command>& command
         if (const double* value = find_value(description, run, name)) start.values.emplace_back(name, *value);
     }
     if (!start.values.empty()) commands.emplace_back(start);
-    for (const auto group : options_by_command())
+    for (const auto group : options_by_command(description.options, run.options))
         if (std::any_of(group.begin(), group.end(),
                         [&](const Option& option) { return asked.overrides.given(option) != nullptr; }))
             commands.emplace_back(command::UseOption(group[0], run.options));

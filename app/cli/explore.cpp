@@ -50,7 +50,7 @@ constexpr double frame_patience = 1.0 / 40.0;
 // line.
 std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
     std::vector<Command> commands{command::Open{session.system()}};
-    for (const auto group : options_by_command()) {
+    for (const auto group : options_by_command(session.description().options, session.run().options)) {
         const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
             return options.overrides.given(option) != nullptr;
         });

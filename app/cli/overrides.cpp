@@ -35,6 +35,9 @@ void apply(const OptionOverrides& overrides, Options& options) {
             option.set(options, given->second);
         }
     }
+    for (const char* key : {"end_time", "start_time"})
+        if (const auto* given = overrides.given(option(key)))
+            if (const auto fault = fault_of_times(options)) throw InputError(given->first, {}, *fault);
 }
 
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,

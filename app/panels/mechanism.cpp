@@ -119,6 +119,10 @@ State shown_state(const Session& session, const HeldMechanism& held) {
     return holds_start(held) ? State{session.run().q, session.run().v} : session.now().state;
 }
 
+double shown_time(const Session& session, const HeldMechanism& held) {
+    return holds_start(held) ? session.run().options.start_time : session.now().t;
+}
+
 // What can be seen of the world so that everything stays where it was on the screen.
 void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& area) {
     const Point low = placement.world({area.x, double{area.y} + double{area.height}});
@@ -132,7 +136,7 @@ void add_ghost(const Session& session, Drawing& drawing) {
     const auto then = session.pinned_now();
     if (!then) return;
     const Drawing ghost =
-        session.mechanism().draw(then->state, session.pinned()->run.parameters, drawing, session.theme());
+        session.mechanism().draw(then->t, then->state, session.pinned()->run.parameters, drawing, session.theme());
     for (std::size_t i = ghost.shapes.size(); i-- > 0;) {
         Shape shape = ghost.shapes[i];
         if (shape.kind == Shape::Kind::text) continue;
@@ -158,17 +162,18 @@ void paint_arrows(const Session& session, const HeldMechanism& held, Picture& pi
 
 Picture paint_picture(const Session& session, const Rectangle& area, const HeldMechanism& held) {
     const State state = shown_state(session, held);
+    const double t = shown_time(session, held);
     const auto& parameters = session.run().parameters;
     Drawing seen = world(session, area);
     if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
-    Drawing drawing = session.mechanism().draw(state, parameters, seen, session.theme());
+    Drawing drawing = session.mechanism().draw(t, state, parameters, seen, session.theme());
     if (session.scene().shows("trail"))
         add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
     add_ghost(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
     for (Grip& grip : session.mechanism().grips(parameters)) {
-        const auto body = Body::of(grip, state);
+        const auto body = Body::of(grip, t, state);
         if (!body && picture.bodies.empty()) return picture;
         picture.bodies.push_back(body ? *body : picture.bodies.front());
         picture.centers.push_back(picture.placement.pixel(picture.bodies.back().at()));
@@ -215,15 +220,17 @@ void drag_body(const Session& session, const Picture& picture, const HeldMechani
     auto grips = session.mechanism().grips(session.run().parameters);
     if (held.grip >= grips.size()) return;
     const Point place = picture.placement.world(wanted(held));
-    if (const auto wanted_q = held_at(grips[held.grip], {session.run().q, session.run().v}, place)) {
+    const Run& run = session.run();
+    if (const auto wanted_q = held_at(grips[held.grip], run.options.start_time, {run.q, run.v}, place)) {
         const Vector q = start_towards(session, *wanted_q);
         commands.emplace_back(start_of(session, &q, nullptr));
     }
 }
 
 void drag_arrow(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {
-    auto grip = session.mechanism().grip(session.run().parameters);
-    const auto body = grip ? Body::of(*grip, {session.run().q, session.run().v}) : std::nullopt;
+    const Run& run = session.run();
+    auto grip = session.mechanism().grip(run.parameters);
+    const auto body = grip ? Body::of(*grip, run.options.start_time, {run.q, run.v}) : std::nullopt;
     if (!(picture.scale > 0.0) || !body) return;
     const Point to = wanted(held), from = picture.placement.pixel(body->at());
     const Point velocity{(to.x - from.x) / picture.scale, (from.y - to.y) / picture.scale};

@@ -68,12 +68,16 @@ State slice_of(const Session& session, const PlaneView& plane) {
 const Field& gap_of(const Session& session, const Panel& panel, const Axes& axes, PlaneView& plane) {
     State state = slice_of(session, plane);
     std::vector<double> key{panel.x.low, panel.x.high, panel.y.low, panel.y.high};
+    const double t = plane.is_held ? session.run().options.start_time : session.now().t;
+    const std::uint32_t slot = session.model()->layout().t();
+    if (depends_on(session.model()->equations().gaps[0], {&slot, 1})) key.push_back(t);
     const auto& parameters = session.run().parameters;
     key.insert(key.end(), parameters.begin(), parameters.end());
     for (Eigen::Index i = 0; i < state.q.size(); ++i)
         if (i != axes.first.coordinate && i != axes.second.coordinate) key.push_back(state.q[i]);
     if (plane.gap && plane.gap_key == key && plane.gap_of == plane.view.get()) return *plane.gap;
     auto gap = session.model()->evaluator(session.model()->gap(), parameters);
+    gap.input(slot) = t;
     const auto& quantities = plane.view->quantities();
     Drawing limits;
     limits.x_low = panel.x.low, limits.x_high = panel.x.high;

@@ -57,7 +57,10 @@ void show_legend(const Session& session) {
 // the run before it.
 void show_progress(const Run& run, const Watch& watch) {
     const double time = watch.time, impacts = static_cast<double>(watch.impacts);
-    const double share = std::clamp(std::max(time / run.options.end_time, impacts / run.options.max_impacts), 0.0, 1.0);
+    const double share =
+        std::clamp(std::max((time - run.options.start_time) / (run.options.end_time - run.options.start_time),
+                            impacts / run.options.max_impacts),
+                   0.0, 1.0);
     const ImVec2 corner = ImGui::GetWindowPos();
     const ImU32 accent = ImGui::GetColorU32(ImGuiCol_SliderGrab);
     const float width = static_cast<float>(share) * ImGui::GetWindowWidth();

@@ -230,7 +230,7 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
         if (plot.over_time() && framing.x) {
             if (part != framing.x) {
                 part = framing.x;
-                const double low = std::clamp((*part)[0], 0.0, trajectory.end_time);
+                const double low = std::clamp((*part)[0], trajectory.run.options.start_time, trajectory.end_time);
                 close = plot_samples(trajectory, low, std::clamp((*part)[1], low, trajectory.end_time));
             }
             own = close;

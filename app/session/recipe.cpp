@@ -37,7 +37,7 @@ std::vector<Command> steps_between(const SystemDescription& description, const R
     const auto values = changed_values(description, from, to);
     if (values.size() == 1) steps.emplace_back(command::Set{values[0].first, values[0].second});
     if (values.size() > 1) steps.emplace_back(command::Start{values});
-    for (const auto group : options_by_command()) {
+    for (const auto group : options_by_command(from.options, to.options)) {
         const command::UseOption step(group[0], to.options);
         if (step != command::UseOption(group[0], from.options)) steps.emplace_back(step);
     }

@@ -133,7 +133,7 @@ void Session::begin_document(Document document) {
         system->model->check(run);
         playing_ = false;
         selected_ = 0;
-        time_ = 0.0;
+        time_ = run.options.start_time;
         scene_.forget_place();
         placed_.reset();
         pinned_.reset();  // a run of another system is nothing to compare with
@@ -222,9 +222,7 @@ void Session::perform(const command::Start& command) {
     Run changed = run();
     for (const auto& [name, given] : command.values) {
         double* const found = find_value(description(), changed, name);
-        if (found == nullptr)
-            throw refusal(fmt::format("there is no parameter, coordinate or rate '{}'{}", name,
-                                      did_you_mean(name, settable_names(description()))));
+        if (found == nullptr) throw refusal(why_not_settable(description(), name));
         if (!std::isfinite(given.value)) throw refusal(fmt::format("'{}' must be finite", name));
         check_unit(description(), name, given);
         *found = given.value;
@@ -319,7 +317,7 @@ void Session::place(const Command& command) {
 }
 
 void Session::move_to(double time) {
-    time_ = std::clamp(time, 0.0, trajectory().end_time);
+    time_ = std::clamp(time, run().options.start_time, trajectory().end_time);
     now_ = simulated_->sampler.at(time_);
 }
 

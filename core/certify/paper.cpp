@@ -27,20 +27,23 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run, const Ground& ground)
+PaperConditions::PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
+                                 const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
-      point_(model.evaluator(model.definition7_terms(), run.parameters)),
-      trend_(model.evaluator(model.bouncing().trend, run.parameters)),
-      hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), model.bouncing().variables),
-      box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
-      contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
-      rates_(model.evaluator<Interval>(model.bouncing().rates, run.parameters)) {}
+      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
+      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
+      hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing(contact, held).gradient, run.parameters),
+             model.bouncing(contact, held).variables),
+      box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
+      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
+      rates_(model.evaluator<Interval>(model.bouncing(contact, held).rates, run.parameters)),
+      others_(model, run, contact, held) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
@@ -120,7 +123,13 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
         const double needed_t = (bounds->time * bounds->w).hi();
         if (!(needed_t < tolerances.eps_t) || !(needed_q < tolerances.eps_q) || !(needed_v < tolerances.eps_v))
             return std::nullopt;
-        if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) return certificate_of(collision, *bounds);
+        if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) {
+            std::optional<Certificate::Others> others;
+            if (!others_.is_alone() && !(others = others_.prove(bounds->box))) return std::nullopt;
+            Certificate certificate = certificate_of(collision, *bounds);
+            certificate.others = std::move(others);
+            return certificate;
+        }
         // A little more than was asked for, so that the growth comes to an end.
         const auto more = [](double needed, double eps) {
             return std::min(eps, 1.02 * needed + std::numeric_limits<double>::min());

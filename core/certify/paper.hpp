@@ -24,6 +24,7 @@
 // so does the least V, with smaller bounds.
 #pragma once
 
+#include "certify/others.hpp"
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
 
@@ -31,7 +32,7 @@ namespace achilles {
 
 class PaperConditions : public TruncationConditions {
  public:
-    PaperConditions(const Model& model, const Run& run, const Ground& ground);
+    PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, const Ground& ground);
 
     bool fails_at_point(const Collision& collision) override;
 
@@ -58,6 +59,7 @@ class PaperConditions : public TruncationConditions {
     Definition7Terms<Evaluator<Interval>> box_;
     ContactTerms<Evaluator<Interval>> contact_;
     BouncingRates<Evaluator<Interval>> rates_;
+    OthersStay others_;
 };
 
 }  // namespace achilles

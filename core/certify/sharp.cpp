@@ -41,19 +41,22 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run, const Ground& ground)
+SharpConditions::SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
+                                 const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(), run.parameters).output(0)),
-      hddot_(Range(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-                   model.evaluator<Interval>(model.bouncing().shadow, run.parameters), model.bouncing().variables),
+      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
+                   model.evaluator<Interval>(model.bouncing(contact, held).shadow, run.parameters),
+                   model.bouncing(contact, held).variables),
              dof_),
-      contact_(model.evaluator<Interval>(model.contact_terms(), run.parameters)),
-      trend_(model.evaluator(model.bouncing().trend, run.parameters)),
-      guess_(model.evaluator(model.bouncing().rates, run.parameters)),
+      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
+      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
+      guess_(model.evaluator(model.bouncing(contact, held).rates, run.parameters)),
+      others_(model, run, contact, held),
       box_{std::vector<Interval>(dof_),
            std::vector<Interval>(dof_),
            std::vector<double>(dof_),
@@ -64,7 +67,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Groun
            {},
            0.0},
       shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
-      variables_(model.bouncing().variables.size()),
+      variables_(model.bouncing(contact, held).variables.size()),
       need_q_(dof_),
       need_s_(dof_),
       rising_(2 * dof_) {}
@@ -234,9 +237,13 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
         auto time = time_over_box();
         if (!time) return std::nullopt;
         if (!contain(*time)) continue;
+        std::optional<Certificate::Others> others;
+        if (!others_.is_alone() && !(others = others_.prove(variables_))) return std::nullopt;
         sharpen(*time, trend);
         find_shadow(*time);
-        return certificate_of(collision, *time, trend);
+        Certificate certificate = certificate_of(collision, *time, trend);
+        certificate.others = std::move(others);
+        return certificate;
     }
     return std::nullopt;
 }

@@ -34,6 +34,7 @@
 // shadowing bound on the velocity within eps_v.
 #pragma once
 
+#include "certify/others.hpp"
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
 
@@ -41,7 +42,7 @@ namespace achilles {
 
 class SharpConditions : public TruncationConditions {
  public:
-    SharpConditions(const Model& model, const Run& run, const Ground& ground);
+    SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, const Ground& ground);
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;
     void forget() override { wide_speed_ = too_wide_ = last_speed_ = 0.0; }
@@ -84,6 +85,7 @@ class SharpConditions : public TruncationConditions {
     ContactTerms<Evaluator<Interval>> contact_;
     TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> guess_;
+    OthersStay others_;
     // The last proof or guess that was too wide: at this impact speed, by this factor, which falls with this power of
     // it.
     double wide_speed_ = 0.0, too_wide_ = 0.0;

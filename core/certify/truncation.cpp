@@ -8,11 +8,12 @@
 
 namespace achilles {
 
-std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run) {
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
+                                                            ContactSet held) {
     const Ground ground;
     if (run.options.truncation.conditions == Conditions::paper)
-        return std::make_unique<PaperConditions>(model, run, ground);
-    return std::make_unique<SharpConditions>(model, run, ground);
+        return std::make_unique<PaperConditions>(model, run, contact, held, ground);
+    return std::make_unique<SharpConditions>(model, run, contact, held, ground);
 }
 
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact) {

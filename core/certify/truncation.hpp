@@ -50,14 +50,15 @@ class TruncationConditions {
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
 };
 
-// The conditions that the run asks for.
-std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run);
+// The conditions that the run asks for, of a contact while others are held.
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact = 0,
+                                                            ContactSet held = {});
 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);
 
 // When a collision is: its time is known to what the gap's rounding and the resolution of time make of it at this speed,
-//     d = (4 err(h) + |hdot| ulp(t))/|hdot|     (theory.md 1.2)
+//     d = (4 err(h) + |hdot| ulp(t))/|hdot|     (theory-gaps.md 1)
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact);
 
 // How -hddot changes at a collision.

@@ -7,6 +7,7 @@
 
 #include "algebra/writer.hpp"
 #include "check/simplified.hpp"
+#include "model/derived_values.hpp"
 #include "output/page.hpp"
 #include "output/wrap.hpp"
 
@@ -81,6 +82,12 @@ class Report {
                 {in_line(fmt::format("{} = {}", name(parameter.name), run_.parameters[i])), words(parameter.unit),
                  words(fmt::format("in [{}, {}]", parameter.range[0], parameter.range[1])), words(parameter.about)});
         }
+        const std::vector<double> derived = derived_values(model_, run_.parameters);
+        for (std::size_t i = 0; i < derived.size(); ++i) {
+            const auto& parameter = model_.description().derived[i];
+            rows.push_back({in_line(fmt::format("{} = {}", name(parameter.name), derived[i])), words(parameter.unit),
+                            words(parameter.definition.text), words(parameter.about)});
+        }
         if (rows.empty()) rows.push_back({"none"});
         page_.lines(rows);
     }
@@ -95,11 +102,11 @@ class Report {
         };
         show({"T", "T"}, e.kinetic, system.kinetic);
         show({"V", "V"}, e.potential, system.potential);
-        show({"h", "h"}, e.gap, system.gap);
+        show({"h", "h"}, e.gaps[0], system.constraints.front().gap);
         // The restitution is often a parameter e, and "e = e" says nothing.
-        page_.sentence({"restitution " + system.restitution.text,
+        page_.sentence({"restitution " + system.constraints.front().restitution.text,
                         fmt::format("Restitution ${}$.",
-                                    achilles::write(e.restitution, model_.slot_names(), Notation::latex).text)});
+                                    achilles::write(e.restitutions[0], model_.slot_names(), Notation::latex).text)});
     }
 
     std::string written(const Fraction& fraction) const { return writer_.write(fraction, simplified_.algebra()).text; }

@@ -67,7 +67,7 @@ class Differences {
     Differences(const Model& model, const Run& run)
         : dof_(model.dof()),
           lagrangian_(model, run, {model.equations().kinetic - model.equations().potential}),
-          gap_(model, run, {model.equations().gap}) {}
+          gap_(model, run, {model.equations().gaps[0]}) {}
 
     // M, bias, dh, hddot, lambda, one after the other
     Reals operator()(const Point& at) {
@@ -147,6 +147,7 @@ struct Printed {
 
 Printed printed_equations(const Model& model, const Simplified& simplified) {
     const Equations& e = model.equations();
+    const ContactEquations& c = e.free.contacts[0];
     Printed printed;
     const auto add = [&](const char* name, const std::optional<Fraction>& fraction, Expression derived) {
         if (!fraction) return;
@@ -156,9 +157,9 @@ Printed printed_equations(const Model& model, const Simplified& simplified) {
     };
     for (std::size_t i = 0; i < e.M.size(); ++i) add("M", simplified.M[i], e.M[i]);
     for (std::size_t i = 0; i < e.bias.size(); ++i) add("bias", simplified.bias[i], e.bias[i]);
-    for (std::size_t i = 0; i < e.g.size(); ++i) add("dh", simplified.dh[i], e.g[i]);
-    add("hddot", simplified.hddot, e.hddot);
-    add("lambda", simplified.lambda, e.lambda);
+    for (std::size_t i = 0; i < c.g.size(); ++i) add("dh", simplified.dh[i], c.g[i]);
+    add("hddot", simplified.hddot, c.hddot);
+    add("lambda", simplified.lambda, c.lambda);
     return printed;
 }
 
@@ -183,6 +184,7 @@ double Disagreement::largest() const {
 
 Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified, int states) {
     const Equations& e = model.equations();
+    const ContactEquations& c = e.free.contacts[0];
     const auto n = static_cast<Eigen::Index>(model.dof());
     std::vector<Expression> all = e.M;
     std::vector<std::string> names(all.size(), "M");
@@ -191,12 +193,12 @@ Disagreement compare_with_differences(const Model& model, const Run& run, const 
         names.resize(all.size(), name);
     };
     add("bias", e.bias);
-    add("dh", e.g);
-    add("hddot", {e.hddot});
-    add("lambda", {e.lambda});
-    Functions derived(model, run, all), pivots(model, run, e.pivots), hddot(model, run, {e.hddot});
-    std::vector<Expression> gap{e.gap};
-    gap.insert(gap.end(), e.g.begin(), e.g.end());
+    add("dh", c.g);
+    add("hddot", {c.hddot});
+    add("lambda", {c.lambda});
+    Functions derived(model, run, all), pivots(model, run, e.pivots), hddot(model, run, {c.hddot});
+    std::vector<Expression> gap{c.gap};
+    gap.insert(gap.end(), c.g.begin(), c.g.end());
     Functions gap_and_slope(model, run, gap);
     Differences differences(model, run);
     const Printed printed = printed_equations(model, simplified);

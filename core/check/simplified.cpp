@@ -23,8 +23,9 @@ std::optional<Fraction> Simplified::simplify(Expression expression) {
 }
 
 Simplified::Simplified(const Model& model, const Run& run)
-    : graph_(model.equations().hddot.graph()), algebra_(std::make_unique<Algebra>(graph_, Work{})) {
+    : graph_(model.equations().energy.graph()), algebra_(std::make_unique<Algebra>(graph_, Work{})) {
     const Equations& e = model.equations();
+    const ContactEquations& c = e.free.contacts[0];
     const Layout& layout = model.layout();
     ranks_.assign(layout.count(), 0);
     for (std::size_t i = 0; i < layout.dof; ++i) {
@@ -33,10 +34,10 @@ Simplified::Simplified(const Model& model, const Run& run)
     }
     for (const Expression entry : e.M) M.push_back(simplify(entry));
     for (const Expression entry : e.bias) bias.push_back(simplify(entry));
-    for (const Expression entry : e.g) dh.push_back(simplify(entry));
-    hdot = simplify(e.hdot);
-    W = simplify(e.W);
-    hddot = simplify(e.hddot);
+    for (const Expression entry : c.g) dh.push_back(simplify(entry));
+    hdot = simplify(c.hdot);
+    W = simplify(c.W);
+    hddot = simplify(c.hddot);
     // lambda = -hddot/W: its own divisions, done before, would be done again.
     if (hddot && W) {
         algebra_->work() = Work{work_of_a_formula};

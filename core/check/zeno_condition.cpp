@@ -47,7 +47,7 @@ class ParameterSigns {
 class Search {
  public:
     Search(const Model& model, const Run& run, Graph& graph)
-        : layout_(model.layout()), e_(model.equations()), graph_(graph), signs_(model, run) {}
+        : layout_(model.layout()), e_(model.equations()), c_(e_.free.contacts[0]), graph_(graph), signs_(model, run) {}
 
     // Tries what can be solved for, with and without the addition theorems; the shortest hddot wins.
     std::optional<ZenoCondition> best() {
@@ -95,10 +95,10 @@ class Search {
         std::vector<std::uint32_t> all;
         for (std::size_t i = 0; i < layout_.dof; ++i) all.push_back(layout_.q(i));
         for (const std::uint32_t slot : all) {
-            const auto value = solve(graph_.adopt(e_.gap), slot);
+            const auto value = solve(graph_.adopt(c_.gap), slot);
             if (!value) continue;
             if (!depends_on(*value, all)) return {{{slot, *value}}};  // a constant: nothing can be shorter
-            if (depends_on(e_.hddot, std::span(&slot, 1))) result.push_back({{slot, *value}});
+            if (depends_on(c_.hddot, std::span(&slot, 1))) result.push_back({{slot, *value}});
         }
         return result;
     }
@@ -106,7 +106,7 @@ class Search {
     // The same with what hdot = 0 says.
     std::vector<Solution> with_rates(const Solution& coordinate) const {
         std::vector<Solution> result{coordinate};
-        const Expression hdot = on(e_.hdot, coordinate);
+        const Expression hdot = on(c_.hdot, coordinate);
         for (std::size_t i = 0; i < layout_.dof; ++i) {
             const std::uint32_t slot = layout_.v(i);
             const auto value = solve(hdot, slot);
@@ -114,7 +114,7 @@ class Search {
             Solution solution = coordinate;
             solution.emplace_back(slot, *value);
             if (value->is_zero()) return {solution};
-            if (depends_on(e_.hddot, std::span(&slot, 1))) result.push_back(solution);
+            if (depends_on(c_.hddot, std::span(&slot, 1))) result.push_back(solution);
         }
         return result;
     }
@@ -126,8 +126,8 @@ class Search {
     // What could not be solved for is used as it stands: multiples of h, hdot and hdot^2 are added to the numerator as
     // long as that makes the whole shorter.
     Fraction in_contact(Fraction hddot, const Solution& solution, Algebra& algebra) const {
-        const Multinomial h = algebra.simplify(on(e_.gap, solution)).numerator;
-        const Multinomial hdot = algebra.simplify(on(e_.hdot, solution)).numerator;
+        const Multinomial h = algebra.simplify(on(c_.gap, solution)).numerator;
+        const Multinomial hdot = algebra.simplify(on(c_.hdot, solution)).numerator;
         for (bool shorter = true; shorter;) {
             shorter = false;
             for (const Multinomial& zero : {h, hdot, algebra.reduced(power(hdot, 2, algebra.work()))}) {
@@ -154,7 +154,7 @@ class Search {
         auto algebra = std::make_unique<Algebra>(graph_, Work{std::min(work_, work_of_a_try)}, expand_angles);
         const long before = algebra->work().left;
         try {
-            const Fraction hddot = in_contact(algebra->simplify(on(e_.hddot, solution)), solution, *algebra);
+            const Fraction hddot = in_contact(algebra->simplify(on(c_.hddot, solution)), solution, *algebra);
             work_ -= before - algebra->work().left;
             if (best_ && length(best_->hddot) <= length(hddot)) return;
             best_.emplace();
@@ -243,6 +243,7 @@ class Search {
 
     const Layout& layout_;
     const Equations& e_;
+    const ContactEquations& c_;
     Graph& graph_;
     ParameterSigns signs_;
     long work_ = 4 * work_of_a_try;

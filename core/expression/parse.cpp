@@ -16,9 +16,34 @@ namespace {
 // Deeper than any formula a person writes, shallow enough for every stack.
 constexpr int deepest = 200;
 
-constexpr std::array<std::string_view, 9> not_smooth{"abs",   "min",  "max", "floor", "ceil",
-                                                     "round", "sign", "mod", "fmod"};
-constexpr std::array<std::string_view, 6> reserved{"t", "pi", "gap", "lambda", "energy", "deg"};
+// What has corners or jumps, and what to write instead.
+struct NotSmooth {
+    std::string_view name, instead;
+};
+constexpr std::string_view for_abs = "sqrt(x^2 + w^2) is nearly |x|, with a small w";
+constexpr std::string_view for_step = "a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w";
+constexpr std::string_view for_mod = "what repeats is made of sin and cos";
+constexpr std::array<NotSmooth, 9> not_smooth{{
+    {"abs", for_abs},
+    {"min",
+     "two gaps are two [[constraint]]; else (a + b - sqrt((a - b)^2 + w^2))/2 is nearly min(a, b), with a small w"},
+    {"max", "(a + b + sqrt((a - b)^2 + w^2))/2 is nearly max(a, b), with a small w"},
+    {"floor", for_step},
+    {"ceil", for_step},
+    {"round", for_step},
+    {"sign", "tanh(x/w) is nearly sign(x), with a small w"},
+    {"mod", for_mod},
+    {"fmod", for_mod},
+}};
+
+const NotSmooth* not_smooth_of(std::string_view name) {
+    const auto found =
+        std::find_if(not_smooth.begin(), not_smooth.end(), [&](const NotSmooth& one) { return one.name == name; });
+    return found == not_smooth.end() ? nullptr : &*found;
+}
+
+constexpr std::array<std::string_view, 9> reserved{"t",    "pi",   "gap",   "lambda", "energy",
+                                                   "work", "loss", "power", "deg"};
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -180,6 +205,7 @@ class Parser {
             return inner;
         }
         refuse_greek();
+        refuse_bar();
         throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + " where a value is expected");
     }
 
@@ -194,6 +220,13 @@ class Parser {
             throw ParseError(
                 at_, "names have Latin letters: write " + spelled_out(whole) + " for '" + std::string(whole) + "'");
         }
+    }
+
+    // |x|
+    void refuse_bar() const {
+        if (peek() == '|')
+            throw ParseError(at_, "|x| is not allowed: it is not smooth, and the equations of motion need derivatives",
+                             {}, for_abs);
     }
 
     void close(std::size_t open) {
@@ -214,6 +247,7 @@ class Parser {
         const bool value_follows = is_name_part(peek()) || peek() == '(' || peek() == '.';
         if (value_follows) throw ParseError(at_, "an operator is missing here; write '*' for a product");
         refuse_greek();
+        refuse_bar();
         if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");
         throw ParseError(at_, "unexpected " + shown(text_.substr(at_)));
     }
@@ -272,11 +306,11 @@ class Parser {
     }
 
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
-        if (std::find(not_smooth.begin(), not_smooth.end(), bare) != not_smooth.end())
+        if (const NotSmooth* corner = not_smooth_of(bare == "sgn" && peek() == '(' ? "sign" : bare))
             throw ParseError(
                 begin,
                 in_quotes(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
-                bare);
+                bare, corner->instead);
         std::vector<std::string> known;
         for (const Function& function : functions) known.emplace_back(function.name);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
@@ -314,9 +348,19 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
 
 bool is_reserved(std::string_view name) {
     const auto is_name_of = [&](const auto& entry) { return entry.name == name; };
-    return std::find(reserved.begin(), reserved.end(), name) != reserved.end() ||
-           std::find(not_smooth.begin(), not_smooth.end(), name) != not_smooth.end() ||
+    return std::find(reserved.begin(), reserved.end(), name) != reserved.end() || not_smooth_of(name) != nullptr ||
            std::find_if(functions.begin(), functions.end(), is_name_of) != functions.end();
+}
+
+std::vector<std::string> names_in(std::string_view text) {
+    std::vector<std::string> names;
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t end = at;
+        while (end < text.size() && is_name_part(text[end])) ++end;
+        if (end > at && is_letter(text[at])) names.emplace_back(text.substr(at, end - at));
+        at = std::max(end, at + 1);
+    }
+    return names;
 }
 
 bool is_name(std::string_view text) {

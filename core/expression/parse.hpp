@@ -22,10 +22,12 @@ struct Scope {
 
 // What is wrong, and where: `offset` counts bytes from the start of the text.
 struct ParseError : std::runtime_error {
-    ParseError(std::size_t where, const std::string& message, std::string_view the_name = {})
-        : std::runtime_error(message), offset(where), name(the_name) {}
+    ParseError(std::size_t where, const std::string& message, std::string_view the_name = {},
+               std::string_view what_would_be_right = {})
+        : std::runtime_error(message), offset(where), name(the_name), hint(what_would_be_right) {}
     std::size_t offset;
     std::string name;  // primes included, where a name is unknown or may not stand here; else empty
+    std::string hint;  // what would be right; may be empty
 };
 
 // Where the parts of a text stand.
@@ -42,8 +44,10 @@ struct TextParts {
 // offender and the nearest allowed name.
 Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts = nullptr);
 
-// Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy, deg.
+// Names a coordinate or parameter may not take: the functions, t, pi, gap, lambda, energy, work, loss, power, deg.
 bool is_reserved(std::string_view name);
+// The names in an expression, functions and units included, without their primes; each as often as it stands there.
+std::vector<std::string> names_in(std::string_view text);
 // A letter, then letters, digits, underscores.
 bool is_name(std::string_view text);
 

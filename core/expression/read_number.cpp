@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -49,8 +50,13 @@ std::string shown(std::string_view text) {
     return "'" + result + (text.size() > most ? "...'" : "'");
 }
 
-Scope scope_of(std::string_view unit, Graph& graph) {
-    Scope scope;
+[[noreturn]] void fail(std::string_view text, std::size_t offset, const std::string& why, std::string_view name = {}) {
+    throw ParseError(offset, shown(text) + " is not a finite number" + (why.empty() ? "" : ": " + why), name);
+}
+
+}  // namespace
+
+void allow_units(Scope& scope, std::string_view unit, Graph& graph) {
     const Expression degree = graph.pi() / graph.number(180);
     for (const char* word : {"deg", "\u00b0", "rad"}) {
         const bool is_radian = word == std::string_view("rad");
@@ -60,14 +66,17 @@ Scope scope_of(std::string_view unit, Graph& graph) {
             scope.forbidden.emplace(word, in_quotes(word) + " may follow a number where the unit is rad, and here it " +
                                               (unit.empty() ? "is not" : "is " + std::string(unit)));
     }
-    return scope;
 }
 
-[[noreturn]] void fail(std::string_view text, std::size_t offset, const std::string& why, std::string_view name = {}) {
-    throw ParseError(offset, shown(text) + " is not a finite number" + (why.empty() ? "" : ": " + why), name);
+bool has_names(std::string_view text) {
+    const std::vector<std::string> names = names_in(text);
+    return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+        const auto is_it = [&](const Function& function) { return function.name == name; };
+        constexpr std::string_view of_numbers[] = {"pi", "deg", "rad", "inf", "nan"};
+        return std::find(std::begin(of_numbers), std::end(of_numbers), name) == std::end(of_numbers) &&
+               std::none_of(functions.begin(), functions.end(), is_it);
+    });
 }
-
-}  // namespace
 
 GivenNumber read_number(std::string_view whole, std::string_view unit) {
     const Ground ground;
@@ -83,7 +92,8 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
     if (const std::string better = with_a_point(text); !better.empty())
         fail(text, begin, "decimals have a point, " + better);
     Graph graph;
-    const Scope scope = scope_of(unit, graph);
+    Scope scope;
+    allow_units(scope, unit, graph);
     try {
         given.value = value_of_constant(parse(text, scope, graph));
     } catch (const ParseError& error) {

@@ -4,6 +4,8 @@
 
 #include <string_view>
 
+#include "expression/parse.hpp"
+
 namespace achilles {
 
 struct GivenNumber {
@@ -11,6 +13,11 @@ struct GivenNumber {
     bool has_unit = false;  // it says that it is in degrees or radians: 30 deg, 30°, 0.5 rad
     bool has_pi = false;
 };
+
+// Lets deg, ° and rad follow a value in an expression whose unit this is.
+void allow_units(Scope& scope, std::string_view unit, Graph& graph);
+// Whether a text is an expression in names that stand for something else than a number, as "m*L^2/12".
+bool has_names(std::string_view text);
 
 // Reads the whole text. deg, ° (both pi/180) and rad (1) may follow a value where `unit`, that of the quantity, is rad.
 // Throws ParseError, whose message begins with the text: "'0,4' is not a finite number: ...".

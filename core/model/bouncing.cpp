@@ -42,8 +42,8 @@ Row sum(const Row& a, const Row& b) {
 
 }  // namespace
 
-Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
-    Graph graph(equations.gap.graph());
+Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout) {
+    Graph graph(contact.gap.graph());
     const std::size_t count = layout.dof;
     std::vector<std::uint32_t> q, v;
     Row s;
@@ -53,7 +53,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         s.push_back(graph.symbol(layout.v(i)));
     }
     const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
-    const Row A = adopt(graph, equations.f_c), n = adopt(graph, equations.impulse_direction);
+    const Row A = adopt(graph, contact.f_c), n = adopt(graph, contact.direction);
     Row velocity;
     for (std::size_t i = 0; i < count; ++i) velocity.push_back(s[i] + n[i] * sigma);
     const Row slope = along(A, v, n);  // df_c/dv n
@@ -78,7 +78,7 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
         return slopes;
     };
     const Row dA_dq = row_by_row(q), dA_ds = row_by_row(v);
-    const Expression hddot_of_v = graph.adopt(equations.hddot), hddot = substitute(hddot_of_v, v, velocity);
+    const Expression hddot_of_v = graph.adopt(contact.hddot), hddot = substitute(hddot_of_v, v, velocity);
     const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
     const Expression by_sigma = product(by_v, n),
                      rate_along = product(by_q, s) + product(by_v, A) + derivative(hddot_of_v, layout.t());
@@ -97,6 +97,35 @@ Bouncing derive_bouncing(const Equations& equations, const Layout& layout) {
             ProgramOf<BouncingRates>::of(slots, velocity, rate),
             ProgramOf<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
             Program(joined({slope_of_hddot, shadow}), slots)};
+}
+
+Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout) {
+    const HeldEquations& motion = motions.of(held);
+    Graph& graph = motions.graph();
+    const Row& n = motion.contacts.at(contact).direction;
+    std::vector<std::uint32_t> v;
+    Row velocity;
+    for (std::size_t i = 0; i < layout.dof; ++i) {
+        v.push_back(layout.v(i));
+        velocity.push_back(graph.symbol(layout.v(i)) + n[i] * graph.symbol(layout.sigma()));
+    }
+    Neighbours result;
+    Row outputs;
+    for (std::size_t j = 0; j < motion.contacts.size(); ++j) {
+        if (!held.contains(j)) continue;
+        const ContactEquations& other = motion.contacts[j];
+        result.held.push_back(j);
+        outputs.push_back(substitute(other.hddot, v, velocity));
+        outputs.push_back(other.W);
+        outputs.push_back(-(other.delassus[contact] / other.W));
+    }
+    for (std::size_t j = 0; j < motion.contacts.size(); ++j) {
+        if (held.contains(j) || j == contact) continue;
+        result.open.push_back(j);
+        outputs.push_back(motion.contacts[j].gap);
+    }
+    result.program = Program(outputs, layout.slots());
+    return result;
 }
 
 }  // namespace achilles

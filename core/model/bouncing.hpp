@@ -6,7 +6,7 @@
 //     F = f_c(q, s + n sigma, t) - (dn/dq (s + n sigma) + n_t) sigma
 //     B = df_c/dv n - dn/dq s - n_t,     D = 1/2 n' (d2f_c/dv2) n - dn/dq n
 // with v at s in B. Where f_c is of degree 2 in the velocity so it is in D, which is the same for all sigma. Where a
-// force makes it another function (theory.md 1.2), v is s + n sigma in D, so that D over all sigma' between 0 and sigma
+// force makes it another function (theory-gaps.md 1), v is s + n sigma in D, so that D over all sigma' between 0 and sigma
 // holds what Lagrange's remainder needs.
 // In every program here the slots of v hold s, and the slot sigma holds hdot.
 #pragma once
@@ -76,7 +76,16 @@ struct Bouncing {
     Program shadow;  // the gradient again (it shares most of its work with what follows), then ShadowTerms
 };
 
-// Derives and compiles the programs, in a copy of the equations' graph.
-Bouncing derive_bouncing(const Equations& equations, const Layout& layout);
+// What must stay as it is around a contact that bounces (theory-gaps.md 2.3), over the same variables: of every held
+// contact hddot of the motion that holds the others (negative: it is pressed), W of that motion, and kappa, what an impulse on the
+// bouncing one is passed on by; of every open one its gap.
+struct Neighbours {
+    std::vector<std::size_t> held, open;
+    Program program;  // three outputs for each that is held, one for each that is open
+};
+Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout);
+
+// Derives and compiles the programs of a contact, in a copy of its graph.
+Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

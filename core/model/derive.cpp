@@ -99,56 +99,135 @@ Expression cancelled(Expression quotient, Graph& graph) {
     return dividend.b == node.b ? at(dividend.a) : quotient;
 }
 
+// What follows from the impulse, the Delassus matrix and hddot of a contact, along a motion with this f.
+void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row& v, Graph& graph) {
+    c.W = c.delassus[contact];
+    c.direction.clear();
+    for (const Expression u : c.impulse) c.direction.push_back(u.is_zero() ? u : cancelled(u / c.W, graph));
+    c.lambda = -(c.hddot / c.W);
+    c.f_c.clear();
+    c.f_by_force.clear();
+    c.s.clear();
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        c.f_c.push_back(f[i] - c.direction[i] * c.hddot);
+        c.f_by_force.push_back(f[i] + c.impulse[i] * c.lambda);
+        c.s.push_back(v[i] - c.direction[i] * c.hdot);
+    }
+}
+
+std::vector<std::uint32_t> slots_from(std::uint32_t first, std::size_t count) {
+    std::vector<std::uint32_t> slots;
+    for (std::size_t i = 0; i < count; ++i) slots.push_back(first + static_cast<std::uint32_t>(i));
+    return slots;
+}
+
+Row symbols(const std::vector<std::uint32_t>& slots, Graph& graph) {
+    Row all;
+    for (const std::uint32_t slot : slots) all.push_back(graph.symbol(slot));
+    return all;
+}
+
 }  // namespace
+
+bool Equations::has_power() const {
+    return !power.is_zero() || std::any_of(free.contacts.begin(), free.contacts.end(),
+                                           [](const ContactEquations& c) { return !c.gap_t.is_zero(); });
+}
 
 void derive(Equations& e, const Layout& layout, Graph& graph) {
     const std::size_t n = layout.dof;
-    std::vector<std::uint32_t> q_slots, v_slots;
-    Row v;
-    for (std::size_t i = 0; i < n; ++i) {
-        q_slots.push_back(layout.q(i));
-        v_slots.push_back(layout.v(i));
-        v.push_back(graph.symbol(layout.v(i)));
-    }
     const std::uint32_t t = layout.t();
+    const std::vector<std::uint32_t> q_slots = slots_from(layout.q(0), n), v_slots = slots_from(layout.v(0), n);
+    const Row v = symbols(v_slots, graph);
     const Factorisation mass(e.M, n, graph);
     e.pivots = mass.pivots();
     e.bias = bias(e.M, e.potential, v, q_slots, graph);
     Row against(n);  // b - Q
     for (std::size_t i = 0; i < n; ++i) against[i] = e.bias[i] - e.Q[i];
-    e.f = mass.solve(against);
-    for (Expression& f : e.f) f = -f;
+    Row& f = e.free.f = mass.solve(against);
+    for (Expression& entry : f) entry = -entry;
 
-    e.g = gradient(e.gap, q_slots);
-    e.gap_t = derivative(e.gap, t);
-    e.hdot = dot(e.g, v, graph) + e.gap_t;
-    Expression curvature = graph.number(0);  // v'Hv
-    const std::vector<Row> H = jacobian(e.g, q_slots);
-    for (std::size_t i = 0; i < n; ++i) {
-        const Row& row = H[i];
-        e.H.insert(e.H.end(), row.begin(), row.end());
-        curvature = curvature + v[i] * dot(row, v, graph);
+    for (const Expression gap : e.gaps) {
+        ContactEquations& c = e.free.contacts.emplace_back();
+        c.gap = gap;
+        c.g = gradient(gap, q_slots);
+        c.gap_t = derivative(gap, t);
+        c.hdot = dot(c.g, v, graph) + c.gap_t;
+        Expression curvature = graph.number(0);  // v'Hv
+        const std::vector<Row> H = jacobian(c.g, q_slots);
+        for (std::size_t i = 0; i < n; ++i) {
+            const Row& row = H[i];
+            c.H.insert(c.H.end(), row.begin(), row.end());
+            curvature = curvature + v[i] * dot(row, v, graph);
+        }
+        c.impulse = mass.solve(c.g);
+        const Expression turning = graph.number(2) * dot(derivative(c.g, t), v, graph) + derivative(c.gap_t, t);
+        c.hddot = curvature + turning + dot(c.g, f, graph);
     }
-    const Row impulse = mass.solve(e.g);  // M^-1 g'
-    e.W = dot(e.g, impulse, graph);
-    if (e.W.is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
-    for (const Expression u : impulse) e.impulse_direction.push_back(u.is_zero() ? u : cancelled(u / e.W, graph));
-
-    const Expression turning = graph.number(2) * dot(derivative(e.g, t), v, graph) + derivative(e.gap_t, t);
-    e.hddot = curvature + turning + dot(e.g, e.f, graph);
-    e.lambda = -(e.hddot / e.W);
-    for (std::size_t i = 0; i < n; ++i) {
-        e.f_c.push_back(e.f[i] - e.impulse_direction[i] * e.hddot);
-        e.f_by_force.push_back(e.f[i] + impulse[i] * e.lambda);
-        e.s.push_back(v[i] - e.impulse_direction[i] * e.hdot);
+    for (std::size_t i = 0; i < e.gaps.size(); ++i) {
+        ContactEquations& c = e.free.contacts[i];
+        for (const ContactEquations& other : e.free.contacts) c.delassus.push_back(dot(other.g, c.impulse, graph));
+        if (c.delassus[i].is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
+        complete(c, f, i, v, graph);
     }
     e.energy = e.kinetic + e.potential;
-    e.jerk = dot(gradient(e.hddot, q_slots), v, graph) + dot(gradient(e.hddot, v_slots), e.f_c, graph) +
-             derivative(e.hddot, t);
     e.power = dot(v, e.Q, graph) + derivative(e.potential, t);
     const auto is_steady = [&](Expression x) { return !depends_on(x, {&t, 1}); };
-    e.autonomous = is_steady(e.gap) && is_steady(e.potential) && std::all_of(e.Q.begin(), e.Q.end(), is_steady);
+    e.autonomous = is_steady(e.potential) && std::all_of(e.gaps.begin(), e.gaps.end(), is_steady) &&
+                   std::all_of(e.Q.begin(), e.Q.end(), is_steady);
     for (const Expression force : e.Q) e.quadratic_in_rates = e.quadratic_in_rates && is_quadratic(force, v_slots);
+}
+
+Expression jerk_of(const ContactEquations& contact, const Layout& layout) {
+    Graph& graph = contact.hddot.graph();
+    const std::vector<std::uint32_t> q = slots_from(layout.q(0), layout.dof), v = slots_from(layout.v(0), layout.dof);
+    return dot(gradient(contact.hddot, q), symbols(v, graph), graph) +
+           dot(gradient(contact.hddot, v), contact.f_c, graph) + derivative(contact.hddot, layout.t());
+}
+
+HeldMotions::HeldMotions(const Equations& equations, const Layout& layout)
+    : graph_(equations.energy.graph()), layout_(layout) {
+    HeldEquations& free = known_[{}] = equations.free;
+    const auto adopt = [&](Expression& x) { x = graph_.adopt(x); };
+    const auto adopt_all = [&](Row& row) { std::for_each(row.begin(), row.end(), adopt); };
+    adopt_all(free.f);
+    for (ContactEquations& c : free.contacts) {
+        for (Expression* x : {&c.gap, &c.gap_t, &c.hdot, &c.W, &c.hddot, &c.lambda}) adopt(*x);
+        for (Row* row : {&c.g, &c.H, &c.impulse, &c.delassus, &c.direction, &c.s, &c.f_c, &c.f_by_force})
+            adopt_all(*row);
+    }
+}
+
+const HeldEquations& HeldMotions::of(ContactSet held) {
+    const auto known = known_.find(held);
+    return known != known_.end() ? known->second : known_.emplace(held, derive(held)).first->second;
+}
+
+// With the last of the held contacts one more than a motion that is known, or will be.
+HeldEquations HeldMotions::derive(ContactSet held) {
+    std::size_t k = 0;
+    for (std::size_t i = 0; i < known_.at({}).contacts.size(); ++i)
+        if (held.contains(i)) k = i;
+    const HeldEquations& before = of(held.without(k));
+    const ContactEquations& last = before.contacts.at(k);
+    if (last.delassus[k].is_zero()) throw std::domain_error("contacts that depend on one another cannot all be held");
+    HeldEquations result{held, last.f_c, before.contacts};
+    const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
+    for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+        ContactEquations& c = result.contacts[i];
+        if (held.contains(i)) {
+            c = of(held.without(i)).contacts[i];
+            continue;
+        }
+        const Expression part = c.delassus[k] / last.W;
+        const Expression along = dot(last.g, c.g, graph_) / dot(last.g, last.g, graph_);
+        for (std::size_t j = 0; j < c.g.size(); ++j) c.g[j] = c.g[j] - last.g[j] * along;
+        for (std::size_t j = 0; j < c.impulse.size(); ++j) c.impulse[j] = c.impulse[j] - last.impulse[j] * part;
+        for (std::size_t j = 0; j < c.delassus.size(); ++j) c.delassus[j] = c.delassus[j] - last.delassus[j] * part;
+        c.hddot = c.hddot - part * last.hddot;
+        if (!c.delassus[i].is_zero()) complete(c, result.f, i, v, graph_);
+    }
+    return result;
 }
 
 }  // namespace achilles

@@ -1,15 +1,18 @@
 // The equations of motion from T, V, h and e, symbolically (theory.md 1).
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "program/program.hpp"
+#include "run/contact_set.hpp"
 
 namespace achilles {
 
 // Where each input of a program stands: q (n), v (n), the parameters (p), then t, contact, sigma, a drawn curve's own, work, loss.
 struct Layout {
     std::uint32_t dof = 0, p = 0;  // coordinates, parameters
+    std::uint32_t contacts = 1;
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
     std::uint32_t v(std::size_t i) const { return dof + static_cast<std::uint32_t>(i); }
     std::uint32_t parameter(std::size_t i) const { return 2 * dof + static_cast<std::uint32_t>(i); }
@@ -19,32 +22,77 @@ struct Layout {
     std::uint32_t own() const { return 2 * dof + p + 3; }      // a drawn curve's own parameter
     std::uint32_t work() const { return 2 * dof + p + 4; }     // what a view shows beside the state
     std::uint32_t loss() const { return 2 * dof + p + 5; }
-    std::uint32_t count() const { return 2 * dof + p + 6; }
+    // Of a contact, where there are several.
+    std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 6 + static_cast<std::uint32_t>(i); }
+    std::uint32_t force(std::size_t i) const { return acceleration(contacts) + static_cast<std::uint32_t>(i); }
+    std::uint32_t count() const { return force(contacts); }
     Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }
+};
+
+// One contact along a motion that holds others: what the motion that holds it as well follows from (theory-gaps.md 2). In
+// formulas i is the contact, A the held ones.
+struct ContactEquations {
+    Expression gap, gap_t, hdot;         // h; dh/dt where q stands still; its rate
+    std::vector<Expression> g;           // dh, less what lies in the gradients of what is held (Euclidean projection)
+    std::vector<Expression> H;           // the second derivatives of h, row by row
+    std::vector<Expression> impulse;     // M^-1 (g_i' - G_A' W_AA^-1 W_Ai)
+    std::vector<Expression> delassus;    // W_ij of every contact j, less W_iA W_AA^-1 W_Aj
+    Expression W;                        // of them, its own: W_i
+    std::vector<Expression> direction;   // n = impulse/W, so that g n = 1
+    Expression hddot, lambda;            // its acceleration while it is free; the force that holds it, -hddot/W
+    std::vector<Expression> s;           // v - n hdot
+    std::vector<Expression> f_c;         // the acceleration while it is held, too
+    std::vector<Expression> f_by_force;  // the same as f + impulse lambda
+};
+
+// A motion: which contacts are held, and what their forces make of the acceleration f. The contacts that are held are
+// seen from the motion that holds the others.
+struct HeldEquations {
+    ContactSet held;
+    std::vector<Expression> f;
+    std::vector<ContactEquations> contacts;
 };
 
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.
 struct Equations {
-    std::vector<Expression> M, bias, Q, f, g, H, impulse_direction, s, f_c;
-    Expression kinetic, potential, gap, restitution;
-    std::vector<Expression> f_by_force;                // f_c as f + M^-1 g' lambda
-    Expression W, gap_t, hdot, hddot, lambda, energy;  // gap_t: dh/dt where q stands still
-    Expression power;                // dE/dt = v'Q + dV/dt of the free motion; in contact less lambda dh/dt
-    Expression jerk;                 // h''': the rate of hddot along the constrained motion
+    std::vector<Expression> M, bias, Q;
+    Expression kinetic, potential, energy;
+    std::vector<Expression> gaps, restitutions;  // of each contact
+    HeldEquations free;                          // the motion that holds none
+    Expression power;                // dE/dt = v'Q + dV/dt of the free motion; less lambda dh/dt of what is held
     std::vector<Expression> pivots;  // D of M = L D L': all positive exactly where M is positive definite
     bool autonomous = true;          // nothing depends on the time
     bool quadratic_in_rates = true;  // the forces, and with them f_c, are of degree 2 or less in the rates
 
-    bool has_power() const { return !power.is_zero() || !gap_t.is_zero(); }
+    bool has_power() const;
 };
 
-// Completes equations whose M, Q, kinetic, potential, gap and restitution are set.
+// Completes equations whose M, Q, kinetic, potential, gaps and restitutions are set.
 //     M(q) a + b(q,v,t) = Q(q,v,t),   b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i,   f = M^-1 (Q - b)
 //     g = dh,   hdot = g v + h_t,   W = g M^-1 g',   n = M^-1 g'/W,   s = v - n hdot
 //     hddot = v'Hv + 2 g_t v + h_tt + g f,   lambda = -hddot/W,   f_c = f - n hddot
-//     jerk = hddot_q v + hddot_v f_c + hddot_t
 // M^-1 is applied through an L D L' factorisation unrolled in the graph. Throws std::domain_error where a pivot or W is
 // 0 everywhere (M is not positive definite, or dh = 0), TooLarge where the graph would be.
 void derive(Equations& equations, const Layout& layout, Graph& graph);
+
+// The motions that hold contacts, derived from one another when they are asked for: with one contact k more,
+//     f' = f - n_k hddot_k,   impulse_i' = impulse_i - impulse_k W_ik/W_k
+//     W_ij' = W_ij - W_ik W_jk/W_k,   hddot_i' = hddot_i - W_ik hddot_k/W_k
+class HeldMotions {
+ public:
+    // In a copy of the equations' graph.
+    HeldMotions(const Equations& equations, const Layout& layout);
+    const HeldEquations& of(ContactSet held);
+    Graph& graph() { return graph_; }
+
+ private:
+    HeldEquations derive(ContactSet held);
+    Graph graph_;
+    Layout layout_;
+    std::map<ContactSet, HeldEquations> known_;
+};
+
+// h''' of a contact along the motion that holds it and others: hddot_q v + hddot_v f_c + hddot_t.
+Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 }  // namespace achilles

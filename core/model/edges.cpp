@@ -45,8 +45,9 @@ std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
     std::vector<std::uint32_t> moving;
     for (std::uint32_t slot = 0; slot < 2 * layout.dof; ++slot) moving.push_back(slot);
     moving.push_back(layout.t());
-    std::vector<std::pair<Expression, const char*>> written{
-        {equations.kinetic, "the kinetic energy"}, {equations.potential, "the potential"}, {equations.gap, "the gap"}};
+    std::vector<std::pair<Expression, const char*>> written{{equations.kinetic, "the kinetic energy"},
+                                                            {equations.potential, "the potential"}};
+    for (const Expression gap : equations.gaps) written.emplace_back(gap, "the gap");
     for (const Expression force : equations.Q) written.emplace_back(force, "the forces");
     std::vector<Edge> edges;
     for (const auto& [whole, place] : written) {

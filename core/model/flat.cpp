@@ -4,9 +4,9 @@
 
 namespace achilles {
 
-bool is_flat(const Model& model, std::span<const double> parameters, const State& state) {
+bool is_flat(const Model& model, std::span<const double> parameters, const State& state, std::size_t contact) {
     const Layout& layout = model.layout();
-    const Expression gap = model.equations().gap;
+    const Expression gap = model.equations().gaps[contact];
     Graph graph(gap.graph());  // a copy: a model is shared between threads and never changes
     std::vector<std::uint32_t> slots;
     for (std::size_t i = 0; i < layout.dof; ++i) slots.push_back(layout.q(i));

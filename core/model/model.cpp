@@ -5,14 +5,14 @@
 #include <stdexcept>
 
 #include "model/read_expressions.hpp"
+#include "model/scopes.hpp"
 #include "number/ground.hpp"
 #include "system/mistakes.hpp"
 
 namespace achilles {
 
 Model::Model(SystemDescription description) : description_(std::move(description)), graph_(std::make_unique<Graph>()) {
-    layout_ = {static_cast<std::uint32_t>(description_.coordinates.size()),
-               static_cast<std::uint32_t>(description_.parameters.size())};
+    layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
     const Ground ground;  // constants become intervals, too
     Mistakes mistakes;
@@ -36,9 +36,9 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
     try {
         return parse(text.text, scope, graph);
     } catch (const ParseError& error) {
-        if (text.at.line > 0) throw description_.error(place_in(text, error.offset), error.what());
+        if (text.at.line > 0) throw description_.error(place_in(text, error.offset), error.what(), error.hint);
         // It stands in no file: it is shown itself.
-        throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), {}, text.text);
+        throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), error.hint, text.text);
     }
 }
 
@@ -46,45 +46,78 @@ void Model::compile() {
     const Equations& e = equations_;
     const Slots slots = layout_.slots();
     const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
-    gap_ = program(e.gap);
-    normal_acceleration_ = program(e.hddot);
-    force_ = program(e.lambda);
-    restitution_ = program(e.restitution);
-    contact_terms_ = ProgramOf<ContactTerms>::of(slots, e.gap, e.hdot, e.impulse_direction, e.g, e.W, e.gap_t);
-    release_terms_ = ProgramOf<ReleaseTerms>::of(slots, e.hddot, e.jerk);
-    definition7_terms_ = ProgramOf<Definition7Terms>::of(slots, e.hddot, e.impulse_direction, e.f);
+    for (const Expression e_of : e.restitutions) restitutions_.push_back(program(e_of));
+    for (std::size_t i = 0; i < contacts(); ++i)
+        free_.push_back(&programs_.emplace(WhileHeld({}, i), compile_contact(e.free, i)).first->second);
     energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
-    power_ = ProgramOf<PowerTerms>::of(slots, e.power, e.lambda * e.gap_t);
-    start_ = ProgramOf<StartTerms>::of(slots, e.f, e.pivots, e.hddot, e.kinetic, e.potential);
+    power_ = ProgramOf<PowerTerms>::of(slots, e.power, e.free.contacts[0].lambda * e.free.contacts[0].gap_t);
+    start_ = ProgramOf<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
     for (const Edge& edge : edges_) distances.push_back(edge.event_function);
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), 0, distances.size());
 }
 
-const Motion& Model::motion(ContactSet held) const {
-    const std::scoped_lock lock(motions_mutex_);
-    const auto known = motions_.find(held);
-    if (known != motions_.end()) return known->second;
+Model::ContactPrograms Model::compile_contact(const HeldEquations& motion, std::size_t contact) const {
+    const ContactEquations& c = motion.contacts.at(contact);
+    const Slots slots = layout_.slots();
+    const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
+    return {program(c.gap),
+            program(c.hddot),
+            program(c.lambda),
+            ProgramOf<ContactTerms>::of(slots, c.gap, c.hdot, c.direction, c.g, c.W, c.gap_t),
+            ProgramOf<ReleaseTerms>::of(slots, c.hddot, jerk_of(c, layout_)),
+            ProgramOf<Definition7Terms>::of(slots, c.hddot, c.direction, motion.f)};
+}
+
+HeldMotions& Model::held_motions() const {
+    if (!held_) held_ = std::make_unique<HeldMotions>(equations_, layout_);
+    return *held_;
+}
+
+// An entry that stays where it is from the first question on. A model is shared between threads.
+template <class Map, class Make>
+const auto& Model::derived(Map& map, const typename Map::key_type& key, const Make& make) const {
+    const std::scoped_lock lock(held_mutex_);
+    const auto known = map.find(key);
+    if (known != map.end()) return known->second;
     const Ground ground;
-    return motions_.emplace(held, make_motion(held, equations_, layout_)).first->second;
+    try {
+        return map.emplace(key, make()).first->second;
+    } catch (const TooLarge& problem) {
+        throw description_.error(
+            description_.kinetic.at,
+            fmt::format("what holds contacts, or proves a truncation, is too large: {}", problem.what()));
+    }
+}
+
+const Motion& Model::motion(ContactSet held) const {
+    return derived(motions_, held, [&] { return make_motion(held_motions().of(held), equations_, layout_); });
+}
+
+const Model::ContactPrograms& Model::programs_of(std::size_t contact, ContactSet held) const {
+    if (held.empty()) return *free_[contact];
+    return derived(programs_, {held, contact}, [&] { return compile_contact(held_motions().of(held), contact); });
+}
+
+bool Model::is_carried(std::size_t contact, ContactSet held) const {
+    const std::scoped_lock lock(held_mutex_);
+    const Ground ground;
+    return held_motions().of(held).contacts.at(contact).hddot.is_zero();
+}
+
+const Bouncing& Model::bouncing(std::size_t contact, ContactSet held) const {
+    return derived(bouncings_, {held, contact},
+                   [&] { return derive_bouncing(held_motions().of(held).contacts.at(contact), equations_, layout_); });
+}
+
+const Neighbours& Model::neighbours(std::size_t contact, ContactSet held) const {
+    return derived(neighbours_, {held, contact},
+                   [&] { return derive_neighbours(contact, held, held_motions(), layout_); });
 }
 
 LanePrograms Model::lane_programs() const {
-    return {layout_.dof, motion({}).series, motion(ContactSet::of(0)).series, contact_terms_};
-}
-
-const Bouncing& Model::bouncing() const {
-    std::call_once(bouncing_once_, [&] {
-        const Ground ground;
-        try {
-            bouncing_ = std::make_unique<const Bouncing>(derive_bouncing(equations_, layout_));
-        } catch (const TooLarge& problem) {
-            throw description_.error(description_.kinetic.at,
-                                     fmt::format("what proves a truncation is too large: {}", problem.what()));
-        }
-    });
-    return *bouncing_;
+    return {layout_.dof, motion({}).series, motion(ContactSet::of(0)).series, contact_terms()};
 }
 
 Program Model::compile_view(std::span<const Text> texts) const {

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "expression/parse.hpp"
@@ -38,7 +39,7 @@ class Model {
     const SystemDescription& description() const { return description_; }
     const Layout& layout() const { return layout_; }
     int dof() const { return static_cast<int>(layout_.dof); }
-    static constexpr std::size_t contacts() { return 1; }  // a description has one gap
+    std::size_t contacts() const { return equations_.gaps.size(); }
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
@@ -46,14 +47,27 @@ class Model {
     const Motion& motion(ContactSet held) const;
     LanePrograms lane_programs() const;
 
+    // What is asked of one contact while others are held, compiled when it is first asked for.
+    struct ContactPrograms {
+        Program gap;                  // h
+        Program normal_acceleration;  // hddot
+        Program force;                // lambda
+        ProgramOf<ContactTerms> contact_terms;
+        ProgramOf<ReleaseTerms> release_terms;
+        ProgramOf<Definition7Terms> definition7_terms;
+    };
+    const ContactPrograms& programs_of(std::size_t contact, ContactSet held = {}) const;
+    // Whether hddot of a contact is 0 at every state along the motion that holds these: its gap stays 0 with theirs.
+    bool is_carried(std::size_t contact, ContactSet held) const;
+
     // Programs, compiled once.
-    const Program& gap() const { return gap_; }                                  // h
-    const Program& normal_acceleration() const { return normal_acceleration_; }  // hddot
-    const Program& force() const { return force_; }                              // lambda
-    const Program& restitution() const { return restitution_; }                  // e
-    const ProgramOf<ContactTerms>& contact_terms() const { return contact_terms_; }
-    const ProgramOf<ReleaseTerms>& release_terms() const { return release_terms_; }
-    const ProgramOf<Definition7Terms>& definition7_terms() const { return definition7_terms_; }
+    const Program& gap(std::size_t contact = 0) const { return programs_of(contact).gap; }
+    const Program& normal_acceleration() const { return programs_of(0).normal_acceleration; }
+    const Program& force() const { return programs_of(0).force; }
+    const Program& restitution(std::size_t contact = 0) const { return restitutions_[contact]; }
+    const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
+    const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
+    const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
     const ProgramOf<EnergyTerms>& energy() const { return energy_; }
     const ProgramOf<PowerTerms>& power() const { return power_; }
 
@@ -61,9 +75,10 @@ class Model {
     const std::vector<Edge>& edges() const { return edges_; }
     const SeriesProgram& edge_series() const { return edge_series_; }
 
-    // The programs of the truncation conditions, derived when they are first asked for. Throws InputError if they are
-    // too large.
-    const Bouncing& bouncing() const;
+    // The programs of the truncation conditions of a contact while others are held, derived when they are first asked
+    // for. Throws InputError if they are too large.
+    const Bouncing& bouncing(std::size_t contact = 0, ContactSet held = {}) const;
+    const Neighbours& neighbours(std::size_t contact, ContactSet held) const;
 
     // An evaluator of one of the programs above with the parameters' values in place.
     template <class Scalar = double>
@@ -98,21 +113,25 @@ class Model {
     Run default_run() const { return achilles::default_run(description_); }
     // Throws InputErrors if the run cannot start: start not finite or T, V, h or the acceleration undefined there,
     // restitution outside [0,1], M not positive definite, gap clearly negative, dh = 0 in contact, a parameter
-    // subnormal, eps, tolerance or end time not positive.
+    // subnormal, eps or tolerance not positive, the end not after the start.
     void check(const Run& run) const;
 
     // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
-    // energy (view) or over coordinates and parameters, plus a curve's own parameter (drawing). Throw InputError.
+    // energy (view) or over coordinates, t and parameters, plus a curve's own parameter (drawing). Throw InputError.
     Program compile_view(std::span<const Text> texts) const;
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 
  private:
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
     void compile();
+    ContactPrograms compile_contact(const HeldEquations& motion, std::size_t contact) const;
+    HeldMotions& held_motions() const;
+    template <class Map, class Make>
+    const auto& derived(Map& map, const typename Map::key_type& key, const Make& make) const;
     // Throw Mistake.
-    void check_restitution(const Run& run) const;
+    void check_restitution(const Run& run, std::size_t contact) const;
     void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
-    void check_gap(const Run& run) const;
+    void check_gap(const Run& run, std::size_t contact) const;
     void check_mass(const StartTerms<Evaluator<double>>& start) const;
     void check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const;
 
@@ -121,16 +140,17 @@ class Model {
     std::unique_ptr<Graph> graph_;
     Equations equations_;
     std::vector<std::string> slot_names_;
-    mutable std::once_flag bouncing_once_;
-    mutable std::unique_ptr<const Bouncing> bouncing_;
-    mutable std::mutex motions_mutex_;
+    using WhileHeld = std::pair<ContactSet, std::size_t>;  // a contact, while others are held
+    mutable std::mutex held_mutex_;                        // of what is derived when it is asked for
+    mutable std::unique_ptr<HeldMotions> held_;
     mutable std::map<ContactSet, Motion> motions_;
+    mutable std::map<WhileHeld, ContactPrograms> programs_;
+    mutable std::map<WhileHeld, Bouncing> bouncings_;
+    mutable std::map<WhileHeld, Neighbours> neighbours_;
+    std::vector<const ContactPrograms*> free_;  // of programs_, those of contacts while none is held
+    std::vector<Program> restitutions_;
     SeriesProgram edge_series_;
     std::vector<Edge> edges_;
-    Program gap_, normal_acceleration_, force_, restitution_;
-    ProgramOf<ContactTerms> contact_terms_;
-    ProgramOf<ReleaseTerms> release_terms_;
-    ProgramOf<Definition7Terms> definition7_terms_;
     ProgramOf<EnergyTerms> energy_;
     ProgramOf<PowerTerms> power_;
     ProgramOf<StartTerms> start_;

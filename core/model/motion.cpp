@@ -1,24 +1,42 @@
 #include "model/motion.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 namespace achilles {
 
-Motion make_motion(ContactSet held, const Equations& e, const Layout& layout) {
+namespace {
+
+// The motion's acceleration as it was derived, and as it follows from the forces of what is held.
+std::pair<Expressions, Expressions> accelerations(const HeldEquations& motion) {
+    for (std::size_t i = 0; i < motion.contacts.size(); ++i)
+        if (motion.held == ContactSet::of(i)) return {motion.f, motion.contacts[i].f_by_force};
+    return {motion.f, {}};
+}
+
+}  // namespace
+
+Motion make_motion(const HeldEquations& motion, const Equations& e, const Layout& layout) {
     const Slots slots = layout.slots();
-    const auto series_of = [&](const Expressions& acceleration, const Expressions& event_functions) {
-        return SeriesProgram(Program(joined({acceleration, event_functions, e.pivots}), slots), layout.dof,
+    Graph& graph = motion.f.front().graph();
+    Expressions pivots, hddot, jerks, event_functions;
+    for (const Expression pivot : e.pivots) pivots.push_back(graph.adopt(pivot));
+    for (std::size_t i = 0; i < motion.contacts.size(); ++i) {
+        const ContactEquations& c = motion.contacts[i];
+        hddot.push_back(c.hddot);
+        event_functions.push_back(motion.held.contains(i) ? c.hddot : c.gap);
+        if (motion.held.contains(i)) jerks.push_back(jerk_of(c, layout));
+    }
+    const auto series_of = [&](const Expressions& acceleration) {
+        return SeriesProgram(Program(joined({acceleration, event_functions, pivots}), slots), layout.dof,
                              event_functions.size());
     };
-    if (held.empty())
-        return {held, ProgramOf<MotionTerms>::of(slots, e.f, e.pivots, Expressions{e.hddot}), series_of(e.f, {e.gap})};
-    if (held != ContactSet::of(0)) throw std::out_of_range("a contact that the system does not have");
-    // Two ways to say the same; one takes fewer products.
-    SeriesProgram direct = series_of(e.f_c, {e.hddot}), by_force = series_of(e.f_by_force, {e.hddot});
-    const bool is_cheaper = by_force.inner_sums() < direct.inner_sums();
-    return {held, ProgramOf<MotionTerms>::of(slots, e.f_c, e.pivots, Expressions{e.hddot, e.jerk}),
-            std::move(is_cheaper ? by_force : direct)};
+    const auto [f, by_force] = accelerations(motion);
+    SeriesProgram series = series_of(f);
+    if (!by_force.empty()) {  // two ways to say the same; one takes fewer products
+        SeriesProgram other = series_of(by_force);
+        if (other.inner_sums() < series.inner_sums()) series = std::move(other);
+    }
+    return {motion.held, ProgramOf<MotionTerms>::of(slots, f, pivots, joined({hddot, jerks})), std::move(series)};
 }
 
 }  // namespace achilles

@@ -8,15 +8,15 @@
 
 namespace achilles {
 
-// Every contact has an event function along a motion: its gap where it is open, hddot of the free motion where it is
-// held (the force, times -W).
+// Every contact has an event function along a motion: its gap where it is open, and where it is held the hddot of the
+// motion that holds the others alone (the force, times -W).
 struct Motion {
     ContactSet held;
     ProgramOf<MotionTerms> program;
     SeriesProgram series;  // MotionSeries
 };
 
-// Compiles the motion that holds these contacts. Throws std::out_of_range for a contact that the system does not have.
-Motion make_motion(ContactSet held, const Equations& equations, const Layout& layout);
+// Compiles a motion; `equations` has the graph of `motion`, or that it was copied from. Throws TooLarge.
+Motion make_motion(const HeldEquations& motion, const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

@@ -6,85 +6,15 @@
 #include <optional>
 
 #include "expression/graph.hpp"
+#include "expression/read_number.hpp"
 #include "model/rate_polynomial.hpp"
+#include "model/scopes.hpp"
 #include "program/program.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
 
 namespace {
-
-void allow_positions(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-        scope.allowed.emplace(system.coordinates[i].name, graph.symbol(layout.q(i)));
-}
-
-void allow_rates(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
-        scope.allowed.emplace(system.coordinates[i].name + "'", graph.symbol(layout.v(i)));
-}
-
-void allow_parameters(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
-    for (std::size_t i = 0; i < system.parameters.size(); ++i)
-        scope.allowed.emplace(system.parameters[i].name, graph.symbol(layout.parameter(i)));
-}
-
-// Names with primes that mean nothing anywhere.
-void forbid_primes(Scope& scope, const SystemDescription& system) {
-    for (const CoordinateDescription& coordinate : system.coordinates)
-        scope.forbidden.emplace(
-            coordinate.name + "''",
-            fmt::format("the acceleration {}'' may not stand in an expression: it follows from them", coordinate.name));
-    for (const ParameterDescription& parameter : system.parameters)
-        scope.forbidden.emplace(parameter.name + "'",
-                                fmt::format("'{}' is a parameter: it has no rate", parameter.name));
-}
-
-// Words that mean something in views only.
-void forbid_outputs(Scope& scope) {
-    for (const char* word : {"gap", "gap'", "gap''", "lambda", "energy"})
-        scope.forbidden.emplace(word, fmt::format("'{}' may stand in a [[view]] only", word));
-    scope.forbidden.emplace("t", "'t' may stand in a [[view]] only: a system does not depend on time");
-}
-
-Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    Scope scope;
-    allow_positions(scope, system, layout, graph);
-    allow_rates(scope, system, layout, graph);
-    allow_parameters(scope, system, layout, graph);
-    forbid_primes(scope, system);
-    forbid_outputs(scope);
-    return scope;
-}
-
-// Coordinates and parameters; `what` is the text that they stand in.
-Scope position_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* what) {
-    Scope scope;
-    allow_positions(scope, system, layout, graph);
-    allow_parameters(scope, system, layout, graph);
-    for (const CoordinateDescription& coordinate : system.coordinates)
-        scope.forbidden.emplace(coordinate.name + "'",
-                                fmt::format("the rate {}' may not stand in the {}: it depends on coordinates alone",
-                                            coordinate.name, what));
-    forbid_primes(scope, system);
-    forbid_outputs(scope);
-    return scope;
-}
-
-Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    Scope scope;
-    allow_parameters(scope, system, layout, graph);
-    for (const CoordinateDescription& coordinate : system.coordinates) {
-        const std::string& name = coordinate.name;
-        scope.forbidden.emplace(
-            name, fmt::format("the coordinate '{}' may not stand in the restitution: parameters alone", name));
-        scope.forbidden.emplace(name + "'",
-                                fmt::format("the rate {}' may not stand in the restitution: parameters alone", name));
-    }
-    forbid_primes(scope, system);
-    forbid_outputs(scope);
-    return scope;
-}
 
 std::string without_primes(const std::string& name) { return name.substr(0, name.find('\'')); }
 
@@ -103,7 +33,7 @@ class Reader {
             } catch (const ParseError& error) {
                 // With a guess in it, nothing but another name can be blamed.
                 const bool is_told = error.name.empty() ? !is_certain : excuse(error.name, scope);
-                if (!is_told) mistakes_.add({place_in(text, error.offset), error.what(), {}});
+                if (!is_told) mistakes_.add({place_in(text, error.offset), error.what(), error.hint});
                 if (error.name.empty() || !go_on(error.name, scope)) return std::nullopt;
             }
         }
@@ -243,6 +173,33 @@ void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& mak
     });
 }
 
+// The derived parameters', for their mistakes: scopes hold what they stand for.
+void read_definitions(const SystemDescription& system, const Layout& layout, Reader& reader, Graph& graph) {
+    if (system.derived.empty()) return;
+    const Scope parameters = definition_scope(system, layout, graph);
+    for (const DerivedDescription& derived : system.derived) {
+        Scope scope = parameters;
+        allow_units(scope, derived.unit, graph);
+        reader.read(derived.definition, scope);
+    }
+}
+
+// Q_i = force_i - dR/dv_i.
+void read_forces(const SystemDescription& system, const Layout& layout, Reader& reader, Equations& equations,
+                 Mistakes& mistakes) {
+    Graph& graph = equations.kinetic.graph();
+    Scope scope = force_scope(system, layout, graph);
+    equations.Q.clear();
+    for (const CoordinateDescription& coordinate : system.coordinates)
+        equations.Q.push_back(reader.read(coordinate.force, scope).value_or(graph.number(0)));
+    const auto dissipation = reader.read(system.dissipation, scope);
+    if (!dissipation) return;
+    attempt_within_limits(mistakes, system.dissipation, [&] {
+        const std::vector<Expression> slope = gradient(*dissipation, rate_slots(layout));
+        for (std::size_t i = 0; i < slope.size(); ++i) equations.Q[i] = equations.Q[i] - slope[i];
+    });
+}
+
 // A restitution that no parameter changes. One that parameters change is looked at when a run starts.
 void check_restitution(const Text& text, Expression restitution) {
     if (!is_constant(restitution)) return;
@@ -254,46 +211,6 @@ void check_restitution(const Text& text, Expression restitution) {
 
 }  // namespace
 
-std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {
-    std::vector<std::string> names(layout.count());
-    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
-        names[layout.q(i)] = system.coordinates[i].name;
-        names[layout.v(i)] = system.coordinates[i].name + "'";
-    }
-    for (std::size_t i = 0; i < system.parameters.size(); ++i) names[layout.parameter(i)] = system.parameters[i].name;
-    names[layout.t()] = "t";
-    names[layout.contact()] = "contact";
-    names[layout.sigma()] = "sigma";
-    names[layout.own()] = "own";
-    names[layout.work()] = "work";
-    names[layout.loss()] = "loss";
-    return names;
-}
-
-Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations) {
-    Scope scope;
-    allow_positions(scope, system, layout, graph);
-    allow_rates(scope, system, layout, graph);
-    allow_parameters(scope, system, layout, graph);
-    forbid_primes(scope, system);
-    const Expression contact = graph.symbol(layout.contact());
-    scope.allowed.emplace("t", graph.symbol(layout.t()));
-    scope.allowed.emplace("gap", graph.adopt(equations.gap));
-    scope.allowed.emplace("gap'", graph.adopt(equations.hdot));
-    scope.allowed.emplace("gap''", (graph.number(1) - contact) * graph.adopt(equations.hddot));
-    scope.allowed.emplace("lambda", contact * graph.adopt(equations.lambda));
-    scope.allowed.emplace("energy", graph.adopt(equations.energy));
-    scope.allowed.emplace(
-        "power", graph.adopt(equations.power) - contact * graph.adopt(equations.lambda) * graph.adopt(equations.gap_t));
-    scope.allowed.emplace("work", graph.symbol(layout.work()));
-    scope.allowed.emplace("loss", graph.symbol(layout.loss()));
-    return scope;
-}
-
-Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    return position_scope(system, layout, graph, "drawing");
-}
-
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
                     Equations& equations, Mistakes& mistakes) {
     Reader reader(graph, names, mistakes);
@@ -301,21 +218,30 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
     const auto read = [&](const Text& text, Scope scope, TextParts* places = nullptr) {
         return reader.read(text, scope, places);
     };
+    read_definitions(system, layout, reader, graph);
     const auto kinetic = read(system.kinetic, kinetic_scope(system, layout, graph), &parts);
-    const auto potential = read(system.potential, position_scope(system, layout, graph, "potential"));
-    const auto gap = read(system.gap, position_scope(system, layout, graph, "gap"));
-    const auto restitution = read(system.restitution, restitution_scope(system, layout, graph));
+    const auto potential = read(system.potential, potential_scope(system, layout, graph));
+    std::vector<std::optional<Expression>> gaps, restitutions;
+    for (const ConstraintDescription& constraint : system.constraints) {
+        gaps.push_back(read(constraint.gap, gap_scope(system, layout, graph)));
+        restitutions.push_back(read(constraint.restitution, restitution_scope(system, layout, graph)));
+    }
     const Expression nothing = graph.number(0);
     equations.kinetic = kinetic.value_or(nothing);
     equations.potential = potential.value_or(nothing);
-    equations.gap = gap.value_or(nothing);
-    equations.restitution = restitution.value_or(nothing);
-    equations.Q.assign(layout.dof, nothing);
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+        equations.gaps.push_back(gaps[i].value_or(nothing));
+        equations.restitutions.push_back(restitutions[i].value_or(nothing));
+    }
     if (kinetic && names.complete)
         attempt_within_limits(mistakes, system.kinetic, [&] { read_mass_matrix(system, layout, parts, equations); });
-    if (gap && names.complete)
-        attempt_within_limits(mistakes, system.gap, [&] { check_gap(system.gap, *gap, layout); });
-    if (restitution) mistakes.attempt([&] { check_restitution(system.restitution, *restitution); });
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+        const ConstraintDescription& constraint = system.constraints[i];
+        if (gaps[i] && names.complete)
+            attempt_within_limits(mistakes, constraint.gap, [&] { check_gap(constraint.gap, *gaps[i], layout); });
+        if (restitutions[i]) mistakes.attempt([&] { check_restitution(constraint.restitution, *restitutions[i]); });
+    }
+    read_forces(system, layout, reader, equations, mistakes);
 }
 
 namespace {
@@ -323,7 +249,7 @@ namespace {
 void read_pictures(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                    Reader& reader) {
     Scope in_drawings = drawing_scope(system, layout, graph);
-    for (const DrawingDescription& drawing : system.drawings) {
+    for (const DrawingDescription& drawing : drawings_of(system)) {
         if (drawing.shape == DrawingDescription::Shape::curve && drawing.over.empty()) continue;  // its name is missing
         if (!drawing.over.empty()) in_drawings.allowed.insert_or_assign(drawing.over, graph.symbol(layout.own()));
         for (const Text& text : texts_of(drawing)) reader.read(text, in_drawings);
@@ -339,13 +265,14 @@ void read_pictures(const SystemDescription& system, const Layout& layout, Graph&
 }  // namespace
 
 void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
-    const Layout layout{static_cast<std::uint32_t>(system.coordinates.size()),
-                        static_cast<std::uint32_t>(system.parameters.size())};
+    const Layout layout = layout_of(system);
     Graph graph;
     Equations equations;
     read_equations(system, layout, graph, names, equations, mistakes);
-    equations.hdot = equations.hddot = equations.lambda = equations.energy = equations.power = equations.gap_t =
-        graph.symbol(layout.t());  // any value
+    const Expression any_value = graph.symbol(layout.t());
+    equations.energy = equations.power = any_value;
+    equations.free.contacts.resize(system.constraints.size());
+    for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
     Reader reader(graph, names, mistakes);
     attempt_within_limits(mistakes, system.kinetic, [&] { read_pictures(system, layout, graph, equations, reader); });
 }

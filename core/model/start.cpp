@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "model/derived_values.hpp"
 #include "model/flat.hpp"
 #include "model/model.hpp"
 #include "model/undefined.hpp"
@@ -28,6 +29,13 @@ void Model::check(const Run& run) const {
         if (is_subnormal(run.parameters[i]))
             refuse(parameter.at, subnormal_parameter(parameter.name, run.parameters[i]), subnormal_hint);
     }
+    const std::vector<double> derived = derived_values(*this, run.parameters);
+    const bool have_values = mistakes.count() == before;  // what they follow from
+    for (std::size_t i = 0; i < derived.size(); ++i)
+        if (have_values && !std::isfinite(derived[i]))
+            refuse(description_.derived[i].definition.at,
+                   fmt::format("the parameter '{}', which follows from others, is not finite",
+                               description_.derived[i].name));
     for (int i = 0; i < dof(); ++i) {
         const auto& coordinate = description_.coordinates[static_cast<std::size_t>(i)];
         if (!std::isfinite(run.q[i]))
@@ -39,21 +47,22 @@ void Model::check(const Run& run) const {
         auto start = evaluator(start_, run.parameters);
         set_state(start, run.start());
         start.run();
-        mistakes.attempt([&] { check_restitution(run); });
+        for (std::size_t i = 0; i < contacts(); ++i) mistakes.attempt([&] { check_restitution(run, i); });
         // What follows from an energy or a gap without a value has none either: it is told once.
         const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
-        const bool has_gap = mistakes.attempt([&] { check_gap(run); });
+        bool has_gap = true;
+        for (std::size_t i = 0; i < contacts(); ++i) has_gap = mistakes.attempt([&] { check_gap(run, i); }) && has_gap;
         const bool has_mass = has_energies && mistakes.attempt([&] { check_mass(start); });
         if (has_mass && has_gap) mistakes.attempt([&] { check_acceleration(run, start); });
     }
     mistakes.raise(description_);
 }
 
-void Model::check_restitution(const Run& run) const {
-    const double e = evaluator(restitution_, run.parameters).output(0);
+void Model::check_restitution(const Run& run, std::size_t contact) const {
+    const double e = evaluator(restitution(contact), run.parameters).output(0);
     if (!(e >= 0.0 && e <= 1.0))
-        throw Mistake{description_.restitution.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e),
-                      "0 is plastic, 1 is elastic"};
+        throw Mistake{description_.constraints[contact].restitution.at,
+                      fmt::format("the restitution must lie in [0, 1], but it is {}", e), "0 is plastic, 1 is elastic"};
 }
 
 namespace {
@@ -82,27 +91,27 @@ void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& 
 }
 
 // The gap has a value and is not clearly negative, and where there is contact there is a normal.
-void Model::check_gap(const Run& run) const {
+void Model::check_gap(const Run& run, std::size_t contact) const {
+    const Location at = description_.constraints[contact].gap.at;
     const State start = run.start();
-    auto gap = evaluator<Interval>(gap_, run.parameters);
+    auto gap = evaluator<Interval>(this->gap(contact), run.parameters);
     set_state(gap, start);
     gap.run();
     const Interval h = gap.output(0);
     const double error = rad(h);
-    if (!std::isfinite(error)) throw no_value(*this, run, description_.gap.at, "the gap", {&equations_.gap, 1});
+    if (!std::isfinite(error)) throw no_value(*this, run, at, "the gap", {&equations_.gaps[contact], 1});
     if (mid(h) < -4.0 * error)
-        throw Mistake{description_.gap.at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
+        throw Mistake{at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
                       "choose a start with h(q) >= 0"};
     if (std::abs(mid(h)) > 4.0 * error) return;
-    auto contact = evaluator(contact_terms_, run.parameters);
-    set_state(contact, start);
-    contact.run();
+    auto terms = evaluator(programs_of(contact).contact_terms, run.parameters);
+    set_state(terms, start);
+    terms.run();
     double slope = 0.0;
-    for (std::size_t i = 0; i < layout_.dof; ++i) slope += contact.gradient(i) * contact.gradient(i);
+    for (std::size_t i = 0; i < layout_.dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
     constexpr double steep = 1e-6;  // with it a gap is not flat where it is 0 to within rounding; the rest is asked
-    if (slope < steep && is_flat(*this, run.parameters, start))
-        throw Mistake{description_.gap.at, "dh = 0 at the start, which is in contact: the normal is not defined",
-                      flat_hint};
+    if (slope < steep && is_flat(*this, run.parameters, start, contact))
+        throw Mistake{at, "dh = 0 at the start, which is in contact: the normal is not defined", flat_hint};
 }
 
 // M is positive definite.
@@ -133,11 +142,16 @@ void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double
         for (std::size_t i = 0; i < parts.size(); ++i)
             if (!std::isfinite(value.output(i))) throw no_value(*this, run, text.at, what, parts);
     };
+    for (std::size_t i = 0; i < description_.coordinates.size(); ++i)
+        if (!description_.coordinates[i].force.text.empty())
+            blame(description_.coordinates[i].force, "the force", {graph.adopt(equations_.Q[i])});
     blame(description_.potential, "a derivative of the potential", gradient(graph.adopt(equations_.potential), q));
-    std::vector<Expression> of_gap = gradient(graph.adopt(equations_.gap), q);
-    for (const auto& row : jacobian(of_gap, q)) of_gap.insert(of_gap.end(), row.begin(), row.end());
-    blame(description_.gap, "a derivative of the gap", of_gap);
-    throw no_value(*this, run, description_.kinetic.at, "the acceleration", equations_.f);
+    for (std::size_t i = 0; i < contacts(); ++i) {
+        std::vector<Expression> of_gap = gradient(graph.adopt(equations_.gaps[i]), q);
+        for (const auto& row : jacobian(of_gap, q)) of_gap.insert(of_gap.end(), row.begin(), row.end());
+        blame(description_.constraints[i].gap, "a derivative of the gap", of_gap);
+    }
+    throw no_value(*this, run, description_.kinetic.at, "the acceleration", equations_.free.f);
 }
 
 }  // namespace achilles

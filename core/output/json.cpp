@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "model/derived_values.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/output.hpp"
@@ -28,6 +29,8 @@ Json system_of(const Trajectory& trajectory) {
     for (const auto& coordinate : description.coordinates) coordinates.push_back(coordinate.name);
     for (std::size_t i = 0; i < description.parameters.size(); ++i)
         parameters[description.parameters[i].name] = number(trajectory.run.parameters[i]);
+    const std::vector<double> derived = derived_values(*trajectory.model, trajectory.run.parameters);
+    for (std::size_t i = 0; i < derived.size(); ++i) parameters[description.derived[i].name] = number(derived[i]);
     return {{"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}};
 }
 
@@ -36,6 +39,8 @@ Json units_of(const SystemDescription& description) {
     Json units = {{"t", "s"}};
     for (const std::string& name : settable_names(description))
         if (const std::string unit = unit_of(description, name); !unit.empty()) units[name] = unit;
+    for (const DerivedDescription& derived : description.derived)
+        if (!derived.unit.empty()) units[derived.name] = derived.unit;
     return units;
 }
 
@@ -141,7 +146,10 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"work", number(trajectory.work)},
                      {"loss", number(trajectory.loss)}}},
                    {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
-                   {"start", {{"t", 0.0}, {"q", list(trajectory.run.q)}, {"v", list(trajectory.run.v)}}},
+                   {"start",
+                    {{"t", number(trajectory.run.options.start_time)},
+                     {"q", list(trajectory.run.q)},
+                     {"v", list(trajectory.run.v)}}},
                    {"units", units_of(trajectory.model->description())},
                    {"statistics",
                     {{"steps", s.steps},

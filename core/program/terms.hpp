@@ -68,8 +68,8 @@ class ContactTerms : public Terms<Base> {
     decltype(auto) gap_t() const { return this->output(3 + 2 * this->dof_); }
 };
 
-// The acceleration of a motion, the pivots of M, hddot of the free motion at every contact, and of those that are held,
-// one after the other, the rate of hddot.
+// The acceleration of a motion, the pivots of M, hddot of every contact (of a held one along the motion that holds the
+// others), and of those that are held, one after the other, the rate of that.
 template <class Base>
 class MotionTerms : public Terms<Base> {
  public:

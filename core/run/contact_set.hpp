@@ -7,6 +7,9 @@
 
 namespace achilles {
 
+// The most that a system may have.
+inline constexpr std::size_t max_contacts = 16;
+
 // Free flight holds none; the constrained motion of a system with one gap holds contact 0.
 class ContactSet {
  public:
@@ -18,6 +21,9 @@ class ContactSet {
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
     constexpr ContactSet with(std::size_t contact) const { return ContactSet(bits_ | 1u << contact); }
     constexpr ContactSet without(std::size_t contact) const { return ContactSet(bits_ & ~(1u << contact)); }
+
+    constexpr ContactSet with(ContactSet others) const { return ContactSet(bits_ | others.bits_); }
+    constexpr ContactSet without(ContactSet others) const { return ContactSet(bits_ & ~others.bits_); }
 
     friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
     friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }

@@ -22,6 +22,8 @@ template <>
 constexpr std::array<std::string_view, 2> words_of<Conditions>{"paper", "sharp"};
 template <>
 constexpr std::array<std::string_view, 2> words_of<Reinitialization>{"euclidean", "kinetic"};
+template <>
+constexpr std::array<std::string_view, 2> words_of<Simultaneous>{"moreau", "stop"};
 
 template <class Choice>
 std::string_view word_of(Choice choice) {
@@ -40,6 +42,7 @@ std::optional<Choice> choice_from(std::string_view text) {
 std::string_view to_text(Method method) { return word_of(method); }
 std::string_view to_text(Conditions conditions) { return word_of(conditions); }
 std::string_view to_text(Reinitialization kind) { return word_of(kind); }
+std::string_view to_text(Simultaneous kind) { return word_of(kind); }
 std::optional<Method> method_from(std::string_view text) { return choice_from<Method>(text); }
 std::optional<Conditions> conditions_from(std::string_view text) { return choice_from<Conditions>(text); }
 std::optional<Reinitialization> reinitialization_from(std::string_view text) {
@@ -86,15 +89,27 @@ constexpr std::string_view usage_of_eps = "write: eps 1e-6, or: eps POSITION VEL
 constexpr std::string_view wrong_eps = "eps must be positive and finite, but it would be {}";
 
 constexpr std::array rows{
+    at<&Options::start_time>({.key = "start_time",
+                              .table = "run",
+                              .flag = "--start-time",
+                              .command = "start-time",
+                              .usage = "write: start-time NUMBER",
+                              .wrong = "the start time must be finite, but it would be {}",
+                              .unit = "s",
+                              .about = "start time",
+                              .phrase = "start time {}",
+                              .quiet = true,
+                              .any_sign = true}),
     at<&Options::end_time>({.key = "end_time",
                             .table = "run",
                             .flag = "--end",
                             .command = "end",
                             .usage = "write: end NUMBER",
-                            .wrong = "the end time must be positive and finite, but it would be {}",
+                            .wrong = "the end time must be finite, but it would be {}",
                             .unit = "s",
-                            .about = "end time",
-                            .phrase = "end time {}"}),
+                            .about = "end time, after the start time",
+                            .phrase = "end time {}",
+                            .any_sign = true}),
     at<&Options::tolerance>({.key = "tolerance",
                              .table = "run",
                              .flag = "--tolerance",
@@ -139,6 +154,15 @@ constexpr std::array rows{
                           .about = "for what is kept of the run: then it stops",
                           .phrase = "at most {} bytes",
                           .quiet = true}),
+    at<&Options::simultaneous>({.key = "simultaneous",
+                                .table = "run",
+                                .flag = "--simultaneous",
+                                .command = "simultaneous",
+                                .usage = "write: simultaneous moreau, or: simultaneous stop",
+                                .wrong = "there is no way '{}' to take landings at the same time",
+                                .about = "landings at the same time whose order matters",
+                                .phrase = "simultaneous landings: {}",
+                                .quiet = true}),
     at<cut, &Truncation::eps_q>({.key = "eps_q",
                                  .table = "truncation",
                                  .flag = "--eps-q",
@@ -208,6 +232,15 @@ std::vector<std::span<const Option>> options_by_command() {
     return groups;
 }
 
+std::vector<std::span<const Option>> options_by_command(const Options& from, const Options& to) {
+    auto groups = options_by_command();
+    const auto of = [&](std::string_view key) {
+        return std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return group[0].key == key; });
+    };
+    if (to.start_time >= from.end_time) std::swap(*of("start_time"), *of("end_time"));
+    return groups;
+}
+
 std::vector<const Option*> told_options(std::initializer_list<std::string_view> first) {
     std::vector<const Option*> told;
     for (const Option& o : rows) told.push_back(&o);
@@ -221,7 +254,8 @@ std::vector<const Option*> told_options(std::initializer_list<std::string_view> 
 }
 
 bool allows(const Option& option, const OptionValue& value) {
-    if (const auto* number = std::get_if<double>(&value)) return std::isfinite(*number) && *number > 0.0;
+    if (const auto* number = std::get_if<double>(&value))
+        return std::isfinite(*number) && (option.any_sign || *number > 0.0);
     if (const auto* whole = std::get_if<int>(&value)) return *whole >= 1;
     const auto& words = option.words;
     return std::find(words.begin(), words.end(), std::get<std::string_view>(value)) != words.end();
@@ -247,6 +281,11 @@ void raise_to_least(Options& options) {
         if (o.is_tolerance) o.set(options, std::max(std::get<double>(o.get(options)), least_tolerance));
 }
 
+std::optional<std::string> fault_of_times(const Options& options) {
+    if (!(options.end_time <= options.start_time)) return std::nullopt;
+    return fmt::format("the end time {} is not after the start time {}", options.end_time, options.start_time);
+}
+
 std::vector<std::string> faults(const Options& options) {
     std::vector<std::string> told;
     for (const Option& o : all_options()) {
@@ -254,9 +293,11 @@ std::vector<std::string> faults(const Options& options) {
         const OptionValue value = o.get(options);
         if (allows(o, value)) continue;
         told.push_back(std::holds_alternative<double>(value)
-                           ? fmt::format("{} must be a positive number, but it is {}", o.key, to_text(value))
+                           ? fmt::format("{} must be a {} number, but it is {}", o.key,
+                                         o.any_sign ? "finite" : "positive", to_text(value))
                            : fmt::format("{} must be at least 1", o.key));
     }
+    if (const auto fault = fault_of_times(options)) told.push_back(*fault);
     return told;
 }
 

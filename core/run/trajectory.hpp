@@ -1,8 +1,9 @@
 // A completed execution (Defs. 4 and 5 of the paper), as data: phases, the events between them, and how it ended.
 // The central noun of Achilles; read this first.
 //
-// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0. A Zeno event ends a hybrid phase, a
-// release ends a constrained one, impacts happen inside hybrid phases.
+// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0 of the contacts that it holds. A phase ends
+// where that set changes: at the Zeno point of a contact, which joins it, at a release, at an impact that opens a held
+// contact. With one contact impacts happen inside hybrid phases; with several a constrained phase may have its own.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "run/contact_set.hpp"
 #include "run/options.hpp"
 #include "run/state.hpp"
 
@@ -25,7 +28,7 @@ struct Piece {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    bool contact = false;           // on the surface: a sample is projected to h = 0, hdot = 0
+    ContactSet held;                // on whose surfaces it lies: a sample is projected to h = 0, hdot = 0
     double work = 0.0, loss = 0.0;  // of the run, until it starts
 };
 
@@ -34,7 +37,8 @@ State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::
 
 struct Phase {
     enum class Kind { hybrid, constrained };
-    Kind kind = Kind::hybrid;
+    Kind kind = Kind::hybrid;  // exactly where none is held
+    ContactSet held;
     double start = 0.0, end = 0.0;
     int impacts = 0;
     std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time
@@ -67,6 +71,17 @@ struct Certificate {
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
     };
     std::optional<Paper> paper;
+    // Of the other contacts until tau_inf, where there are any: what impulses are passed on to held ones by, the least force
+    // that holds each, the least gap of those that are open.
+    struct Others {
+        struct Held {
+            std::size_t contact;
+            double transmission_low, transmission_high, least_force;
+        };
+        std::vector<Held> held;
+        std::optional<double> least_gap;
+    };
+    std::optional<Others> others;
     // By which it is decided whether the bouncing may be cut. Nothing where that needs no condition.
     struct Decision {
         Inequality time, position, velocity;
@@ -79,13 +94,30 @@ struct Certificate {
     std::vector<Inequality> inequalities() const;
 };
 
+// What an event of several contacts has besides.
+struct Joint {
+    std::vector<std::pair<std::size_t, double>> impulses;  // of an impact, contact by contact
+    bool not_unique = false;                               // another share of the same impulses, or forces, would do
+    // Landings that cannot be ordered, and whose order matters: what was done is Moreau's law, all at once. The rates of
+    // the gaps that would follow if one contact was first, and together.
+    bool order_matters = false;
+    struct Alternative {
+        std::optional<std::size_t> first;                         // nothing: all at once
+        std::vector<std::pair<std::size_t, double>> rates_after;  // of the gaps
+    };
+    std::vector<Alternative> alternatives;
+};
+
 struct Event {
     enum class Kind { impact, zeno, release };
     Kind kind = Kind::impact;
     double t = 0.0;
-    Vector q, v_before, v_after;    // equal velocities where nothing jumps (release, zeno)
-    double impact_speed = 0.0;      // impact: |hdot| before
-    double work = 0.0, loss = 0.0;  // of the run until then, what happens here included
+    Vector q, v_before, v_after;         // equal velocities where nothing jumps (release, zeno)
+    double impact_speed = 0.0;           // impact: |hdot| before
+    ContactSet contacts;                 // that land, come to rest, or leave
+    ContactSet held, opened;             // after it; of an impact: those that were held before and leave
+    std::shared_ptr<const Joint> joint;  // may be null
+    double work = 0.0, loss = 0.0;       // of the run until then, what happens here included
     int impacts = 0;     // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
     struct Truncation {  // zeno: the impact where the bouncing was cut, and what restarted from it
         double t = 0.0;
@@ -109,7 +141,9 @@ struct Outcome {
         left_the_domain,
         step_too_small,
         undecided,
-        cancelled  // another thread told it to stop
+        simultaneous_impacts,  // their order matters and cannot be told, and the run is to stop there
+        redundant_contacts,    // that leave no motion, or are more than can be decided
+        cancelled              // another thread told it to stop
     };
     Kind kind = Kind::end_time;
     std::string message;
@@ -134,6 +168,8 @@ struct Trajectory {
     double end_time = 0.0;
     State end;
     Phase::Kind end_phase = Phase::Kind::hybrid;
+    ContactSet end_held;
+    int by_convention = 0;  // impacts whose order matters and could not be told
     // E(end) - E(start) = work - loss: what forces, a potential that changes with time and moving surfaces have done on the
     // system, and what impacts have taken. The work is no number where the ends of steps alone were kept.
     double work = 0.0, loss = 0.0;

@@ -17,33 +17,47 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 // ---- impact ----
 
-void Execution::land(const Contact& contact) {
+void Execution::land(std::size_t which, const Contact& contact) {
+    which_ = which;
     if (!(contact.hdot < 0.0)) {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(next_.state));
         return;
     }
     if (record_.impacts() >= run_.options.max_impacts) {
-        const bool elastic = restitution_ >= 1.0;
+        const bool elastic = restitutions_[which] >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
              fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
                          next_.state.t, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
         return;
     }
+    if (surfaces_->count() > 1) {
+        const ContactSet landing = landing_with(which, contact);
+        if (landing.count() > 1 || !next_.touching.empty() || !passes_on(which)) return collide(landing);
+    }
+    land_alone(contact);
+}
+
+// On an open place; what is held stays held.
+void Execution::land_alone(const Contact& contact) {
+    const double e = restitutions_[which_];
+    conditions_ = nullptr;
+    for (const Conditions& known : all_conditions_)
+        if (known.contact == which_ && known.held == next_.held) conditions_ = known.conditions.get();
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
-    if (restitution_ > 0.0 && conditions_ && conditions_->fails_by_speed(-contact.hdot) &&
+    if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
         is_well_resolved(-contact.hdot))
-        return bounce(contact, restitution_);
+        return bounce(contact, e);
     const Vector tangential = reinitialize(contact, next_.state.v, Reinitialization::kinetic);
     const Reinitialization kind = run_.options.truncation.reinitialization;
     const bool kinetic = kind == Reinitialization::kinetic;
     Collision collision{next_.state, -contact.hdot, tangential,
                         kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
-    if (restitution_ == 0.0) {
+    if (e == 0.0) {
         capture(contact, collision);
     } else if (auto certificate =
                    could_truncate(collision) ? prove(&TruncationConditions::certify, collision) : std::nullopt) {
         complete(contact, collision, std::move(*certificate));
-    } else if (too_short_to_resolve(collision, restitution_)) {
+    } else if (too_short_to_resolve(collision, e)) {
         if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
             complete(contact, collision, std::move(*proved));
         } else {
@@ -52,13 +66,17 @@ void Execution::land(const Contact& contact) {
                      where(next_.state));
         }
     } else {
-        bounce(contact, restitution_);
+        bounce(contact, e);
     }
 }
 
 // The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
 bool Execution::could_truncate(const Collision& collision) {
-    if (!conditions_) conditions_ = timed([&] { return truncation_conditions(*model_, run_); });
+    if (conditions_ == nullptr) {
+        all_conditions_.push_back(
+            {which_, next_.held, timed([&] { return truncation_conditions(*model_, run_, which_, next_.held); })});
+        conditions_ = all_conditions_.back().conditions.get();
+    }
     return !conditions_->fails_at_point(collision);
 }
 
@@ -71,13 +89,15 @@ std::optional<Certificate> Execution::prove(
 // Newton's law, and the flight it starts.
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
-    record_.impact(next_.state, v_after, -contact.hdot, exchange(contact, e));
+    record_.impact(next_.state, v_after, -contact.hdot, exchange(contact, e), ContactSet::of(which_));
+    const Vector v_before = next_.state.v;
     next_.state.v = v_after;
     const double hdot = -e * contact.hdot;
-    next_.start = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
-    begin_stretch({}, run_.options.end_time);
+    next_.starts[which_] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+    change_rates(v_before, ContactSet::of(which_));
+    begin_stretch(next_.held, run_.options.end_time);
     if (run_.options.method == Method::taylor) return;  // a series tells its length itself
-    const double hddot = kinematics_->normal_acceleration(next_.state);
+    const double hddot = kinematics().normal_acceleration(next_.state);
     next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
 }
 
@@ -92,9 +112,9 @@ bool Execution::is_well_resolved(double speed) const {
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = e * collision.speed;
-    const double a = -kinematics_->normal_acceleration(collision.with(collision.tangential));
+    const double a = -kinematics().normal_acceleration(collision.with(collision.tangential));
     if (!(a > 0.0)) return false;
-    return u * u / (2.0 * a) < 4.0 * kinematics_->gap_error(collision.before) ||
+    return u * u / (2.0 * a) < 4.0 * kinematics().gap_error(collision.before) ||
            2.0 * u / a < 4.0 * ulp(collision.before.t);
 }
 
@@ -102,7 +122,7 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
 void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
-    const Interval hddot = kinematics_->normal(collision.with(collision.restart)).hddot;
+    const Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
     if (certainly_negative(hddot)) {
         Certificate certificate;
         certificate.certified = true;
@@ -117,7 +137,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
         complete(contact, collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
         bounce(contact, 0.0);
-        next_.start = {{0.0, 0.0}, 2};
+        next_.starts[which_] = {{0.0, 0.0}, 2};
     } else {
         stop(Outcome::Kind::undecided,
              "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +
@@ -134,9 +154,13 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     Exchange plastic = exchange(contact, 0.0);
     if (collision.restart != collision.tangential)
         plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
-    record_.impact(next_.state, impact(contact, next_.state.v, restitution_), collision.speed, plastic);
+    record_.impact(next_.state, impact(contact, next_.state.v, restitutions_[which_]), collision.speed, plastic,
+                   ContactSet::of(which_));
     next_.state = collision.with(collision.restart);
-    next_.start = {};
+    const ContactSet held = next_.held.with(which_);
+    for (std::size_t i = 0; i < next_.starts.size(); ++i)
+        if (held.contains(i)) next_.starts[i] = {};
+    change_rates(collision.before.v, ContactSet::of(which_));
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -144,7 +168,9 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     event.truncation = Event::Truncation{collision.before.t, collision.before.q, collision.before.v, collision.restart,
                                          collision.speed};
     event.certificate = std::move(certificate);
-    begin_stretch(ContactSet::of(0), std::min(event.t, run_.options.end_time));
+    event.contacts = ContactSet::of(which_);
+    event.held = held;
+    begin_stretch(held, std::min(event.t, run_.options.end_time));
 }
 
 // The motion in contact has come to the Zeno time.
@@ -155,33 +181,53 @@ void Execution::pass_zeno_point() {
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
+    enter_phase();
+    begin_stretch(next_.held, run_.options.end_time);
+}
+
+// What is held has changed.
+void Execution::enter_phase() {
     record_.close(next_.state.t);
-    record_.open(Phase::Kind::constrained, next_.state.t);
-    begin_stretch(ContactSet::of(0), run_.options.end_time);
+    record_.open(next_.held, next_.state.t);
 }
 
 // ---- release ----
 
 // lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
-void Execution::release() {
+void Execution::release(std::size_t which) {
+    which_ = which;
     if (completing())
         return stop(Outcome::Kind::undecided,
                     "the contact force vanishes before the Zeno time at " + where(next_.state));
-    if (!certainly_positive(kinematics_->normal(next_.state).jerk)) {
+    const ContactSet held = next_.held;
+    const bool leaves = certainly_positive(surfaces_->of(which, held.without(which)).normal(next_.state).jerk);
+    if (surfaces_->count() > 1 && (!leaves || !next_.touching.empty() || not_unique_)) {
+        decide(held.with(next_.touching));
+        if (!outcome_ && next_.held != held) leave(held.without(next_.held));
+        return;
+    }
+    if (!leaves) {
         stop(Outcome::Kind::undecided,
              "the contact force touches zero and h''' > 0 is not proved at " + where(next_.state));
         return;
     }
+    next_.held = held.without(which);
+    next_.starts[which] = {{0.0, 0.0}, 3};
+    leave(ContactSet::of(which));
+}
+
+// These have been released.
+void Execution::leave(ContactSet contacts) {
     Event event;
     event.kind = Event::Kind::release;
+    event.contacts = contacts;
+    event.held = next_.held;
     event.t = next_.state.t;
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
-    record_.close(next_.state.t);
-    record_.open(Phase::Kind::hybrid, next_.state.t);
-    next_.start = {{0.0, 0.0}, 3};
-    begin_stretch({}, run_.options.end_time);
+    enter_phase();
+    begin_stretch(next_.held, run_.options.end_time);
 }
 
 }  // namespace achilles

@@ -64,11 +64,11 @@ std::string undefined_in(const Model& model, const Run& run, const State& state,
     };
     std::string found = look({e.kinetic}, "the kinetic energy");
     if (found.empty()) found = look({e.potential}, "the potential");
-    if (found.empty()) found = look({e.gap}, "the gap");
+    if (found.empty()) found = look(e.gaps, "the gap");
     if (found.empty()) found = look(e.Q, "the forces");
     if (found.empty()) found = first_edge(model, run, state, box);
     if (found.empty()) found = first_bad_pivot(model, run, state, box);
-    if (found.empty()) found = look(e.f, "the equations of motion");
+    if (found.empty()) found = look(e.free.f, "the equations of motion");
     return found;
 }
 

@@ -1,9 +1,11 @@
 #include "simulate/event_stepper.hpp"
 
+#include <limits>
+
 namespace achilles {
 
-EventStepper::EventStepper(const Model& model, const Run& run, ContactKinematics& kinematics)
-    : model_(&model), run_(run), kinematics_(&kinematics), usual_(model, run) {}
+EventStepper::EventStepper(const Model& model, const Run& run, Surfaces& surfaces)
+    : model_(&model), run_(run), surfaces_(&surfaces), usual_(model, run) {}
 
 const StepResult& EventStepper::step(const StepRequest& request) {
     request_ = &request;
@@ -13,17 +15,64 @@ const StepResult& EventStepper::step(const StepRequest& request) {
         exact_ = std::make_unique<Flow>(*model_, exact);
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
-    const bool flying = request.held.empty();
-    if (request.begins) flow_->start(request.held, request.state, std::span(&request.start.gap, 1), request.first_step);
+    if (request.begins) {
+        gaps_.clear();
+        for (const EventStart& start : request.starts) gaps_.push_back(start.gap);
+        flow_->start(request.held, request.state, gaps_, request.first_step);
+    }
     result_.flow = flow_;
     result_.steps = 0;
     result_.state = &request.state;
+    result_.starts = request.starts;
+    asked_again_ = {};
     const StepFailure failure = flow_->step(request.until);
-    result_.end = failure != StepFailure::none ? fail(failure) : flying ? find_impact() : find_release();
+    result_.end = failure != StepFailure::none ? fail(failure) : find_event();
+    result_.which = contact_;
     const long evaluations = usual_.evaluations() + (exact_ ? exact_->evaluations() : 0);
     result_.evaluations = evaluations - evaluations_;
     evaluations_ = evaluations;
     return result_;
+}
+
+// What the flow's last step came to. What is no event after all may have made the step shorter, which then is looked at
+// again for the other contacts.
+StepResult::End EventStepper::find_event() {
+    ContactSet met;
+    while (const auto incident = first_incident(met)) {
+        if (const auto end = meet(*incident)) return *end;
+        met = met.with(incident->contact);
+    }
+    return end_without_event();
+}
+
+std::optional<EventStepper::Incident> EventStepper::first_incident(ContactSet but) {
+    std::optional<Incident> first;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (but.contains(i) || !is_watched(i)) continue;
+        contact_ = i;
+        const Descent descent = held().contains(i) ? force_descent() : gap_descent();
+        if (descent.kind == Descent::Kind::none) continue;
+        if (!first || descent.theta < first->descent.theta) first = Incident{i, descent};
+    }
+    return first;
+}
+
+std::optional<StepResult::End> EventStepper::meet(const Incident& incident) {
+    contact_ = incident.contact;
+    return held().contains(contact_) ? meet_force(incident.descent) : meet_gap(incident.descent);
+}
+
+StepResult::End EventStepper::end_without_event() {
+    double least = std::numeric_limits<double>::infinity();
+    if (!held().empty()) {
+        if (!end_on_surface()) return End::off_surface;
+        least = result_.gap;
+        for (std::size_t i = 0; i < result_.starts.size(); ++i)
+            if (held().contains(i)) result_.starts[i] = {{}, 0, asked_again_.contains(i)};
+    }
+    if (!settle_gaps({}, least)) return land_under();
+    end_step(least);
+    return End::no_event;
 }
 
 // All that led there was as exact as can be.

@@ -24,15 +24,16 @@ constexpr int most_stalled = 100;
 
 }  // namespace
 
-Execution::Execution(std::shared_ptr<const Model> model, const Run& run, ContactKinematics& kinematics, Watch* watch,
-                     Keep keep, InDoubt in_doubt)
+Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
+                     InDoubt in_doubt)
     : in_doubt_(in_doubt),
       watch_(watch),
       run_(run),
       model_(std::move(model)),
       record_(model_, run_, keep),
-      kinematics_(&kinematics),
-      restitution_(model_->evaluator(model_->restitution(), run_.parameters).output(0)) {
+      surfaces_(&surfaces) {
+    for (std::size_t i = 0; i < model_->contacts(); ++i)
+        restitutions_.push_back(model_->evaluator(model_->restitution(i), run_.parameters).output(0));
     begin();
 }
 
@@ -42,7 +43,7 @@ bool Execution::restart(const Run& run) {
         run.parameters != run_.parameters)
         return false;
     run_ = run;
-    if (conditions_) conditions_->forget();
+    for (Conditions& known : all_conditions_) known.conditions->forget();
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = 0;
@@ -57,37 +58,46 @@ bool Execution::restart(const Run& run) {
 
 // In flight, in contact, or at an impact, which comes first.
 void Execution::begin() {
-    next_ = {};
+    next_.touching = {};
     next_.state = run_.start();
+    next_.starts.assign(surfaces_->count(), {});
     begin_stretch({}, run_.options.end_time);
-    const Contact contact = kinematics_->at(next_.state);
-    next_.start = {{contact.h, contact.hdot}, 0};
-    bool at_impact = false;
-    if (contact.h <= 4.0 * kinematics_->gap_error(next_.state)) {  // |h| and |hdot| within rounding count as zero
-        next_.start = {{0.0, contact.hdot}, 1};
-        const double error = 4.0 * kinematics_->hdot_error(next_.state);
-        at_impact = contact.hdot < -error;
-        if (std::abs(contact.hdot) <= error) start_in_contact(kinematics_->normal(next_.state));
+    ContactSet landing, resting;
+    Contact last;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        ContactKinematics& surface = surfaces_->of(i);
+        const Contact contact = surface.at(next_.state);
+        next_.starts[i] = {{contact.h, contact.hdot}, 0};
+        if (contact.h > 4.0 * surface.gap_error(next_.state)) continue;
+        next_.starts[i] = {{0.0, contact.hdot}, 1};  // |h| and |hdot| within rounding count as zero
+        const double error = 4.0 * surface.hdot_error(next_.state);
+        if (contact.hdot < -error) {
+            landing = landing.with(i);
+            last = contact;
+        } else if (contact.hdot <= error) {
+            resting = resting.with(i);
+        }
     }
-    record_.open(!next_.held.empty() ? Phase::Kind::constrained : Phase::Kind::hybrid, next_.state.t);
-    if (at_impact) land(contact);
+    if (landing.empty()) start_at_rest(resting);
+    record_.open(next_.held, next_.state.t);
+    if (landing.empty() || outcome_) return;
+    if (surfaces_->count() == 1) return land(0, last);
+    next_.touching = resting;
+    collide(landing);
 }
 
-// h = 0 and hdot = 0: the sign of hddot decides, and where it is zero the sign of h'''.
-void Execution::start_in_contact(const ContactKinematics::Normal& normal) {
-    next_.state.v = reinitialize(kinematics_->at(next_.state), next_.state.v, Reinitialization::kinetic);
-    if (certainly_positive(normal.hddot)) {
-        next_.start = {{0.0, 0.0}, 2};
-    } else if (certainly_negative(normal.hddot) || certainly_negative(normal.jerk)) {
-        next_.held = ContactSet::of(0);
-        next_.start = {{}, certainly_negative(normal.hddot) ? 0 : 1};
-    } else if (certainly_positive(normal.jerk)) {
-        next_.start = {{0.0, 0.0}, 3};
+// Contacts with h = 0 and hdot = 0.
+void Execution::start_at_rest(ContactSet resting) {
+    if (resting.empty()) return;
+    if (resting.count() > 1) {
+        if (!surfaces_->project(next_.state, resting, resting)) return fail_projection();
     } else {
-        stop(Outcome::Kind::undecided,
-             "the contact force and its rate are zero to within rounding: contact or release cannot be decided at " +
-                 where(next_.state));
+        for (std::size_t i = 0; i < surfaces_->count(); ++i)
+            if (resting.contains(i))
+                next_.state.v =
+                    reinitialize(surfaces_->of(i).at(next_.state), next_.state.v, Reinitialization::kinetic);
     }
+    decide(resting);
 }
 
 // ---- what is needed next ----
@@ -113,9 +123,12 @@ const StepRequest* Execution::next() {
     }
     if (outcome_) return nullptr;
     const bool in_contact = !next_.held.empty();
-    if (in_contact) next_.start.gap.state_error = state_error();
+    if (in_contact)
+        for (std::size_t i = 0; i < next_.starts.size(); ++i)
+            if (next_.held.contains(i)) next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
-    next_.plain = stalled_ == 0 && !next_.start.asked_again && (in_contact || next_.start.multiplicity <= 1);
+    const EventStart& start = next_.starts.front();  // of the only contact, where it is asked for
+    next_.plain = stalled_ == 0 && !start.asked_again && (in_contact || start.multiplicity <= 1);
     if (next_.begins) note_beginning();
     return &next_;
 }
@@ -158,13 +171,15 @@ void Execution::accept(const StepResult& result) {
     next_.state = *result.state;
     switch (result.end) {
         case End::no_event:
-            next_.start = result.start;
+            next_.starts = result.starts;
             next_.begins = false;
             return;
         case End::impact:
-            return land(result.contact);
+            next_.starts = result.starts;
+            return land(result.which, result.contact);
         case End::force_vanishes:
-            return release();
+            next_.starts = result.starts;
+            return release(result.which);
         case End::doubt:
             return stop(Outcome::Kind::undecided, doubt(result));
         case End::off_surface:
@@ -194,6 +209,13 @@ void Execution::begin_stretch(ContactSet held, double until) {
     next_.exactly = false;
 }
 
+// The velocity has jumped: the rates of open gaps, but of these, have too.
+void Execution::change_rates(const Vector& v_before, ContactSet but) {
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (!next_.held.contains(i) && !but.contains(i) && !next_.touching.contains(i))
+            next_.starts[i].gap.hdot += surfaces_->of(i).at(next_.state).g.dot(next_.state.v - v_before);
+}
+
 // Not where all that led there was as exact.
 bool Execution::may_ask_exactly() const {
     return in_doubt_ == InDoubt::ask_exactly && !next_.exactly && run_.options.tolerance > exact_tolerance;
@@ -212,11 +234,11 @@ void Execution::ask_exactly() {
 
 std::string Execution::doubt(const StepResult& result) const {
     const std::string place = where(next_.state);
-    if (!next_.held.empty())
+    if (next_.held.contains(result.which))
         return "the contact force comes closer to zero than the integration knows it just after " + place;
     const std::string known =
         fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g})", result.remainder);
-    if (is_flat(*model_, run_.parameters, next_.state))
+    if (is_flat(*model_, run_.parameters, next_.state, result.which))
         return fmt::format("{}, and dh vanishes where h = 0, so that contact has no normal, just after {}; {}", known,
                            place, flat_hint);
     return fmt::format("{}: an impact or none cannot be told just after {}", known, place);

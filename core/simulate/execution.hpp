@@ -4,7 +4,8 @@
 //     while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
 //
 // It flies to an impact, and bounces or, where that is certified, is on its way to the Zeno point, in contact; from
-// there it stays in contact until the contact force vanishes, and flies.
+// there it stays in contact until the contact force vanishes, and flies. With several contacts it does so with each, while
+// others are held (theory-gaps.md 2); where several are closed at an event, all of them decide what follows.
 #pragma once
 
 #include <chrono>
@@ -12,10 +13,10 @@
 #include <optional>
 
 #include "certify/truncation.hpp"
-#include "simulate/impact.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/simulate.hpp"
 #include "simulate/step.hpp"
+#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -29,9 +30,9 @@ class Execution {
     enum class InDoubt { ask_exactly, end };
 
     // At the start of the run, which Model::check() allows: in flight, in contact, or after an impact there.
-    // `kinematics` is of the same model and run; it and `watch`, which may be null, outlive this.
-    Execution(std::shared_ptr<const Model> model, const Run& run, ContactKinematics& kinematics, Watch* watch,
-              Keep keep, InDoubt in_doubt);
+    // `surfaces` are of the same model and run; they and `watch`, which may be null, outlive this.
+    Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
+              InDoubt in_doubt);
 
     // As if it were made anew, for another run of the same parameters, tolerance, method and truncation. False, and
     // nothing is done, where these differ.
@@ -43,8 +44,8 @@ class Execution {
 
     // Takes what came of the last request: the motion stands at the result's state, and then
     //     no_event        goes on from there
-    //     impact          flies on by Newton's law, or goes on in contact to the Zeno point, where that is certified
-    //     force_vanishes  flies on, where h''' > 0 is proved
+    //     impact          goes on by Newton's law, or in contact to the Zeno point, where that is certified
+    //     force_vanishes  goes on without that contact, where h''' > 0 is proved
     //     doubt           is put back to where its stretch began and asked for exactly, if that may be; else it ends
     //     off_surface, no_step    ends
     // Where an event cannot be decided, it ends as well. Ended, the run has an outcome and next() is null.
@@ -69,13 +70,14 @@ class Execution {
     };
 
     void begin();
-    void start_in_contact(const ContactKinematics::Normal& normal);
+    void start_at_rest(ContactSet resting);
     bool is_time_left() const;
     bool is_cancelled();
     void note_beginning();
     double state_error() const;
     void advance(const StepResult& result);
     void begin_stretch(ContactSet held, double until);
+    void change_rates(const Vector& v_before, ContactSet but);
     bool may_ask_exactly() const;
     void ask_exactly();
     std::string doubt(const StepResult& result) const;
@@ -84,7 +86,9 @@ class Execution {
     void stop(Outcome::Kind kind, std::string message);
 
     // At events.
-    void land(const Contact& contact);
+    void land(std::size_t which, const Contact& contact);
+    void land_alone(const Contact& contact);
+    ContactKinematics& kinematics() { return surfaces_->of(which_, next_.held); }
     // What some work gives; its time counts as that of proofs.
     template <class Work>
     auto timed(const Work& work) {
@@ -102,7 +106,19 @@ class Execution {
     void complete(const Contact& contact, const Collision& collision, Certificate certificate);
     void capture(const Contact& contact, const Collision& collision);
     void pass_zeno_point();
-    void release();
+    void release(std::size_t which);
+    void leave(ContactSet contacts);
+    void enter_phase();
+    // Where several contacts are closed (several.cpp).
+    ContactSet landing_with(std::size_t which, const Contact& contact);
+    bool passes_on(std::size_t which);
+    void collide(ContactSet landing);
+    bool too_short_to_resolve(std::size_t which, double hdot);
+    void decide(ContactSet closed);
+    bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
+    bool judge(ContactSet closed, ContactSet active);
+    bool stays_closed(std::size_t contact, ContactSet held);
+    std::string names_of(ContactSet contacts) const;
 
     StepRequest next_;        // where the motion stands, and how it goes on
     double last_step_ = 0.0;  // s
@@ -114,13 +130,22 @@ class Execution {
     std::optional<Outcome> outcome_;
     std::shared_ptr<const Model> model_;
     Recorder record_;
-    ContactKinematics* kinematics_;
+    Surfaces* surfaces_;
     Beginning beginning_;              // of the stretch, where it may be asked for again
     std::optional<Event> completion_;  // the Zeno event that the run is on its way to
-    std::unique_ptr<TruncationConditions> conditions_;
-    double restitution_;
-    double cut_error_ = 0.0;  // of the state, by the cuts so far: what is certified at their Zeno times
-    double proving_ = 0.0;    // s, the clock's
+    // The truncation conditions of contacts while others are held, those met so far.
+    struct Conditions {
+        std::size_t contact;
+        ContactSet held;
+        std::unique_ptr<TruncationConditions> conditions;
+    };
+    std::vector<Conditions> all_conditions_;
+    TruncationConditions* conditions_ = nullptr;  // of them, those of which_; null: not met yet
+    std::size_t which_ = 0;                       // the contact whose event this is
+    std::vector<double> restitutions_;
+    bool not_unique_ = false;  // the forces that hold what is held could be shared otherwise
+    double cut_error_ = 0.0;   // of the state, by the cuts so far: what is certified at their Zeno times
+    double proving_ = 0.0;     // s, the clock's
 };
 
 }  // namespace achilles

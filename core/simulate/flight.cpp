@@ -1,4 +1,4 @@
-// The steps of a free motion: the next impact.
+// The gaps that are open along a step: the next impact.
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +9,15 @@ namespace achilles {
 // The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
 // leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
 // better (the difference is above its rounding), the polynomial is made to end there.
-Polynomial EventStepper::gap_along() {
-    const int multiplicity = request_->start.multiplicity;
+Polynomial EventStepper::gap_along(std::size_t contact) {
+    const int multiplicity = start_of(contact).multiplicity;
     Polynomial h = flow_->event_function(contact);
     for (int j = 0; j < multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
     if (flow_->is_expansion()) return h;
-    const Contact end = kinematics_->at(flow_->end());
+    ContactKinematics& surface = surfaces_->of(contact);
+    const Contact end = surface.at(flow_->end());
     const double value = end.h - h(1.0), slope = end.hdot * flow_->duration() - h.slope(1.0);
-    if (!kinematics_->within_gap_error(value, 4.0, end, flow_->end())) {
+    if (!surface.within_gap_error(value, 4.0, end, flow_->end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
         const int m = std::max(2, multiplicity);
         const double b = slope - m * value;
@@ -26,54 +27,72 @@ Polynomial EventStepper::gap_along() {
     return h;
 }
 
-// What the flow's last step came to.
-StepResult::End EventStepper::find_impact() {
-    const int multiplicity = request_->start.multiplicity;
-    const bool asked_before = request_->start.asked_again;
-    Polynomial h = gap_along();
-    Descent descent = first_descent(h, multiplicity, flow_->remainder(contact, h));
-    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) {  // a short step knows its start better
-        h = gap_along();
-        descent = first_descent(h, multiplicity, flow_->remainder(contact, h));
-    }
-    bool asked_again = false;
+Descent EventStepper::gap_descent() {
+    const Polynomial h = gap_along(contact_);
+    return first_descent(h, start_of(contact_).multiplicity, flow_->remainder(contact_, h));
+}
+
+// Nothing where the gap stays open along the step, as it then is.
+std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
+    const bool asked_before = start_of(contact_).asked_again;
+    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta))  // a short step knows its start better
+        descent = gap_descent();
     switch (descent.kind) {
         case Descent::Kind::none:
             break;
         case Descent::Kind::root:
             if (descent.theta == 0.0) return land_here();
-            if (const auto end = locate_impact(descent.theta)) return *end;
-            h = gap_along();  // no impact after all, or the step became shorter
-            break;
+            return locate_impact(descent.theta);  // it may be none, or the step have become shorter
         case Descent::Kind::rose:
             if (!knows_its_start() || asked_before) return doubt_gap(0.0);
             break;
         case Descent::Kind::open:
             // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
-            asked_again = !asked_before && end_step_at(descent.theta);
-            if (asked_again) h = gap_along();
-            if (!asked_again && !(knows_its_start() && is_last() && h(1.0) >= 0.0)) return doubt_gap(descent.theta);
+            if (!asked_before && end_step_at(descent.theta)) {
+                asked_again_ = asked_again_.with(contact_);
+            } else if (!(knows_its_start() && is_last() && gap_along(contact_)(1.0) >= 0.0)) {
+                return doubt_gap(descent.theta);
+            }
             break;
         case Descent::Kind::undecided:
             return doubt_gap(descent.theta);
     }
-    const Contact end = kinematics_->at(flow_->end());
-    Gap gap{h(1.0), h.slope(1.0) / flow_->duration()};
-    if (!kinematics_->within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
-        if (end.h < 0.0) return land_under();
-        gap = {end.h, end.hdot};
+    return std::nullopt;
+}
+
+// How the open gaps, but for these, go on from the end of the step. False, and contact_ is the one, where one has closed
+// there by h(q), though its series stays open. The least of them is taken note of.
+bool EventStepper::settle_gaps(ContactSet but, double& least) {
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (held().contains(i) || but.contains(i)) continue;
+        if (!is_watched(i)) {
+            result_.starts[i] = {{0.0, 0.0}, 1, false};
+            continue;
+        }
+        const Polynomial h = gap_along(i);
+        ContactKinematics& surface = surfaces_->of(i);
+        const Contact end = surface.at(flow_->end());
+        Gap gap{h(1.0), h.slope(1.0) / flow_->duration()};
+        if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
+            if (end.h < 0.0) {
+                contact_ = i;
+                return false;
+            }
+            gap = {end.h, end.hdot};
+        }
+        flow_->add_error(i, h, gap);
+        flow_->move_gap(i, gap);
+        result_.starts[i] = {gap, 0, asked_again_.contains(i)};
+        least = std::min(least, end.h);
     }
-    flow_->add_error(contact, h, gap);
-    flow_->move_gap(contact, gap);
-    result_.start = {gap, 0, asked_again};
-    end_step(end.h);
-    return End::no_event;
+    return true;
 }
 
 // Whether the gap closes cannot be told from theta on: the step ends there.
 StepResult::End EventStepper::doubt_gap(double theta) {
-    result_.remainder = flow_->remainder(contact, flow_->event_function(contact));
-    if (end_step_at(theta)) end_step(kinematics_->at(flow_->end()).h);
+    result_.remainder = flow_->remainder(contact_, flow_->event_function(contact_));
+    if (end_step_at(theta) && (held().empty() || end_on_surface()))
+        end_step(surfaces_->of(contact_).at(flow_->end()).h);
     return End::doubt;
 }
 
@@ -81,7 +100,7 @@ StepResult::End EventStepper::doubt_gap(double theta) {
 StepResult::End EventStepper::land_here() {
     landed_ = request_->state;
     result_.state = &landed_;
-    const auto landed = kinematics_->project(landed_, true);
+    const auto landed = surfaces_->land(landed_, contact_, held());
     if (!landed) return End::off_surface;
     if (!(landed->hdot < 0.0)) return doubt_gap(0.0);
     result_.contact = *landed;
@@ -96,7 +115,7 @@ StepResult::End EventStepper::land_under() {
     while (under - above > 0x1p-50) {
         const double middle = 0.5 * (above + under);
         if (!end_step_after(middle * duration)) break;
-        (kinematics_->at(flow_->end()).h > 0.0 ? above : under) = middle;
+        (surfaces_->of(contact_).at(flow_->end()).h > 0.0 ? above : under) = middle;
     }
     if (!end_step_after(under * duration)) return doubt_gap(0.0);  // nothing of the step is kept
     return end_flight();
@@ -110,7 +129,7 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
         if (flow_->is_expansion()) break;
         const bool shortened = flow_->duration() < duration * (1.0 - 1e-12);
-        const Polynomial h = gap_along();
+        const Polynomial h = gap_along(contact_);
         const double hdot = h.slope(1.0) / flow_->duration();
         if (shortened || !(hdot < 0.0)) return std::nullopt;
         const double correction = -h(1.0) / hdot;
@@ -125,9 +144,15 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
 
 // The flow's last step ends on the surface.
 StepResult::End EventStepper::end_flight() {
-    const auto landed = kinematics_->project(flow_->edit_end(), true);
-    if (landed) result_.contact = *landed;
-    end_step(landed ? landed->h : kinematics_->at(flow_->end()).h);
+    const std::size_t contact = contact_;
+    const auto landed = surfaces_->land(flow_->edit_end(), contact, held());
+    double least = landed ? landed->h : surfaces_->of(contact).at(flow_->end()).h;
+    if (landed) {
+        result_.contact = *landed;
+        settle_gaps(ContactSet::of(contact), least);  // one that has closed as well lands in the same instant
+        contact_ = contact;
+    }
+    end_step(least);
     return landed ? End::impact : End::off_surface;
 }
 

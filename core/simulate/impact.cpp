@@ -42,12 +42,13 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
 }
 
-ContactKinematics::ContactKinematics(const Model& model, const Run& run)
+ContactKinematics::ContactKinematics(const Model& model, const Run& run, std::size_t contact, ContactSet held)
     : model_(&model),
+      programs_(&model.programs_of(contact, held)),
       parameters_(run.parameters),
       dof_(static_cast<std::size_t>(model.dof())),
-      terms_(model.evaluator(model.contact_terms(), run.parameters)),
-      gap_(model.evaluator<Interval>(model.gap(), run.parameters)) {}
+      terms_(model.evaluator(programs_->contact_terms, run.parameters)),
+      gap_(model.evaluator<Interval>(programs_->gap, run.parameters)) {}
 
 Contact ContactKinematics::at(const State& state) {
     Contact contact;
@@ -85,7 +86,7 @@ bool ContactKinematics::within_gap_error(double value, double times, const Conta
 }
 
 double ContactKinematics::hdot_error(const State& state) {
-    auto& enclosure = model_->lazily(enclosure_, model_->contact_terms(), parameters_);
+    auto& enclosure = model_->lazily(enclosure_, programs_->contact_terms, parameters_);
     set_state(enclosure, state);
     enclosure.run();
     return rad(enclosure.hdot());
@@ -125,7 +126,7 @@ std::optional<Contact> ContactKinematics::project(State& state, bool keep_veloci
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
     const Ground ground;
-    auto& enclosure = model_->lazily(release_enclosure_, model_->release_terms(), parameters_);
+    auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
     for (std::size_t i = 0; i < dof_; ++i) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
         enclosure.input(dof_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
@@ -136,14 +137,14 @@ ContactKinematics::Normal ContactKinematics::normal(const State& state) {
 }
 
 double ContactKinematics::normal_acceleration(const State& state) {
-    if (!normal_) normal_ = model_->evaluator(model_->normal_acceleration(), parameters_);
+    if (!normal_) normal_ = model_->evaluator(programs_->normal_acceleration, parameters_);
     set_state(*normal_, state);
     normal_->run();
     return normal_->output(0);
 }
 
 double ContactKinematics::jerk(const State& state) {
-    auto& release = model_->lazily(release_, model_->release_terms(), parameters_);
+    auto& release = model_->lazily(release_, programs_->release_terms, parameters_);
     set_state(release, state);
     release.run();
     return release.jerk();

@@ -34,7 +34,8 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
 // Evaluates contact quantities for one run.
 class ContactKinematics {
  public:
-    ContactKinematics(const Model& model, const Run& run);
+    // Of a contact while others are held: n, W, hddot and its rate are then those of theory-gaps.md 2.
+    ContactKinematics(const Model& model, const Run& run, std::size_t contact = 0, ContactSet held = {});
 
     Contact at(const State& state);
     // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
@@ -57,6 +58,7 @@ class ContactKinematics {
  private:
     void look(const State& state, Contact& contact);
     const Model* model_;
+    const Model::ContactPrograms* programs_;
     std::vector<double> parameters_;
     std::size_t dof_;
     ContactTerms<Evaluator<double>> terms_;

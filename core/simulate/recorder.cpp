@@ -66,9 +66,10 @@ void Recorder::go_back(const Mark& mark) {
     any_gap_ = mark.any_gap;
 }
 
-void Recorder::open(Phase::Kind kind, double t) {
+void Recorder::open(ContactSet held, double t) {
     Phase phase;
-    phase.kind = kind;
+    phase.kind = held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained;
+    phase.held = held;
     phase.start = phase.end = t;
     phase.first_piece = phase.last_piece = trajectory_.pieces.size();
     trajectory_.phases.push_back(phase);
@@ -126,7 +127,8 @@ Exchange Recorder::exchange_of_jump(const State& before, const State& after, dou
     return {work, work + energy_at(before) - energy_at(after)};
 }
 
-void Recorder::impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange) {
+void Recorder::impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange,
+                      ContactSet contacts, std::shared_ptr<const Joint> joint) {
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
     trajectory_.work += exchange.work;
@@ -139,10 +141,20 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.v_before = before.v;
     event.v_after = v_after;
     event.impact_speed = speed;
+    event.contacts = contacts;
+    event.held = trajectory_.phases.back().held;
+    if (joint && joint->order_matters) ++trajectory_.by_convention;
+    event.joint = std::move(joint);
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
     make_room(trajectory_.events, 1, trajectory_.run.options.memory);
     trajectory_.events.push_back(std::move(event));
+}
+
+void Recorder::after_impact(ContactSet opened, ContactSet held) {
+    if (keep_ == Keep::end) return;
+    trajectory_.events.back().opened = opened;
+    trajectory_.events.back().held = held;
 }
 
 void Recorder::event(Event event) {
@@ -158,6 +170,7 @@ Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluation
     trajectory_.end_time = state.t;
     trajectory_.end = state;
     trajectory_.end_phase = phase();
+    trajectory_.end_held = trajectory_.phases.back().held;
     trajectory_.outcome = std::move(outcome);
     trajectory_.statistics.evaluations = evaluations;
     return std::move(trajectory_);

@@ -31,7 +31,7 @@ class Recorder {
     }
     void go_back(const Mark& mark);
 
-    void open(Phase::Kind kind, double t);
+    void open(ContactSet held, double t);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
 
@@ -42,7 +42,10 @@ class Recorder {
     // Steps of which the end alone is kept.
     void steps(long count, double least_gap);
     // An impact at this state before it, and what it does to the energy.
-    void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange);
+    void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
+                std::shared_ptr<const Joint> joint = nullptr);
+    // What the last impact has opened, and what is held after it.
+    void after_impact(ContactSet opened, ContactSet held);
     // The same of a jump to a velocity that no impact leads to: what is lost follows from the energies.
     Exchange exchange_of_jump(const State& before, const State& after, double work);
     // Any other event.

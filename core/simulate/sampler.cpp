@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "simulate/impact.hpp"
+#include "simulate/surfaces.hpp"
 #include "simulate/work.hpp"
 
 namespace achilles {
@@ -10,8 +10,8 @@ namespace achilles {
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
 struct Sampler::Projection {
     explicit Projection(const Trajectory& trajectory)
-        : surface(*trajectory.model, trajectory.run), work(*trajectory.model, trajectory.run) {}
-    ContactKinematics surface;
+        : surfaces(*trajectory.model, trajectory.run), work(*trajectory.model, trajectory.run) {}
+    Surfaces surfaces;
     Work work;
 };
 
@@ -21,9 +21,9 @@ Sampler::~Sampler() = default;
 
 State Sampler::state(const Piece& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
-    if (piece.contact) {
+    if (!piece.held.empty()) {
         State projected = state;
-        if (projection_->surface.project(projected, false)) return projected;
+        if (projection_->surfaces.project(projected, piece.held, piece.held)) return projected;
     }
     return state;
 }
@@ -33,7 +33,7 @@ double Sampler::work(const Piece& piece, double t) const {
 }
 
 Sample Sampler::at(double t) {
-    t = std::clamp(t, 0.0, trajectory_.end_time);
+    t = std::clamp(t, trajectory_.run.options.start_time, trajectory_.end_time);
     const auto later = [](double time, const auto& x) { return time < x.start; };
     const auto event = std::upper_bound(trajectory_.events.begin(), trajectory_.events.end(), t,
                                         [](double time, const Event& x) { return time < x.t; });
@@ -49,7 +49,8 @@ Sample Sampler::at(double t) {
         sample.loss = trajectory_.loss;
         return sample;
     }
-    sample.contact = std::prev(piece)->contact;
+    sample.contact = !std::prev(piece)->held.empty();
+    sample.held = std::prev(piece)->held;
     sample.state = state(*std::prev(piece), t);
     sample.work = work(*std::prev(piece), t);
     sample.loss = std::prev(piece)->loss;
@@ -77,11 +78,11 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         while (phase + 1 < trajectory_.phases.size() && trajectory_.phases[phase + 1].start <= start) ++phase;
         return trajectory_.phases[phase].kind;
     };
-    const auto add = [&](double t, Phase::Kind in, bool contact, const State& state, double work, double loss) {
-        samples.push_back({t, static_cast<int>(j), in, contact, state, work, loss});
+    const auto add = [&](double t, Phase::Kind in, ContactSet held, const State& state, double work, double loss) {
+        samples.push_back({t, static_cast<int>(j), in, !held.empty(), held, state, work, loss});
     };
     const auto add_from = [&](const Piece& piece, double t, Phase::Kind in) {
-        add(t, in, piece.contact, state(piece, t), work(piece, t), piece.loss);
+        add(t, in, piece.held, state(piece, t), work(piece, t), piece.loss);
     };
     // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
     const auto pass_events = [&](double until) {
@@ -92,18 +93,18 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
                 !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
             const bool is_left_out = stride > 1 && event.t < until;
             if (event.kind == Event::Kind::impact && !shown && !is_left_out)
-                add(event.t, Phase::Kind::hybrid, false, {event.q, event.v_before, event.t},
+                add(event.t, Phase::Kind::hybrid, {}, {event.q, event.v_before, event.t},
                     j == 0 ? 0.0 : events[j - 1].work, j == 0 ? 0.0 : events[j - 1].loss);
             ++j;
         }
         return any;
     };
-    bool contact = false;
+    ContactSet held;
     const std::size_t count = trajectory_.pieces.size();
     for (std::size_t block = 0; block * stride < count; ++block) {
         const Piece& piece = trajectory_.pieces[std::min(block * stride + block * 7919 % stride, count - 1)];
-        const bool fresh = pass_events(piece.start) || samples.empty() || piece.contact != contact || stride > 1;
-        contact = piece.contact;
+        const bool fresh = pass_events(piece.start) || samples.empty() || piece.held != held || stride > 1;
+        held = piece.held;
         const Phase::Kind in = kind(piece.start);
         if (fresh) add_from(piece, piece.start, in);
         for (int k = 1; k <= between; ++k) {
@@ -113,8 +114,8 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         add_from(piece, piece.end, in);
     }
     if (pass_events(trajectory_.end_time) || samples.empty())
-        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_phase == Phase::Kind::constrained,
-            trajectory_.end, trajectory_.work, trajectory_.loss);
+        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_held, trajectory_.end, trajectory_.work,
+            trajectory_.loss);
     return samples;
 }
 

@@ -14,6 +14,7 @@ struct Sample {
     int j = 0;
     Phase::Kind phase = Phase::Kind::hybrid;
     bool contact = false;  // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
+    ContactSet held;       // these are
     State state;
     double work = 0.0, loss = 0.0;  // of the run until then
 };

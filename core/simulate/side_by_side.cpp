@@ -16,22 +16,24 @@ constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter 
 
 SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run)
     : index(number),
-      kinematics(*model, run),
-      execution(model, run, kinematics, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
-      stepper(*model, run, kinematics) {}
+      surfaces(*model, run),
+      execution(model, run, surfaces, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
+      stepper(*model, run, surfaces) {}
 
 SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
                        const std::function<Run(std::size_t)>& run_of,
                        const std::function<void(std::size_t, Attempt&&)>& take)
-    : step_(model->lane_programs().coordinates),
+    : step_(static_cast<std::size_t>(model->dof())),
       end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
-      has_lanes_(model->edges().empty() && !model->motion({}).series.is_partial() &&
+      has_lanes_(model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
                  !model->motion(ContactSet::of(0)).series.is_partial()),
       count_(count),
       next_(next),
       run_of_(run_of),
-      take_(take) {}
+      take_(take) {
+    result_.starts.resize(1);
+}
 
 void SideBySide::work() {
     const Ground ground;
@@ -72,9 +74,9 @@ SideBySide::Member& SideBySide::member_for(std::size_t index, const Run& run) {
     spare_.pop_back();
     member.index = index;
     if (!member.execution.restart(run)) {
-        member.kinematics = ContactKinematics(*model_, run);
-        member.execution = Execution(model_, run, member.kinematics, nullptr, Keep::end, Execution::InDoubt::end);
-        member.stepper = EventStepper(*model_, run, member.kinematics);
+        member.surfaces = Surfaces(*model_, run);
+        member.execution = Execution(model_, run, member.surfaces, nullptr, Keep::end, Execution::InDoubt::end);
+        member.stepper = EventStepper(*model_, run, member.surfaces);
         member.set = set_of(run.parameters);
     }
     return member;
@@ -168,7 +170,7 @@ void SideBySide::gather(bool flying) {
             step_.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
             step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
         }
-        const auto& [gap, multiplicity, asked_again] = request.start;
+        const auto& [gap, multiplicity, asked_again] = request.starts.front();
         step_.t[lane] = request.state.t;
         step_.until[lane] = request.until;
         step_.state_error[lane] = gap.state_error;
@@ -208,7 +210,7 @@ bool SideBySide::read(std::size_t lane, bool flying) {
         result_.end = StepResult::End::impact;
         read_contact(lane);
     } else {
-        result_.start = {};
+        result_.starts.front() = {};
         if (flying) read_gap(lane);
     }
     return true;
@@ -231,12 +233,12 @@ void SideBySide::read_contact(std::size_t lane) {
 
 // The gap at the end of a step without event: by its series, or as it stands there where that is known better.
 void SideBySide::read_gap(std::size_t lane) {
-    Gap& gap = result_.start.gap;
+    Gap& gap = result_.starts.front().gap;
     gap = {step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
     const double off = step_.end_h[lane] - gap.h;
     if (!(std::abs(off) > 2.0 * step_.rounding[lane])) return;
     read_contact(lane);
-    if (members_[lane]->kinematics.within_gap_error(off, 4.0, result_.contact, end_)) return;
+    if (members_[lane]->surfaces.of(0).within_gap_error(off, 4.0, result_.contact, end_)) return;
     gap.h = step_.end_h[lane];
     gap.hdot = step_.end_hdot[lane];
 }

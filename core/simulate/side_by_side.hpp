@@ -28,7 +28,7 @@ class SideBySide {
         Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run);
         std::size_t index;
         std::size_t set = 0;  // of parameters: no two members with one number differ in them
-        ContactKinematics kinematics;
+        Surfaces surfaces;
         Execution execution;
         EventStepper stepper;
         const StepRequest* request = nullptr;  // that waits in line

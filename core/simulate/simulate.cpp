@@ -13,9 +13,9 @@ namespace achilles {
 namespace {
 
 Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch, Keep keep) {
-    ContactKinematics kinematics(*model, run);
-    Execution execution(model, run, kinematics, watch, keep, Execution::InDoubt::ask_exactly);
-    EventStepper stepper(*model, run, kinematics);
+    Surfaces surfaces(*model, run);
+    Execution execution(model, run, surfaces, watch, keep, Execution::InDoubt::ask_exactly);
+    EventStepper stepper(*model, run, surfaces);
     try {
         while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
     } catch (const std::bad_alloc&) {

@@ -12,9 +12,14 @@ double Work::along(const Piece& piece, std::span<const double> coefficients, dou
     const auto power_at = [&](double t) {
         set_state(power_, state_in(piece, coefficients, dof_, t));
         power_.run();
-        return power_.free() - (piece.contact ? power_.taken() : 0.0);
+        return power_.free() - (!piece.held.empty() ? power_.taken() : 0.0);
     };
-    return boost::math::quadrature::gauss<double, 7>::integrate(power_at, from, to);
+    using boost::math::quadrature::gauss;
+    if (piece.degree <= 7) return gauss<double, 7>::integrate(power_at, from, to);
+    if (piece.degree <= 10) return gauss<double, 10>::integrate(power_at, from, to);
+    if (piece.degree <= 15) return gauss<double, 15>::integrate(power_at, from, to);
+    if (piece.degree <= 20) return gauss<double, 20>::integrate(power_at, from, to);
+    return gauss<double, 30>::integrate(power_at, from, to);
 }
 
 }  // namespace achilles

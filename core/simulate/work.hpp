@@ -1,4 +1,4 @@
-// What is done on a system along its run: E(t) - E(0) = work - loss (theory.md 1.3).
+// What is done on a system along its run: E(t) - E(0) = work - loss (theory-gaps.md 1).
 #pragma once
 
 #include <span>
@@ -15,8 +15,8 @@ class Work {
 
     // Whether there is any: not where all forces have a potential that, as the gap, does not depend on the time.
     bool any() const { return any_; }
-    // Over [from, to] inside a piece, in units of the energy. By Gauss's rule of 7 points: a step is shorter than a third of
-    // its series' radius of convergence, so the rule is as exact as the step.
+    // Over [from, to] inside a piece, in units of the energy: by Gauss's rule with as many points as the piece has powers, so that
+    // a product of two such polynomials is met exactly.
     double along(const Piece& piece, std::span<const double> coefficients, double from, double to);
 
  private:

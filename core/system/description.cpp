@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
@@ -70,9 +71,20 @@ double* find_value(const SystemDescription& description, Run& run, std::string_v
     return nullptr;
 }
 
+std::string why_not_settable(const SystemDescription& description, std::string_view name) {
+    for (const DerivedDescription& derived : description.derived)
+        if (derived.name == name)
+            return fmt::format("'{}' follows from other parameters, it is {}: set those", name,
+                               shown(derived.definition.text));
+    return fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
+                       did_you_mean(name, settable_names(description)));
+}
+
 std::string unit_given(const SystemDescription& description, std::string_view name) {
     for (const ParameterDescription& p : description.parameters)
         if (p.name == name) return p.unit;
+    for (const DerivedDescription& derived : description.derived)
+        if (derived.name == name) return derived.unit;
     for (const CoordinateDescription& c : description.coordinates)
         if (name == c.name || name == c.name + "'") return c.unit;
     return {};
@@ -115,9 +127,7 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
     }
     const std::string name(trimmed(name_value.substr(0, equals))), written(name_value.substr(equals + 1));
     double* const place = find_value(description, run, name);
-    if (place == nullptr)
-        throw refuse(fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
-                                 did_you_mean(name, settable_names(description))));
+    if (place == nullptr) throw refuse(why_not_settable(description, name));
     std::optional<double> value;
     try {
         value = read_number(written, unit_given(description, name)).value;
@@ -128,6 +138,25 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
                                           [&](const ParameterDescription& p) { return p.name == name; });
     if (is_parameter && is_subnormal(*value)) throw refuse(subnormal_parameter(name, *value), subnormal_hint);
     *place = *value;
+}
+
+std::vector<DrawingDescription> drawings_of(const SystemDescription& system) {
+    std::vector<DrawingDescription> all = system.drawings;
+    for (const ConstraintDescription& constraint : system.constraints)
+        all.insert(all.end(), constraint.drawings.begin(), constraint.drawings.end());
+    std::stable_sort(all.begin(), all.end(), [](const DrawingDescription& a, const DrawingDescription& b) {
+        return std::pair(a.at.line, a.at.column) < std::pair(b.at.line, b.at.column);
+    });
+    return all;
+}
+
+std::vector<std::string> output_names(const SystemDescription& system, std::string_view quantity) {
+    if (system.constraints.size() < 2) return {std::string(quantity)};
+    const std::size_t primes = std::min(quantity.find('\''), quantity.size());
+    std::vector<std::string> names;
+    for (const ConstraintDescription& constraint : system.constraints)
+        names.push_back(fmt::format("{}_{}{}", quantity.substr(0, primes), constraint.name, quantity.substr(primes)));
+    return names;
 }
 
 std::vector<Text> texts_of(const DrawingDescription& drawing) {

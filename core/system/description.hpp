@@ -56,6 +56,7 @@ Location place_in(const Text& text, std::size_t offset);
 struct CoordinateDescription {
     std::string name, unit;
     double start = 0.0, rate = 0.0;
+    Text force;                                                     // generalised; empty: none
     std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // of its sliders
     bool has_range = false, has_rate_range = false;                 // they stand in the file
     Location at, start_at, rate_at;
@@ -67,6 +68,12 @@ struct ParameterDescription {
     std::array<double, 2> range{0.0, 1.0};
     bool has_range = false;  // it stands in the file
     Location at;
+};
+
+// One whose value follows from other parameters: no run sets it.
+struct DerivedDescription {
+    std::string name, unit, about;
+    Text definition;
 };
 
 struct DrawingDescription {
@@ -92,6 +99,13 @@ inline bool is_round(DrawingDescription::Shape shape) {
 // given.
 std::vector<Text> texts_of(const DrawingDescription& drawing);
 
+struct ConstraintDescription {
+    std::string name;  // "contact" where the file gives none, which may have one constraint then
+    Text gap, restitution;
+    std::vector<DrawingDescription> drawings;  // of what is touched, as written
+    Location at;
+};
+
 struct ViewDescription {
     std::string name;
     Text x;
@@ -105,11 +119,14 @@ struct SystemDescription {
     std::string source_text;  // the whole file, for carets
     std::string title, source;
     std::vector<CoordinateDescription> coordinates;
-    std::vector<ParameterDescription> parameters;
-    Text kinetic, potential, gap, restitution;
-    Options options;                           // defaults overridden by [run] and [truncation]
-    std::vector<DrawingDescription> drawings;  // as written; none is a valid answer
-    std::vector<ViewDescription> views;        // as written, or default_views()
+    std::vector<ParameterDescription> parameters;  // with values of their own
+    std::vector<DerivedDescription> derived;       // each after those that its definition names
+    Text kinetic, potential;
+    Text dissipation;  // R: minus its derivatives by the rates is added to the forces; may be empty
+    std::vector<ConstraintDescription> constraints;  // at least one
+    Options options;                                 // defaults overridden by [run] and [truncation]
+    std::vector<DrawingDescription> drawings;        // as written; none is a valid answer
+    std::vector<ViewDescription> views;              // as written, or default_views()
 
     // An error at a place in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
@@ -122,6 +139,13 @@ inline constexpr std::size_t largest_file = std::size_t{4} << 20;
 // the size tells: parse_system will say so.
 std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
 
+// All that is drawn of a system, the constraints' drawings among the others, in the order of the file.
+std::vector<DrawingDescription> drawings_of(const SystemDescription& system);
+
+// What views call a quantity of the constraints, gap'' for one: itself, or where there are several gap_knee'', gap_post'',
+// in their order.
+std::vector<std::string> output_names(const SystemDescription& system, std::string_view quantity);
+
 // A description is never edited: what a person sets is set in a run of it.
 
 // The run that it asks for.
@@ -130,6 +154,8 @@ Run default_run(const SystemDescription& description);
 std::vector<std::string> settable_names(const SystemDescription& description);
 // Where a run keeps the value of such a name; null if there is none.
 double* find_value(const SystemDescription& description, Run& run, std::string_view name);
+// Why there is none for another name: it is derived, or nothing; with what was probably meant.
+std::string why_not_settable(const SystemDescription& description, std::string_view name);
 // The unit in which the value of such a name is given: rad for a rate in rad/s, too; "" where there is none.
 std::string unit_given(const SystemDescription& description, std::string_view name);
 // The unit of such a name's value, a rate's with its "/s"; "" where it is not known.

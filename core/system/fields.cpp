@@ -105,6 +105,8 @@ std::array<Text, 2> Fields::point(std::string_view key, const TomlValue& value) 
     return {expression(key, value.items[0]), expression(key, value.items[1])};
 }
 
+Text Fields::expression_or_none(std::string_view key) const { return find(key) ? expression(key) : Text{}; }
+
 std::string Fields::string_or(std::string_view key, std::string otherwise) const {
     return find(key) ? string(key).text : std::move(otherwise);
 }

@@ -33,6 +33,7 @@ class Fields {
     Text expression(std::string_view key) const;  // a string or a finite number
     std::array<Text, 2> point(std::string_view key) const;
     // The same with a value for absence.
+    Text expression_or_none(std::string_view key) const;  // an empty text
     std::string string_or(std::string_view key, std::string otherwise) const;
     double number_or(std::string_view key, double otherwise, std::string_view unit = {}) const;
     std::array<double, 2> range_or(std::string_view key, std::array<double, 2> otherwise,

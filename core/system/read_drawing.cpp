@@ -49,7 +49,8 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
     if (is_reserved(own.text)) throw Mistake{own.at, fmt::format("the name '{}' is reserved", own.text), {}};
     const auto same = [&](const auto& other) { return other.name == own.text; };
     if (std::any_of(system.coordinates.begin(), system.coordinates.end(), same) ||
-        std::any_of(system.parameters.begin(), system.parameters.end(), same)) {
+        std::any_of(system.parameters.begin(), system.parameters.end(), same) ||
+        std::any_of(system.derived.begin(), system.derived.end(), same)) {
         throw Mistake{own.at, fmt::format("the name '{}' is used twice", own.text),
                       "a curve's own parameter needs a name of its own"};
     }
@@ -138,7 +139,7 @@ std::vector<ViewDescription> default_views(const SystemDescription& system) {
     };
     const auto& coordinates = system.coordinates;
     for (const CoordinateDescription& coordinate : coordinates) add(coordinate.name, "t", coordinate.name);
-    add("gap", "t", "gap");
+    for (const std::string& gap : output_names(system, "gap")) add(gap, "t", gap);
     if (coordinates.size() < 2) return views;
     const auto called_plane = [](const CoordinateDescription& c) { return c.name == "plane"; };
     const bool taken = std::any_of(coordinates.begin(), coordinates.end(), called_plane);

@@ -8,7 +8,10 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "number/ground.hpp"
+#include "run/contact_set.hpp"
+#include "system/derived.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
@@ -37,27 +40,39 @@ struct Reading {
     SystemDescription& system;
     const TomlValue& root;
     Mistakes& mistakes;
-    Names& names;  // of the coordinates and parameters, whatever else is wrong with these
+    Names& names;                          // of the coordinates and parameters, whatever else is wrong with these
+    std::vector<Fields> constraints = {};  // the tables of system.constraints
 };
+
+Mistake no_name(const Text& name) {
+    const std::string latin = spelled_out(name.text);
+    return {name.at, fmt::format("'{}' is not a name", shown(name.text)),
+            is_name(latin) ? "Greek letters have names: write " + latin
+                           : "a name is a letter, then letters, digits and underscores"};
+}
+
+Mistake used_twice(const Text& name, const Location& other) {
+    return {name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
+            fmt::format("it is the name at line {} already", other.line)};
+}
 
 // A name that nothing else has. Throws Mistake.
 Text read_name(Names& names, const Fields& fields) {
     const bool was_complete = std::exchange(names.complete, false);  // until this one is known
     const Text name = fields.string("name");
-    if (!is_name(name.text))
-        throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
-                      is_name(spelled_out(name.text)) ? "Greek letters have names: write " + spelled_out(name.text)
-                                                      : "a name is a letter, then letters, digits and underscores"};
-    if (is_reserved(name.text)) {
+    if (!is_name(name.text)) throw no_name(name);
+    const bool is_of_a_gap =
+        names.has_several_gaps && (name.text.starts_with("gap_") || name.text.starts_with("lambda_"));
+    if (is_reserved(name.text) || is_of_a_gap) {
         names.complete = was_complete;
         names.excused.insert(name.text);
-        throw Mistake{name.at, fmt::format("the name '{}' is reserved", name.text),
-                      "functions, t, pi, gap, lambda, energy and deg keep their meaning: choose another name"};
+        throw Mistake{name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
+                      is_of_a_gap ? "with several constraints gap_NAME and lambda_NAME are theirs: choose another name"
+                                  : "functions, t, pi, gap, lambda, energy, work, loss, power and deg keep their "
+                                    "meaning: choose another name"};
     }
     const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
-    if (!is_new)
-        throw Mistake{name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
-                      fmt::format("it is the name at line {} already", other->second.line)};
+    if (!is_new) throw used_twice(name, other->second);
     names.complete = was_complete;
     return name;
 }
@@ -89,6 +104,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
         mistakes.attempt([&] { read_unit(fields, coordinate.unit); });
         mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0, unit); });
         mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0, unit); });
+        mistakes.attempt([&] { coordinate.force = fields.expression_or_none("force"); });
         coordinate.has_range = fields.find("range") != nullptr;
         coordinate.has_rate_range = fields.find("rate_range") != nullptr;
         mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start), unit); });
@@ -106,6 +122,17 @@ void read_coordinates(Reading& reading, const Fields& root) {
         throw missing("[[coordinate]]: a system needs at least one");
 }
 
+// One whose value is an expression in other parameters.
+void read_derived(Reading& reading, const Fields& fields, DerivedDescription derived) {
+    reading.mistakes.attempt([&] { derived.definition = fields.expression("value"); });
+    reading.system.derived.push_back(std::move(derived));
+    if (const TomlValue* range = fields.find("range"))
+        reading.mistakes.add({range->at,
+                              fmt::format("'{}' follows from other parameters: it has no slider and no range",
+                                          reading.system.derived.back().name),
+                              {}});
+}
+
 void read_parameters(Reading& reading) {
     for (Fields& fields : named_tables(reading, "parameter")) {
         Mistakes& mistakes = reading.mistakes;
@@ -113,17 +140,26 @@ void read_parameters(Reading& reading) {
         ParameterDescription parameter;
         const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
         mistakes.attempt([&] { read_unit(fields, parameter.unit); });
+        mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
+        const TomlValue* value = fields.find("value");
+        if (value != nullptr && value->kind == TomlValue::Kind::string && has_names(value->text.text)) {
+            if (is_named) read_derived(reading, fields, {parameter.name, parameter.unit, parameter.about, {}});
+            continue;
+        }
         mistakes.attempt([&] {
             parameter.value = fields.number("value", parameter.unit);
             parameter.at = fields.need("value").at;
         });
-        mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
-        const bool is_restitution = reading.system.restitution.text == parameter.name;
+        const auto& constraints = reading.system.constraints;
+        const bool is_restitution =
+            std::any_of(constraints.begin(), constraints.end(),
+                        [&](const ConstraintDescription& c) { return c.restitution.text == parameter.name; });
         const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
         parameter.has_range = fields.find("range") != nullptr;
         mistakes.attempt([&] { parameter.range = fields.range_or("range", usual, parameter.unit); });
         if (is_named) reading.system.parameters.push_back(parameter);
     }
+    order_derived(reading.system.derived, reading.names, reading.mistakes);
 }
 
 void read_lagrangian(Reading& reading, const Fields& root) {
@@ -132,21 +168,46 @@ void read_lagrangian(Reading& reading, const Fields& root) {
     fields.allow(keys_of("[lagrangian]"), reading.mistakes);
     reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
     reading.mistakes.attempt([&] { reading.system.potential = fields.expression("potential"); });
+    reading.mistakes.attempt([&] { reading.system.dissipation = fields.expression_or_none("dissipation"); });
 }
 
-void read_constraint(Reading& reading, const Fields& root) {
+// What outputs call a constraint, as in gap_knee: several need a name each. Throws Mistake.
+void read_constraint_name(const Fields& fields, bool is_only, std::map<std::string, Location>& places,
+                          std::string& name) {
+    if (is_only && !fields.find("name")) {
+        name = "contact";
+        return;
+    }
+    fields.need("name", {fields.table().at, "missing key 'name' in [[constraint]]",
+                         "where there are several constraints each has a name of its own"});
+    const Text text = fields.string("name");
+    if (!is_name(text.text)) throw no_name(text);
+    const auto [other, is_new] = places.try_emplace(text.text, text.at);
+    if (!is_new) throw used_twice(text, other->second);
+    name = text.text;
+}
+
+void read_constraints(Reading& reading, const Fields& root) {
+    Mistakes& mistakes = reading.mistakes;
     root.need("constraint", missing("[[constraint]]"));
-    const std::size_t before = reading.mistakes.count();
-    std::vector<Fields> constraints = tables(reading.root, "constraint", reading.mistakes);
-    if (constraints.empty() && reading.mistakes.count() == before) throw missing("[[constraint]]");  // constraint = []
-    if (constraints.empty()) return;
-    if (constraints.size() > 1)
-        reading.mistakes.add({constraints[1].table().at, "more than one [[constraint]]",
-                              "Achilles simulates systems with exactly one unilateral constraint"});
-    Fields& fields = constraints[0];
-    fields.allow(keys_of("[[constraint]]"), reading.mistakes);
-    reading.mistakes.attempt([&] { reading.system.gap = fields.expression("gap"); });
-    reading.mistakes.attempt([&] { reading.system.restitution = fields.expression("restitution"); });
+    const std::size_t before = mistakes.count();
+    std::vector<Fields>& list = reading.constraints = tables(reading.root, "constraint", mistakes);
+    if (list.empty() && mistakes.count() == before) throw missing("[[constraint]]");  // constraint = []
+    if (list.size() > max_contacts) {
+        mistakes.add({list[max_contacts].table().at, fmt::format("more than {} [[constraint]]", max_contacts), {}});
+        while (list.size() > max_contacts) list.pop_back();
+    }
+    std::map<std::string, Location> places;
+    for (Fields& fields : list) {
+        fields.allow(keys_of("[[constraint]]"), mistakes);
+        ConstraintDescription& constraint = reading.system.constraints.emplace_back();
+        constraint.at = fields.table().at;
+        const bool is_named =
+            mistakes.attempt([&] { read_constraint_name(fields, list.size() == 1, places, constraint.name); });
+        if (!is_named) reading.names.complete = false;  // nor are those of its gap and its force
+        mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
+        mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
+    }
 }
 
 // The option's value. Throws Mistake: with the nearest word where it is none of them.
@@ -163,7 +224,7 @@ OptionValue read_option(const Option& option, const Fields& fields) {
                       fmt::format("unknown {} '{}'{}", option.key, shown(text.text), did_you_mean(text.text, names)),
                       fmt::format("known: {}", listed(names))};
     }
-    const double number = fields.positive(option.key);
+    const double number = option.any_sign ? fields.number(option.key) : fields.positive(option.key);
     if (std::holds_alternative<double>(usual)) return number;
     const TomlValue& value = fields.need(option.key);
     if (!value.integer || number > INT_MAX)
@@ -178,16 +239,26 @@ void read_options(const TomlValue& table, const std::string& name, Options& opti
     for (const Option& option : all_options())
         if (option.table == name) keys.emplace_back(option.key);
     fields.allow(keys, mistakes);
+    const std::size_t before = mistakes.count();
     for (const Option& option : all_options())
         if (option.table == name && fields.find(option.key))
             mistakes.attempt([&] { option.set(options, read_option(option, fields)); });
+    const TomlValue* end = fields.find("end_time");
+    if (end == nullptr) end = fields.find("start_time");
+    const auto fault = fault_of_times(options);
+    if (fault && end != nullptr && mistakes.count() == before) mistakes.add({end->at, *fault, {}});
 }
 
 void read_pictures(Reading& reading) {
     SystemDescription& system = reading.system;
     Mistakes& mistakes = reading.mistakes;
-    for (const Fields& fields : tables(reading.root, "drawing", mistakes))
-        mistakes.attempt([&] { system.drawings.push_back(read_drawing(system, fields, mistakes)); });
+    const auto read_drawings = [&](const TomlValue& table, std::vector<DrawingDescription>& drawings) {
+        for (const Fields& fields : tables(table, "drawing", mistakes))
+            mistakes.attempt([&] { drawings.push_back(read_drawing(system, fields, mistakes)); });
+    };
+    read_drawings(reading.root, system.drawings);
+    for (std::size_t i = 0; i < reading.constraints.size(); ++i)
+        read_drawings(reading.constraints[i].table(), system.constraints[i].drawings);
     std::set<std::string> names;
     for (Fields& fields : tables(reading.root, "view", mistakes)) {
         mistakes.attempt([&] {
@@ -226,10 +297,12 @@ FileReading read_tables(std::string text, std::string name) {
         system.title = fields.string("title").text;
     });
     mistakes.attempt([&] { system.source = fields.string_or("source", ""); });
+    const TomlValue* constraints = fields.find("constraint");
+    read.names.has_several_gaps = constraints != nullptr && constraints->items.size() > 1;
     mistakes.attempt([&] { read_coordinates(reading, fields); });
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
-    mistakes.attempt([&] { read_constraint(reading, fields); });
-    read_parameters(reading);  // after the constraint: the restitution's slider has a range of its own
+    mistakes.attempt([&] { read_constraints(reading, fields); });
+    read_parameters(reading);  // after the constraints: the restitution's slider has a range of its own
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });

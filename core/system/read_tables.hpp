@@ -15,6 +15,7 @@ namespace achilles {
 struct Names {
     std::map<std::string, Location> places;
     bool complete = true;           // false: there may be names that could not be read, so none can be called unknown
+    bool has_several_gaps = false;  // then names that begin with gap_ or lambda_ are theirs
     std::set<std::string> excused;  // refused or unknown, and told once: they may stand for anything
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
@@ -120,15 +121,20 @@ class Names {
         }
         for (const ParameterDescription& p : description.parameters) add(p.name, read(p.unit));
         add("t", has_units ? second : std::nullopt);
+        for (const DerivedDescription& d : description.derived)
+            add(d.name, d.unit.empty() ? of(d.definition.text) : read(d.unit));
         const bool has_energy = names("energy") || names("lambda");
-        const MaybeUnit gap = has_energy || names("gap") ? of(description.gap.text) : std::nullopt;
+        const bool has_gap = has_energy || names("gap");
         MaybeUnit energy = has_energy ? of(description.kinetic.text) : std::nullopt;
         if (has_energy && !energy) energy = of(description.potential.text);
-        add("gap", gap);
-        add("gap'", product(gap, second, -1.0));
-        add("gap''", product(gap, second, -2.0));
         add("energy", energy);
-        add("lambda", product(energy, gap, -1.0));
+        for (std::size_t i = 0; i < description.constraints.size(); ++i) {
+            const MaybeUnit gap = has_gap ? of(description.constraints[i].gap.text) : std::nullopt;
+            add(output_names(description, "gap")[i], gap);
+            add(output_names(description, "gap'")[i], product(gap, second, -1.0));
+            add(output_names(description, "gap''")[i], product(gap, second, -2.0));
+            add(output_names(description, "lambda")[i], product(energy, gap, -1.0));
+        }
     }
 
     MaybeUnit of(std::string_view text) {
@@ -196,8 +202,9 @@ std::string unit_of_expression(const SystemDescription& description, std::string
     if (!unit) return "";
     const std::string text = written(*unit);
     const std::size_t begin = std::min(expression.find_first_not_of(' '), expression.size());
-    const bool is_force = expression.substr(begin).starts_with("lambda") &&
-                          expression.find_first_not_of(' ', begin + 6) == std::string_view::npos;
+    const std::string_view word = expression.substr(begin, expression.find_last_not_of(' ') + 1 - begin);
+    const std::vector<std::string> forces = output_names(description, "lambda");
+    const bool is_force = std::find(forces.begin(), forces.end(), word) != forces.end();
     return is_force && text == "J" ? "N*m" : text;
 }
 

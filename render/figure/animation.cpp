@@ -170,7 +170,7 @@ Still Animation::at(double t) {
     Still still;
     still.areas = areas_;
     const double scale = still.scale = still_scale(size_);
-    still.world = mechanism_.draw(now.state, trajectory_.run.parameters, limits_, theme);
+    still.world = mechanism_.draw(now.t, now.state, trajectory_.run.parameters, limits_, theme);
     add_trail(still.world.shapes, trail_, samples_, now.t, theme);
     still.plane = plane_;
     for (Panel& panel : still.plane.panels) add_present(panel, *plane_view_, now);

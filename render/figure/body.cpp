@@ -31,8 +31,8 @@ Eigen::Matrix2d gram(const Vector& jx, const Vector& jy) {
 
 }  // namespace
 
-std::optional<Body> Body::of(Grip& grip, const State& state) {
-    const Grip::Hold here = grip.at(state);
+std::optional<Body> Body::of(Grip& grip, double t, const State& state) {
+    const Grip::Hold here = grip.at(t, state);
     if (!std::isfinite(here.at.x) || !std::isfinite(here.at.y)) return std::nullopt;
     Body body;
     body.at_ = here.at;
@@ -43,9 +43,9 @@ std::optional<Body> Body::of(Grip& grip, const State& state) {
         State moved = state;
         const double step = 1e-6 * std::max(1.0, std::abs(state.q[i]));
         moved.q[i] = state.q[i] + step;
-        const Point after = grip.at(moved).at;
+        const Point after = grip.at(t, moved).at;
         moved.q[i] = state.q[i] - step;
-        const Point before = grip.at(moved).at;
+        const Point before = grip.at(t, moved).at;
         body.jx_[i] = (after.x - before.x) / (2.0 * step);
         body.jy_[i] = (after.y - before.y) / (2.0 * step);
     }
@@ -71,11 +71,11 @@ std::optional<Vector> Body::rates(const Vector& v, const Point& velocity) const 
     return result;
 }
 
-std::optional<Vector> held_at(Grip& grip, State state, const Point& place) {
+std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& place) {
     constexpr int rounds = 30;
     double distance = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
-        const auto body = Body::of(grip, state);
+        const auto body = Body::of(grip, t, state);
         if (!body) return std::nullopt;
         const Point missing{place.x - body->at().x, place.y - body->at().y};
         const double before = distance;
@@ -111,10 +111,11 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
     if (!grip) return trail;
     const std::size_t stride = 1 + samples.size() / 300;
     for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double t = samples[i].t;
         const State& state = samples[i].state;
-        trail.points.push_back(grip->at(state).at);
+        trail.points.push_back(grip->at(t, state).at);
         if (i % stride != 0) continue;
-        const auto body = Body::of(*grip, state);
+        const auto body = Body::of(*grip, t, state);
         if (!body) continue;
         const Point v = body->velocity(state.v);
         trail.fastest = std::max(trail.fastest, std::hypot(v.x, v.y));

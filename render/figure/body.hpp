@@ -12,9 +12,9 @@ namespace achilles {
 
 class Body {
  public:
-    // At a state, with p = p(q) its place in the world and J = dp/dq by central differences. Nothing where these are
+    // At a time and a state, with p = p(q) its place in the world and J = dp/dq by central differences. Nothing where these are
     // not finite.
-    static std::optional<Body> of(Grip& grip, const State& state);
+    static std::optional<Body> of(Grip& grip, double t, const State& state);
 
     const Point& at() const { return at_; }
     double radius() const { return radius_; }  // of its disc, in world units; 0 without one
@@ -33,9 +33,9 @@ class Body {
     Vector jx_, jy_;  // rows of J
 };
 
-// The coordinates nearest to the state's that bring the body to this place, by Gauss and Newton; as near as it can be
+// The coordinates nearest to the state's that bring the body at this time to this place, by Gauss and Newton; as near as it can be
 // where the body moves on a line. Nothing where it does not get there.
-std::optional<Vector> held_at(Grip& grip, State state, const Point& place);
+std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& place);
 
 // The body along a whole run.
 struct Trail {

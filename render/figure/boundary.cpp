@@ -20,12 +20,12 @@ struct Part {
     Drawing box;
 };
 
-// The gap depends on no other coordinates than these.
+// The gap depends on no other coordinates than these, and not on time.
 bool is_of(const Model& model, const Pair& pair) {
-    std::vector<std::uint32_t> others;
+    std::vector<std::uint32_t> others{model.layout().t()};
     for (std::size_t i = 0; i < model.layout().dof; ++i)
         if (i != pair[0] && i != pair[1]) others.push_back(static_cast<std::uint32_t>(model.layout().q(i)));
-    return !depends_on(model.equations().gap, others);
+    return !depends_on(model.equations().gaps[0], others);
 }
 
 // The values of a view's first two quantities at a state of rest with these two coordinates.

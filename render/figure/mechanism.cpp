@@ -1,12 +1,12 @@
 #include "figure/mechanism.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <string_view>
 #include <utility>
 
+#include "expression/parse.hpp"
 #include "figure/field.hpp"
 
 namespace achilles {
@@ -87,30 +87,26 @@ void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
 }
 
-// Whether an expression names one of the coordinates.
-bool names_coordinate(const SystemDescription& description, std::string_view text) {
-    const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    for (std::size_t i = 0; i < text.size();) {
-        std::size_t end = i;
-        while (end < text.size() && is_part(text[end])) ++end;
-        for (const CoordinateDescription& c : description.coordinates)
-            if (c.name == text.substr(i, end - i)) return true;
-        i = std::max(end, i + 1);
-    }
-    return false;
+// Whether an expression names one of the coordinates, or t.
+bool names_what_moves(const SystemDescription& description, std::string_view text) {
+    const std::vector<std::string> names = names_in(text);
+    return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+        return name == "t" || std::any_of(description.coordinates.begin(), description.coordinates.end(),
+                                          [&](const CoordinateDescription& c) { return c.name == name; });
+    });
 }
 
 }  // namespace
 
 Mechanism::Mechanism(const Model& model) : model_(model) {
     const SystemDescription& description = model.description();
-    for (const DrawingDescription& drawing : description.drawings) {
+    for (const DrawingDescription& drawing : drawings_of(description)) {
         Item item;
         item.description = drawing;
         const std::vector<Text> texts = texts_of(drawing);
         item.program = model.compile_drawing(texts, drawing.over);
         item.moves = std::any_of(texts.begin(), texts.end(),
-                                 [&](const Text& text) { return names_coordinate(description, text.text); });
+                                 [&](const Text& text) { return names_what_moves(description, text.text); });
         items_.push_back(std::move(item));
     }
     const auto named = [&](std::size_t i, const char* name) {
@@ -119,8 +115,9 @@ Mechanism::Mechanism(const Model& model) : model_(model) {
     plane_ = items_.empty() && named(0, "x") && named(1, "y");
 }
 
-Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, const State& state) const {
+Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state) const {
     set_state(run, state);
+    run.input(model_.layout().t()) = t;
     run.run();
     const DrawingDescription& d = item.description;
     Placed placed;
@@ -140,9 +137,10 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, con
     return placed;
 }
 
-Grip::Hold Grip::at(const State& state) {
+Grip::Hold Grip::at(double t, const State& state) {
     if (!run_) return {{state.q[0], state.q[1]}, 0.0};
     set_state(*run_, state);
+    run_->input(t_) = t;
     run_->run();
     return {{run_->output(first_), run_->output(first_ + 1)}, disc_ ? run_->output(2) : 0.0};
 }
@@ -164,6 +162,7 @@ Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const dou
     Grip grip;
     grip.run_ = model_.evaluator(item.program, parameters);
     grip.disc_ = is_round(item.description.shape);
+    grip.t_ = model_.layout().t();
     grip.first_ = 2 * point;
     return grip;
 }
@@ -181,7 +180,7 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
     return all;
 }
 
-Drawing Mechanism::draw(const State& state, std::span<const double> parameters, const Drawing& limits,
+Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
                         const Theme& theme) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
@@ -197,7 +196,7 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
         const Color own = item.moves ? theme.body : theme.surface;
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
-        Placed placed = place(item, run, state);
+        Placed placed = place(item, run, t, state);
         const Shape::Kind kind = is_round(d.shape)       ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
@@ -211,6 +210,7 @@ Drawing Mechanism::draw(const State& state, std::span<const double> parameters, 
     }
     if (plane_) {
         Evaluator<double> gap = model_.evaluator(model_.gap(), parameters);
+        gap.input(model_.layout().t()) = t;
         const Field h(limits, [&](const Point& p) {
             gap.input(0) = p.x;
             gap.input(1) = p.y;
@@ -240,14 +240,15 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
     for (const Item& item : items_) {
         if (!item.moves) continue;
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
-        for (std::size_t i = 0; i < samples.size(); i += stride) box.include(place(item, run, samples[i].state));
+        for (std::size_t i = 0; i < samples.size(); i += stride)
+            box.include(place(item, run, samples[i].t, samples[i].state));
     }
     const bool still = box.empty();  // then all there is must be seen
     Box all = box;
     for (const Item& item : items_) {
         if (item.moves) continue;
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
-        const Placed placed = place(item, run, {trajectory.run.q, trajectory.run.v});
+        const Placed placed = place(item, run, trajectory.run.options.start_time, {trajectory.run.q, trajectory.run.v});
         if (still)
             all.include(placed);
         else if (item.description.shape == Kind::curve)

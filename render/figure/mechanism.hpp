@@ -19,11 +19,12 @@ class Grip {
         Point at;
         double radius = 0.0;  // of the disc; 0 without one
     };
-    Hold at(const State& state);
+    Hold at(double t, const State& state);
 
  private:
     friend class Mechanism;
     std::optional<Evaluator<double>> run_;  // none: the coordinates are the place
+    std::size_t t_ = 0;                     // input
     std::size_t first_ = 0;                 // output
     bool disc_ = false;
 };
@@ -34,8 +35,8 @@ class Mechanism {
     // else a note. Throws InputError for an expression that is none. Refers to the model.
     explicit Mechanism(const Model& model);
 
-    // The shapes at a state, within given limits (see limits()).
-    Drawing draw(const State& state, std::span<const double> parameters, const Drawing& limits,
+    // The shapes at a time and a state, within given limits (see limits()).
+    Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
                  const Theme& theme) const;
 
     // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
@@ -53,13 +54,13 @@ class Mechanism {
     struct Item {
         DrawingDescription description;
         Program program;     // its points' x and y, then radius or limits of the curve's parameter, then width
-        bool moves = false;  // it names a coordinate
+        bool moves = false;  // it names a coordinate, or t
     };
     struct Placed {
         std::vector<Point> points;
         double radius = 0.0, width = 2.0;
     };
-    Placed place(const Item& item, Evaluator<double>& run, const State& state) const;
+    Placed place(const Item& item, Evaluator<double>& run, double t, const State& state) const;
     Grip grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
 
     const Model& model_;

@@ -19,13 +19,13 @@ TEST(Session, begins_with_the_run_of_the_file) {
 TEST(Session, setting_a_value_runs_the_same_model_again) {
     Session session = test::session("ball_on_sine");
     const auto model = session.model();
-    const std::uint32_t nodes = model->equations().gap.graph().size();
+    const std::uint32_t nodes = model->equations().gaps[0].graph().size();
     const std::string before = to_text(session.trajectory());
     for (const double g : {1.1, 1.2, 1.3, 9.81}) session.apply(command::Set{"g", g});
     EXPECT_EQ(session.error(), "");
     EXPECT_EQ(session.run().parameters[1], 9.81);
     EXPECT_EQ(session.model(), model);
-    EXPECT_EQ(model->equations().gap.graph().size(), nodes) << "something was derived again";
+    EXPECT_EQ(model->equations().gaps[0].graph().size(), nodes) << "something was derived again";
     EXPECT_NE(to_text(session.trajectory()), before);
     session.apply(command::Set{"g", 1.0});
     EXPECT_EQ(to_text(session.trajectory()), before);

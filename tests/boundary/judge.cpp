@@ -36,7 +36,7 @@ std::string repeat(const Question& question, Way way, double tolerance) {
     const SystemDescription& d = question.model->description();
     std::string text =
         fmt::format("{}{}: T = {}, V = {}, gap {}, e = {};", to_text(way), question.in_contact ? ", from contact" : "",
-                    d.kinetic.text, d.potential.text, d.gap.text, d.restitution.text);
+                    d.kinetic.text, d.potential.text, d.constraints[0].gap.text, d.constraints[0].restitution.text);
     for (Eigen::Index i = 0; i < question.run.q.size(); ++i) {
         const std::string& name = d.coordinates[static_cast<std::size_t>(i)].name;
         text += fmt::format(" {} = {:.17g}, {}' = {:.17g},", name, question.run.q[i], name, question.run.v[i]);

@@ -16,15 +16,15 @@ double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n
 // |M g'|/W at the restart; the truth is a maximum of |M^-1 g'|/W around it.
 double eta_with_M(const Model& model, const Run& run, const State& state) {
     const Equations& equations = model.equations();
-    Graph graph(equations.W.graph());  // a copy: the model stays as it is
+    const ContactEquations& contact = equations.free.contacts[0];
+    Graph graph(contact.W.graph());  // a copy: the model stays as it is
     const Layout& layout = model.layout();
     const auto n = static_cast<std::size_t>(model.dof());
     std::vector<Expression> outputs;
     for (std::size_t i = 0; i < n; ++i) {
         Expression sum = graph.number(0);
-        for (std::size_t j = 0; j < n; ++j)
-            sum = sum + graph.adopt(equations.M[i * n + j]) * graph.adopt(equations.g[j]);
-        outputs.push_back(sum / graph.adopt(equations.W));
+        for (std::size_t j = 0; j < n; ++j) sum = sum + graph.adopt(equations.M[i * n + j]) * graph.adopt(contact.g[j]);
+        outputs.push_back(sum / graph.adopt(contact.W));
     }
     const Program program(outputs, Slots{layout.count(), 2 * layout.dof, 2 * layout.dof + layout.p});
     auto evaluator = model.evaluator(program, run.parameters);

@@ -49,6 +49,16 @@ inline std::string told(const std::string& text) {
     return "";
 }
 
+// What is told about a text by its reading alone; "" if nothing is wrong.
+inline std::string told_by_reading(const std::string& text) {
+    try {
+        parse_system(text, "f.toml");
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
 // A drop onto the floor x = 0: hddot = -g.
 inline std::shared_ptr<const Model> drop() {
     return typed(

@@ -177,7 +177,7 @@ std::string fault(const Trajectory& trajectory, double between) {
     if (!stored.empty()) return stored;
     const auto n = static_cast<std::size_t>(trajectory.model->dof());
     for (const Piece& piece : trajectory.pieces) {
-        if (piece.contact) continue;  // a sample is projected
+        if (!piece.held.empty()) continue;  // a sample is projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
             for (std::size_t i = 0; i < n; ++i) {
                 double q = 0.0;

@@ -100,9 +100,9 @@ TEST_P(Invariance, OtherUnitsOfTime) {
 // Coordinates in units a hundredth as large, angles too.
 TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     SystemDescription changed = description();
-    for (Text* text : {&changed.kinetic, &changed.potential, &changed.gap})
+    for (Text* text : {&changed.kinetic, &changed.potential, &changed.constraints[0].gap})
         text->text = rescaled(changed, text->text, "0.01");
-    ASSERT_NE(changed.gap.text, description().gap.text);
+    ASSERT_NE(changed.constraints[0].gap.text, description().constraints[0].gap.text);
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
 }
 
@@ -124,7 +124,7 @@ TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     const std::string q = description().coordinates[0].name;
     for (const std::string& factor : {"(2 + sin(" + q + "))", "exp(" + q + ")"}) {
         SystemDescription changed = description();
-        wrap(changed.gap, factor + "*(", ")");
+        wrap(changed.constraints[0].gap, factor + "*(", ")");
         const std::vector<Event> found = events(changed);
         ASSERT_EQ(found.size(), expected.size()) << factor;
         for (std::size_t i = 0; i < found.size(); ++i) {

@@ -91,7 +91,7 @@ TEST(Lies, ContactForce) {
     // A contact phase said to last into the flight.
     Trajectory late = truth();
     for (Piece& piece : late.pieces)
-        if (piece.start >= late.phases[1].end) piece.contact = true;
+        if (piece.start >= late.phases[1].end) piece.held = ContactSet::of(0);
     late.phases[1].end += 0.3;
     EXPECT_FALSE(contact_force(late).empty());
 }

@@ -141,7 +141,8 @@ TEST_P(Composed, TheMechanismStaysInsideItsLimits) {
     const Drawing limits = mechanism.limits(trajectory, samples);
     EXPECT_LT(limits.x_low, limits.x_high);
     for (const Sample& sample : samples) {
-        const Drawing drawing = mechanism.draw(sample.state, trajectory.run.parameters, limits, light_theme());
+        const Drawing drawing =
+            mechanism.draw(sample.t, sample.state, trajectory.run.parameters, limits, light_theme());
         EXPECT_EQ(drawing.shapes.size(), model->description().drawings.size());
         for (const Shape& shape : drawing.shapes) {
             if (shape.points.size() > 100) continue;  // the surface goes on beyond the picture

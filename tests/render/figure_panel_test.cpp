@@ -120,7 +120,7 @@ TEST(Panels, LeaveOutWhatIsNoNumber) {
 TEST(Panels, AreBoundedForManyImpacts) {
     SystemDescription description =
         parse_system(ball("[run]\nend_time = 1500\n" + a_view("t", "\"y\", \"y'\"")), "typed.toml");
-    description.restitution.text = "1";
+    description.constraints[0].restitution.text = "1";
     const auto model = std::make_shared<const Model>(description);
     achilles::Run bouncing = model->default_run();
     bouncing.q[1] = 0.01;
@@ -137,6 +137,51 @@ TEST(Panels, AreBoundedForManyImpacts) {
     EXPECT_NEAR(highest, std::sqrt(0.2), 1e-3);  // thinning keeps the extremes
 }
 
+// t, and a parameter that follows from others.
+TEST(Mechanism, moves_with_time) {
+    const auto model = test::typed(
+        "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[parameter]]\nname = \"double\"\nvalue = \"2*om\"\n"
+        "[[parameter]]\nname = \"om\"\nvalue = 3\n[lagrangian]\nkinetic = \"x'^2\"\npotential = \"x\"\n"
+        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n[run]\nend_time = 2\n"
+        "[[drawing]]\nshape = \"segment\"\nfrom = [\"4*cos(t)\", 0]\nto = [1, \"double + t\"]\n"
+        "[[drawing]]\nshape = \"curve\"\nover = [\"s\", 0, \"1 + t\"]\nat = [\"s\", \"s*t\"]\n"
+        "[[drawing]]\nshape = \"disc\"\nat = [0, \"om\"]\nradius = 1\n");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const Mechanism mechanism(*model);
+    const Drawing limits = mechanism.limits(trajectory, plot_samples(trajectory));
+    EXPECT_GE(limits.y_high, 8.0) << "it is seen until the end";
+    for (const double t : {0.0, 1.5}) {
+        const Drawing drawing =
+            mechanism.draw(t, {trajectory.run.q, trajectory.run.v}, trajectory.run.parameters, limits, light_theme());
+        ASSERT_EQ(drawing.shapes.size(), 3u);
+        EXPECT_NEAR(drawing.shapes[0].points[0].x, 4.0 * std::cos(t), 1e-14);
+        EXPECT_NEAR(drawing.shapes[0].points[1].y, 6.0 + t, 1e-14);
+        EXPECT_NEAR(drawing.shapes[1].points.back().x, 1.0 + t, 1e-14);
+        EXPECT_NEAR(drawing.shapes[1].points.back().y, (1.0 + t) * t, 1e-14);
+        EXPECT_TRUE(drawing.shapes[0].moves);
+        EXPECT_FALSE(drawing.shapes[2].moves);
+    }
+    auto grip = mechanism.grip(trajectory.run.parameters);
+    ASSERT_TRUE(grip);
+    EXPECT_NEAR(grip->at(1.5, {trajectory.run.q, trajectory.run.v}).at.y, 7.5, 1e-14);
+}
+
+// Those of the constraints are among the others.
+TEST(Mechanism, draws_what_is_touched) {
+    const auto model = test::typed(
+        "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\npotential = \"x\"\n"
+        "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n"
+        "[[constraint.drawing]]\nshape = \"segment\"\nfrom = [-1, 0]\nto = [1, 0]\n"
+        "[[drawing]]\nshape = \"disc\"\nat = [0, \"x\"]\nradius = 1\n[run]\nend_time = 1\n");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const Mechanism mechanism(*model);
+    const Drawing drawing = mechanism.draw(0.0, {trajectory.run.q, trajectory.run.v}, trajectory.run.parameters,
+                                           mechanism.limits(trajectory, plot_samples(trajectory)), light_theme());
+    ASSERT_EQ(drawing.shapes.size(), 2u);
+    EXPECT_EQ(drawing.shapes[0].kind, Shape::Kind::polyline);
+    EXPECT_EQ(drawing.shapes[1].kind, Shape::Kind::disc);
+}
+
 TEST(Mechanism, a_circle_is_the_outline_of_a_disc) {
     const std::string system =
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\n"
@@ -146,7 +191,7 @@ TEST(Mechanism, a_circle_is_the_outline_of_a_disc) {
         const Trajectory trajectory = simulate(model, model->default_run());
         const Mechanism mechanism(*model);
         return mechanism
-            .draw({trajectory.run.q, trajectory.run.v}, trajectory.run.parameters,
+            .draw(0.0, {trajectory.run.q, trajectory.run.v}, trajectory.run.parameters,
                   mechanism.limits(trajectory, plot_samples(trajectory)), light_theme())
             .shapes.at(0);
     };
@@ -200,7 +245,8 @@ TEST(MechanismWithoutDrawing, ShowsTheSurfaceOrSaysSo) {
     const Motion motion(ball("[run]\nend_time = 2\n", "y", "y - 0.2*sin(3*x)"));
     const Mechanism mechanism(*motion.model);
     const Drawing limits = mechanism.limits(motion.run, plot_samples(motion.run));
-    const Drawing drawing = mechanism.draw(motion.run.end, motion.run.run.parameters, limits, light_theme());
+    const Drawing drawing =
+        mechanism.draw(motion.run.end_time, motion.run.end, motion.run.run.parameters, limits, light_theme());
     ASSERT_EQ(drawing.shapes.size(), 2u);
     EXPECT_GT(drawing.shapes[0].points.size(), 300u);
     for (const Point& p : drawing.shapes[0].points) {
@@ -211,7 +257,7 @@ TEST(MechanismWithoutDrawing, ShowsTheSurfaceOrSaysSo) {
 
     const Motion other(ball("[run]\nend_time = 2\n", "z", "z"));
     const Mechanism note(*other.model);
-    const Drawing text = note.draw(other.run.end, other.run.run.parameters,
+    const Drawing text = note.draw(other.run.end_time, other.run.end, other.run.run.parameters,
                                    note.limits(other.run, plot_samples(other.run)), dark_theme());
     ASSERT_EQ(text.shapes.size(), 1u);
     EXPECT_EQ(text.shapes[0].kind, Shape::Kind::text);

@@ -35,17 +35,17 @@ State random_state(int n, std::mt19937& random) {
 TEST(Model, TheBallHasItsClosedForm) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
-    const Equations& e = model->equations();
+    const ContactEquations& c = model->equations().free.contacts[0];
     std::mt19937 random(1);
     for (int trial = 0; trial < 50; ++trial) {
         const State s = random_state(2, random);
-        const double x = s.q[0], dx = s.v[0], c = std::cos(x), m = run.parameters[0], g = run.parameters[1];
-        EXPECT_NEAR(value(*model, e.gap, run, s), s.q[1] - std::sin(x), 1e-15);
-        EXPECT_NEAR(value(*model, e.hddot, run, s), dx * dx * std::sin(x) - g, 1e-14);
-        EXPECT_NEAR(value(*model, e.W, run, s), (1 + c * c) / m, 1e-14);
-        EXPECT_NEAR(value(*model, e.impulse_direction[0], run, s), -c / (1 + c * c), 1e-14);
-        EXPECT_NEAR(value(*model, e.impulse_direction[1], run, s), 1 / (1 + c * c), 1e-14);
-        EXPECT_NEAR(value(*model, e.lambda, run, s), m * (g - dx * dx * std::sin(x)) / (1 + c * c), 1e-14);
+        const double x = s.q[0], dx = s.v[0], cosine = std::cos(x), m = run.parameters[0], g = run.parameters[1];
+        EXPECT_NEAR(value(*model, c.gap, run, s), s.q[1] - std::sin(x), 1e-15);
+        EXPECT_NEAR(value(*model, c.hddot, run, s), dx * dx * std::sin(x) - g, 1e-14);
+        EXPECT_NEAR(value(*model, c.W, run, s), (1 + cosine * cosine) / m, 1e-14);
+        EXPECT_NEAR(value(*model, c.direction[0], run, s), -cosine / (1 + cosine * cosine), 1e-14);
+        EXPECT_NEAR(value(*model, c.direction[1], run, s), 1 / (1 + cosine * cosine), 1e-14);
+        EXPECT_NEAR(value(*model, c.lambda, run, s), m * (g - dx * dx * std::sin(x)) / (1 + cosine * cosine), 1e-14);
     }
 }
 
@@ -54,14 +54,14 @@ TEST(Model, TheBallHasItsClosedForm) {
 TEST(Model, ThePendulumLocksWhereSinTheta1IsNegative) {
     const auto model = test::load("double_pendulum");
     const auto run = model->default_run();
-    const Equations& e = model->equations();
+    const ContactEquations& c = model->equations().free.contacts[0];
     std::mt19937 random(2);
     double ratio = 0.0;
     for (int trial = 0; trial < 50; ++trial) {
         State s = random_state(2, random);
         s.q[1] = 0.0;
         s.v[1] = 0.0;
-        const double found = value(*model, e.hddot, run, s) / std::sin(s.q[0]);
+        const double found = value(*model, c.hddot, run, s) / std::sin(s.q[0]);
         if (trial == 0) ratio = found;
         EXPECT_GT(found, 0.0);
         EXPECT_NEAR(found, ratio, 1e-12);
@@ -78,7 +78,7 @@ void check_lagrange(const Model& model, std::mt19937& random) {
     for (int trial = 0; trial < 10; ++trial) {
         const State s = random_state(n, random);
         Vector f(n);
-        for (int i = 0; i < n; ++i) f[i] = value(model, e.f[static_cast<std::size_t>(i)], run, s);
+        for (int i = 0; i < n; ++i) f[i] = value(model, e.free.f[static_cast<std::size_t>(i)], run, s);
         for (int i = 0; i < n; ++i) {
             const auto momentum = [&](State at) {
                 State up = at, down = at;
@@ -134,6 +134,7 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
     for (const auto& model : {test::load("ball_on_sine"), test::load("double_pendulum"), test::typed(odd_system)}) {
         const auto run = model->default_run();
         const Equations& e = model->equations();
+        const ContactEquations& c = e.free.contacts[0];
         const auto n = static_cast<std::size_t>(model->dof());
         for (int trial = 0; trial < 10; ++trial) {
             const State s = random_state(model->dof(), random);
@@ -153,22 +154,22 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
                         value(*model, x, run, along(acceleration, -d))) /
                        (2 * d);
             };
-            const double hddot = value(*model, e.hddot, run, s), W = value(*model, e.W, run, s);
-            EXPECT_NEAR(value(*model, e.hdot, run, s), rate(e.gap, e.f), 1e-6);
-            EXPECT_NEAR(hddot, rate(e.hdot, e.f), 1e-5 * std::max(1.0, std::abs(hddot)));
-            EXPECT_NEAR(0.0, rate(e.hdot, e.f_c), 1e-5);  // the constrained motion keeps hdot
-            const double jerk = value(*model, e.jerk, run, s);
-            EXPECT_NEAR(jerk, rate(e.hddot, e.f_c), 1e-4 * std::max(1.0, std::abs(jerk)));
-            EXPECT_NEAR(value(*model, e.lambda, run, s), -hddot / W, 1e-12);
+            const double hddot = value(*model, c.hddot, run, s), W = value(*model, c.W, run, s);
+            EXPECT_NEAR(value(*model, c.hdot, run, s), rate(c.gap, e.free.f), 1e-6);
+            EXPECT_NEAR(hddot, rate(c.hdot, e.free.f), 1e-5 * std::max(1.0, std::abs(hddot)));
+            EXPECT_NEAR(0.0, rate(c.hdot, c.f_c), 1e-5);  // the constrained motion keeps hdot
+            const double jerk = ContactKinematics(*model, run).jerk(s);
+            EXPECT_NEAR(jerk, rate(c.hddot, c.f_c), 1e-4 * std::max(1.0, std::abs(jerk)));
+            EXPECT_NEAR(value(*model, c.lambda, run, s), -hddot / W, 1e-12);
             double gn = 0.0, gs = 0.0;
             for (std::size_t i = 0; i < n; ++i) {
-                const double g = value(*model, e.g[i], run, s);
-                gn += g * value(*model, e.impulse_direction[i], run, s);
-                gs += g * value(*model, e.s[i], run, s);
+                const double g = value(*model, c.g[i], run, s);
+                gn += g * value(*model, c.direction[i], run, s);
+                gs += g * value(*model, c.s[i], run, s);
                 // M n = g'/W
                 double Mn = 0.0;
                 for (std::size_t j = 0; j < n; ++j)
-                    Mn += value(*model, e.M[i * n + j], run, s) * value(*model, e.impulse_direction[j], run, s);
+                    Mn += value(*model, e.M[i * n + j], run, s) * value(*model, c.direction[j], run, s);
                 EXPECT_NEAR(Mn, g / W, 1e-12);
             }
             EXPECT_NEAR(gn, 1.0, 1e-12);
@@ -223,32 +224,32 @@ std::string error_of(std::string text, const std::string& from, const std::strin
 }
 
 TEST(BadSystems, AreToldWhatIsWrong) {
-    const std::string good = odd_system;
-    EXPECT_EQ(error_of(good, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy is of degree 1 in the rates");
-    EXPECT_EQ(error_of(good, "exp(b)*c'^2", "sin(c')"), "the kinetic energy is no polynomial in the rates: sin(c')");
-    EXPECT_EQ(error_of(good, "c^4/4", "c'^2"),
-              "the rate c' may not stand in the potential: it depends on coordinates alone");
-    EXPECT_EQ(error_of(good, "a^2*c/3", "a'"), "the rate a' may not stand in the gap: it depends on coordinates alone");
-    EXPECT_EQ(error_of(good, "c^4/4", "gap"), "'gap' may stand in a [[view]] only");
-    EXPECT_EQ(error_of(good, "c^4/4", "t"), "'t' may stand in a [[view]] only: a system does not depend on time");
-    EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"2*k\""),
+    const std::string right = odd_system;
+    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy is of degree 1 in the rates");
+    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "sin(c')"), "the kinetic energy is no polynomial in the rates: sin(c')");
+    EXPECT_EQ(error_of(right, "c^4/4", "c'^2"),
+              "the rate c' may not stand in the potential: what depends on rates is a force, or dissipation");
+    EXPECT_EQ(error_of(right, "a^2*c/3", "a'"),
+              "the rate a' may not stand in the gap: it depends on coordinates and time alone");
+    EXPECT_EQ(error_of(right, "c^4/4", "gap"), "'gap' may stand in a [[view]] only");
+    EXPECT_EQ(error_of(right, "restitution = \"k\"", "restitution = \"2*k\""),
               "the restitution must lie in [0, 1], but it is 1.4");
-    EXPECT_EQ(error_of(good, "restitution = \"k\"", "restitution = \"a\""),
+    EXPECT_EQ(error_of(right, "restitution = \"k\"", "restitution = \"a\""),
               "the coordinate 'a' may not stand in the restitution: parameters alone");
-    EXPECT_EQ(error_of(good, "(2 + sin(a))", "(sin(a) - 2)"),
+    EXPECT_EQ(error_of(right, "(2 + sin(a))", "(sin(a) - 2)"),
               "the mass matrix is not positive definite at the start (the pivot of 'b' is -1.3534919379767696)");
-    EXPECT_EQ(error_of(good, "start = 0.5", "start = -0.5"), "the gap is negative at the start: h = -0.5");
-    EXPECT_EQ(error_of(good, "c^4/4", "log(c)"), "the potential is not defined at the start: log(c), with c = 0");
-    EXPECT_EQ(error_of(good, "[lagrangian]",
+    EXPECT_EQ(error_of(right, "start = 0.5", "start = -0.5"), "the gap is negative at the start: h = -0.5");
+    EXPECT_EQ(error_of(right, "c^4/4", "log(c)"), "the potential is not defined at the start: log(c), with c = 0");
+    EXPECT_EQ(error_of(right, "[lagrangian]",
                        "[[drawing]]\nshape = \"disc\"\nat = [\"a\", \"bb\"]\nradius = 0.1\n[lagrangian]"),
               "unknown name 'bb'; did you mean 'b'?");
-    EXPECT_EQ(error_of(good, "b + a^2*c/3 + 1/4*sin(c)", "4"),
+    EXPECT_EQ(error_of(right, "b + a^2*c/3 + 1/4*sin(c)", "4"),
               "dh = 0 everywhere: the gap does not change with any coordinate");
-    EXPECT_EQ(error_of(good, "b + a^2*c/3 + 1/4*sin(c)", "1 + sin(a)^2 + cos(a)^2"),
+    EXPECT_EQ(error_of(right, "b + a^2*c/3 + 1/4*sin(c)", "1 + sin(a)^2 + cos(a)^2"),
               "dh = 0 everywhere: the gap does not change with any coordinate");
-    EXPECT_EQ(error_of(good, " + exp(b)*c'^2", " - (3 + c^2)*(c' - k*a')*(c' - k*a')/2"),
+    EXPECT_EQ(error_of(right, " + exp(b)*c'^2", " - (3 + c^2)*(c' - k*a')*(c' - k*a')/2"),
               "the kinetic energy has no term in c'^2");
-    EXPECT_EQ(error_of(good, "value = 0.7", "value = 0.5"), "no error");
+    EXPECT_EQ(error_of(right, "value = 0.7", "value = 0.5"), "no error");
 }
 
 TEST(BadSystems, IndefiniteMassesAreToldEvenWhereTheyCancel) {

@@ -11,7 +11,7 @@ namespace {
 // An allowed value that is not the default.
 OptionValue another(const Option& option) {
     const OptionValue usual = option.get({});
-    if (const auto* number = std::get_if<double>(&usual)) return 2.0 * *number;
+    if (const auto* number = std::get_if<double>(&usual)) return *number == 0.0 ? 1.0 : 2.0 * *number;
     if (const auto* whole = std::get_if<int>(&usual)) return *whole + 1;
     return option.words[usual == OptionValue(option.words[0]) ? 1 : 0];
 }
@@ -38,12 +38,14 @@ TEST(Options, each_has_a_place_of_its_own) {
 TEST(Options, the_table_has_them_all) {
     Options all;
     for (const Option& one : all_options()) one.set(all, another(one));
+    EXPECT_NE(all.start_time, Options{}.start_time);
     EXPECT_NE(all.end_time, Options{}.end_time);
     EXPECT_NE(all.tolerance, Options{}.tolerance);
     EXPECT_NE(all.method, Options{}.method);
     EXPECT_NE(all.max_impacts, Options{}.max_impacts);
     EXPECT_NE(all.max_steps, Options{}.max_steps);
     EXPECT_NE(all.memory, Options{}.memory);
+    EXPECT_NE(all.simultaneous, Options{}.simultaneous);
     EXPECT_NE(all.truncation.eps_q, Options{}.truncation.eps_q);
     EXPECT_NE(all.truncation.eps_v, Options{}.truncation.eps_v);
     EXPECT_NE(all.truncation.eps_t, Options{}.truncation.eps_t);
@@ -62,10 +64,47 @@ TEST(Options, what_is_not_allowed_is_told) {
                                                          "eps_t must be a positive number, but it is inf"}));
 }
 
+// The start may be at any time, the end is after it.
+TEST(Options, times_have_an_order) {
+    Options options;
+    options.start_time = -20.0;
+    options.end_time = -10.0;
+    EXPECT_TRUE(allows(option("start_time"), options.start_time));
+    EXPECT_TRUE(faults(options).empty());
+    options.end_time = options.start_time;
+    EXPECT_EQ(faults(options), std::vector<std::string>{"the end time -20 is not after the start time -20"});
+    options.start_time = 1.0 / 0.0;
+    EXPECT_EQ(faults(options), (std::vector<std::string>{"start_time must be a finite number, but it is inf",
+                                                         "the end time -20 is not after the start time inf"}));
+    EXPECT_FALSE(allows(option("tolerance"), -1.0));
+}
+
+// Whatever the times before and after, there is always a run between the two commands.
+TEST(Options, are_set_in_an_order_in_which_the_end_stays_after_the_start) {
+    const double times[] = {-7.0, -2.0, 0.0, 3.0, 9.0};
+    for (const double start : times)
+        for (const double end : times)
+            for (const double new_start : times)
+                for (const double new_end : times) {
+                    Options from, to;
+                    from.start_time = start, from.end_time = end, to.start_time = new_start, to.end_time = new_end;
+                    if (!faults(from).empty() || !faults(to).empty()) continue;
+                    Options now = from;
+                    for (const auto group : options_by_command(from, to))
+                        for (const Option& one : group) {
+                            one.set(now, one.get(to));
+                            EXPECT_TRUE(faults(now).empty()) << faults(now)[0];
+                        }
+                    EXPECT_EQ(now, to);
+                }
+}
+
 TEST(Options, are_told_in_one_order_but_for_the_first) {
     std::string keys;
     for (const Option* one : told_options({"tolerance", "method"})) keys += std::string(one->key) + " ";
-    EXPECT_EQ(keys, "tolerance method end_time max_impacts max_steps memory conditions reinitialization eps_q eps_v eps_t ");
+    EXPECT_EQ(keys,
+              "tolerance method start_time end_time max_impacts max_steps memory simultaneous conditions "
+              "reinitialization eps_q eps_v eps_t ");
 }
 
 TEST(Options, a_command_sets_those_that_share_it) {

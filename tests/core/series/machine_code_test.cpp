@@ -311,7 +311,8 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
     for (const std::string& system : test::all_systems()) {
         const auto model = test::load(system);
         const Equations& e = model->equations();
-        const Program program(joined({e.f, {e.gap, e.hddot}, e.pivots}), model->layout().slots());
+        const Program program(joined({e.free.f, {e.gaps[0], e.free.contacts[0].hddot}, e.pivots}),
+                              model->layout().slots());
         const auto dof = static_cast<std::size_t>(model->dof()), width = 2 * dof + 2;
         const SeriesProgram series(program, dof, 2);
         EXPECT_TRUE(OrderCode::of(LaneAccess::plan_of(series), *widest_of_processor())) << system;

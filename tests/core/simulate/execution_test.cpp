@@ -21,7 +21,7 @@ class Told : public testing::Test {
         run_.options.end_time = 10.0;
     }
     Execution execution(InDoubt in_doubt = InDoubt::ask_exactly) {
-        return Execution(model_, run_, kinematics_, nullptr, Keep::end, in_doubt);
+        return Execution(model_, run_, surfaces_, nullptr, Keep::end, in_doubt);
     }
     // The motion at t, as that of one step without an event; `end` and what it needs may be changed.
     StepResult at(double t, End end = End::no_event) {
@@ -36,14 +36,14 @@ class Told : public testing::Test {
         result.duration = t;
         result.state = &state_;
         result.gap = state_.q[0];
-        result.start.gap = {state_.q[0], state_.v[0]};
-        result.contact = kinematics_.at(state_);
+        result.starts = {{{state_.q[0], state_.v[0]}, 0, false}};
+        result.contact = surfaces_.of(0).at(state_);
         return result;
     }
 
     std::shared_ptr<const Model> model_ = test::drop();
     achilles::Run run_ = model_->default_run();
-    ContactKinematics kinematics_{*model_, run_};
+    Surfaces surfaces_{*model_, run_};
     State state_;
 };
 
@@ -54,8 +54,8 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     EXPECT_TRUE(request->held.empty());
     EXPECT_EQ(request->state.t, 0.0);
     EXPECT_EQ(request->until, 10.0);
-    EXPECT_EQ(request->start.multiplicity, 1);
-    EXPECT_EQ(request->start.gap.hdot, 1.0);
+    EXPECT_EQ(request->starts[0].multiplicity, 1);
+    EXPECT_EQ(request->starts[0].gap.hdot, 1.0);
     EXPECT_TRUE(request->begins && request->plain && !request->exactly);
     EXPECT_EQ(request->most, run_.options.max_steps);
     EXPECT_EQ(execution.next(), request);  // as long as nothing came
@@ -65,8 +65,8 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     ASSERT_NE(request, nullptr);
     EXPECT_EQ(request->state.t, 0.5);
     EXPECT_EQ(request->state.q[0], 0.375);
-    EXPECT_EQ(request->start.gap.h, 0.375);
-    EXPECT_EQ(request->start.multiplicity, 0);
+    EXPECT_EQ(request->starts[0].gap.h, 0.375);
+    EXPECT_EQ(request->starts[0].multiplicity, 0);
     EXPECT_FALSE(request->begins);
     EXPECT_EQ(request->most, run_.options.max_steps - 1);
 }
@@ -82,8 +82,8 @@ TEST_F(Told, BouncesOrCompletes) {
     EXPECT_TRUE(request->begins);
     EXPECT_EQ(request->state.t, 2.0);
     EXPECT_EQ(request->state.v[0], 0.5);
-    EXPECT_EQ(request->start.gap.hdot, 0.5);
-    EXPECT_EQ(request->start.multiplicity, 1);
+    EXPECT_EQ(request->starts[0].gap.hdot, 0.5);
+    EXPECT_EQ(request->starts[0].multiplicity, 1);
 
     run_.options.truncation.eps_q = run_.options.truncation.eps_v = run_.options.truncation.eps_t = 10.0;
     auto completing = execution();
@@ -147,7 +147,7 @@ TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
     EXPECT_TRUE(request->exactly && request->begins);
     EXPECT_EQ(request->state.t, 0.0);
     EXPECT_EQ(request->state.q[0], 0.0);
-    EXPECT_EQ(request->start.multiplicity, 1);
+    EXPECT_EQ(request->starts[0].multiplicity, 1);
     EXPECT_EQ(request->most, run_.options.max_steps);
     execution.accept(at(0.5));
     request = execution.next();
@@ -279,9 +279,9 @@ TEST_F(Told, StartsAgainOnlyForARunOfItsKind) {
 TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
-    ContactKinematics kinematics(*model, run);
-    Execution execution(model, run, kinematics, nullptr, Keep::everything, InDoubt::ask_exactly);
-    EventStepper stepper(*model, run, kinematics);
+    Surfaces surfaces(*model, run);
+    Execution execution(model, run, surfaces, nullptr, Keep::everything, InDoubt::ask_exactly);
+    EventStepper stepper(*model, run, surfaces);
     long stretches = 0;
     bool event = true, released = false;
     while (const StepRequest* request = execution.next()) {

@@ -160,10 +160,12 @@ anything = { goes = [1, "here"] }
     EXPECT_EQ(system.parameters[1].range, (std::array{0.0, 1.0}));  // the restitution
     EXPECT_EQ(system.parameters[2].range, (std::array{-6.0, 0.0}));
     EXPECT_EQ(system.kinetic.text, "(x'^2 + y'^2)/2");
-    EXPECT_EQ(system.gap.text, "y - sin(x)");
-    EXPECT_EQ(system.gap.at.line, 31);
-    EXPECT_EQ(system.gap.at.column, 16);  // the y, behind the quote
-    EXPECT_EQ(system.restitution.text, "e");
+    ASSERT_EQ(system.constraints.size(), 1u);
+    EXPECT_EQ(system.constraints[0].name, "contact");
+    EXPECT_EQ(system.constraints[0].gap.text, "y - sin(x)");
+    EXPECT_EQ(system.constraints[0].gap.at.line, 31);
+    EXPECT_EQ(system.constraints[0].gap.at.column, 16);  // the y, behind the quote
+    EXPECT_EQ(system.constraints[0].restitution.text, "e");
     EXPECT_EQ(system.options.end_time, 20.0);
     EXPECT_EQ(system.options.tolerance, 1e-9);
     EXPECT_EQ(system.options.method, Method::taylor);
@@ -230,14 +232,14 @@ TEST(Description, expressions_know_where_they_start) {
     const SystemDescription one = parse_system(title + least);
     EXPECT_EQ(one.kinetic.at.line, 7);
     EXPECT_EQ(one.kinetic.at.column, 12);
-    EXPECT_EQ(one.restitution.at.column, 15);  // a number has no quotes
+    EXPECT_EQ(one.constraints[0].restitution.at.column, 15);  // a number has no quotes
     const SystemDescription multi = parse_system(title + coordinate + constraint +
                                                  "[lagrangian]\nkinetic = \"\"\"\n  x'^2\"\"\"\npotential = '''x'''\n");
     EXPECT_EQ(multi.kinetic.at.line, 11);
     EXPECT_EQ(multi.kinetic.at.column, 1);
     EXPECT_EQ(multi.potential.at.column, 16);
     // An error inside an expression: the place of its first character plus the parser's offset.
-    const InputError error = one.error({one.gap.at.line, one.gap.at.column}, "unknown name 'x'");
+    const InputError error = one.error(one.constraints[0].gap.at, "unknown name 'x'");
     EXPECT_STREQ(error.what(), "<text>:10:8: unknown name 'x'\n    gap = \"x\"\n           ^");
 }
 

@@ -58,5 +58,21 @@ TEST(Units, are_nothing_where_they_are_not_known) {
     EXPECT_EQ(unit_of_expression(system, "x + sin(y)"), "m");
 }
 
+// Of several constraints each has a gap and a force.
+TEST(Units, of_several_gaps) {
+    const SystemDescription system = parse_system(
+        "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"a\"\nunit = "
+        "\"rad\"\n"
+        "[[parameter]]\nname = \"J\"\nvalue = 1\nunit = \"kg*m^2\"\n[[parameter]]\nname = \"M\"\nvalue = 1\nunit = "
+        "\"kg\"\n[lagrangian]\nkinetic = \"J*a'^2 + M*x'^2\"\npotential = 0\n"
+        "[[constraint]]\nname = \"wall\"\ngap = \"x\"\nrestitution = 0\n"
+        "[[constraint]]\nname = \"stop\"\ngap = \"a\"\nrestitution = 0\n");
+    EXPECT_EQ(unit_of_expression(system, "gap_wall'"), "m/s");
+    EXPECT_EQ(unit_of_expression(system, "lambda_wall"), "N");
+    EXPECT_EQ(unit_of_expression(system, "gap_stop''"), "rad/s^2");
+    EXPECT_EQ(unit_of_expression(system, " lambda_stop "), "N*m");
+    EXPECT_EQ(unit_of_expression(system, "gap"), "");
+}
+
 }  // namespace
 }  // namespace achilles

@@ -1,0 +1,35 @@
+#include "certify/others.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace achilles {
+
+OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held) {
+    if (model.contacts() == 1) return;
+    neighbours_ = &model.neighbours(contact, held);
+    variables_ = model.bouncing(contact, held).variables;
+    program_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
+}
+
+std::optional<Certificate::Others> OthersStay::prove(const std::vector<Interval>& box) {
+    for (std::size_t i = 0; i < variables_.size(); ++i) program_.input(variables_[i]) = box[i];
+    program_.run();
+    Certificate::Others others;
+    std::size_t next = 0;
+    for (const std::size_t contact : neighbours_->held) {
+        const Interval hddot = program_.output(next), W = program_.output(next + 1), kappa = program_.output(next + 2);
+        next += 3;
+        if (!certainly_negative(hddot) || !certainly_positive(W) || !kappa.is_defined() || kappa.lo() < 0.0)
+            return std::nullopt;
+        others.held.push_back({contact, kappa.lo(), kappa.hi(), (-hddot / W).lo()});
+    }
+    for (std::size_t i = 0; i < neighbours_->open.size(); ++i) {
+        const Interval gap = program_.output(next++);
+        if (!certainly_positive(gap)) return std::nullopt;
+        others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
+    }
+    return others;
+}
+
+}  // namespace achilles

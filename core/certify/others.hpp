@@ -1,0 +1,28 @@
+// Whether the other contacts stay as they are while one bounces (theory-gaps.md 2.3).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "model/model.hpp"
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+class OthersStay {
+ public:
+    OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held);
+
+    // Over a box of the variables of Bouncing: proved where every held contact is pressed and impulses press it more, and every
+    // other gap is open. Nothing where that is not proved.
+    std::optional<Certificate::Others> prove(const std::vector<Interval>& box);
+    // There is no other contact.
+    bool is_alone() const { return !neighbours_; }
+
+ private:
+    const Neighbours* neighbours_ = nullptr;
+    std::vector<std::uint32_t> variables_;
+    Evaluator<Interval> program_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,219 @@
+#include "model/scopes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "expression/nearest.hpp"
+#include "expression/read_number.hpp"
+
+namespace achilles {
+
+namespace {
+
+void allow_positions(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+        scope.allowed.emplace(system.coordinates[i].name, graph.symbol(layout.q(i)));
+}
+
+void allow_rates(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i)
+        scope.allowed.emplace(system.coordinates[i].name + "'", graph.symbol(layout.v(i)));
+}
+
+void allow_parameters(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph) {
+    for (std::size_t i = 0; i < system.parameters.size(); ++i)
+        scope.allowed.emplace(system.parameters[i].name, graph.symbol(layout.parameter(i)));
+    if (system.derived.empty()) return;
+    Scope known;  // to definitions
+    for (const ParameterDescription& parameter : system.parameters)
+        known.allowed.emplace(parameter.name, scope.allowed.find(parameter.name)->second);
+    for (const DerivedDescription& derived : system.derived) {
+        known.units.clear();
+        allow_units(known, derived.unit, graph);
+        Expression value = graph.symbol(layout.own());  // where it has a mistake, which is told elsewhere
+        try {
+            value = parse(derived.definition.text, known, graph);
+        } catch (const ParseError&) {
+        }
+        known.allowed.emplace(derived.name, value);
+        scope.allowed.emplace(derived.name, value);
+    }
+}
+
+// Names with primes that mean nothing anywhere.
+void forbid_primes(Scope& scope, const SystemDescription& system) {
+    for (const CoordinateDescription& coordinate : system.coordinates)
+        scope.forbidden.emplace(
+            coordinate.name + "''",
+            fmt::format("the acceleration {}'' may not stand in an expression: it follows from them", coordinate.name));
+    const auto forbid = [&](const std::string& name) {
+        scope.forbidden.emplace(name + "'", fmt::format("'{}' is a parameter: it has no rate", name));
+    };
+    for (const ParameterDescription& parameter : system.parameters) forbid(parameter.name);
+    for (const DerivedDescription& derived : system.derived) forbid(derived.name);
+}
+
+constexpr std::array<const char*, 4> contact_outputs{"gap", "gap'", "gap''", "lambda"};
+
+// Words that mean something in views only.
+void forbid_outputs(Scope& scope, const SystemDescription& system) {
+    const auto forbid = [&](const std::string& word) {
+        scope.forbidden.emplace(word, fmt::format("'{}' may stand in a [[view]] only", word));
+    };
+    for (const char* word : contact_outputs) {
+        for (const std::string& name : output_names(system, word)) forbid(name);
+        forbid(word);
+    }
+    for (const char* word : {"energy", "work", "loss", "power"}) forbid(word);
+}
+
+// Coordinates, t and parameters; `what` is the text that they stand in, `why` the reason why no rate does.
+Scope position_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* what,
+                     const char* why) {
+    Scope scope;
+    allow_positions(scope, system, layout, graph);
+    allow_parameters(scope, system, layout, graph);
+    scope.allowed.emplace("t", graph.symbol(layout.t()));
+    for (const CoordinateDescription& coordinate : system.coordinates)
+        scope.forbidden.emplace(coordinate.name + "'",
+                                fmt::format("the rate {}' may not stand in the {}: {}", coordinate.name, what, why));
+    forbid_primes(scope, system);
+    forbid_outputs(scope, system);
+    return scope;
+}
+
+// Parameters; `what` is the text that they stand in.
+Scope constant_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* what) {
+    Scope scope;
+    allow_parameters(scope, system, layout, graph);
+    const auto forbid = [&](const std::string& name, const std::string& shown) {
+        scope.forbidden.emplace(name, fmt::format("{} may not stand in {}: parameters alone", shown, what));
+    };
+    for (const CoordinateDescription& coordinate : system.coordinates) {
+        forbid(coordinate.name, fmt::format("the coordinate '{}'", coordinate.name));
+        forbid(coordinate.name + "'", fmt::format("the rate {}'", coordinate.name));
+    }
+    forbid("t", "'t'");
+    forbid_primes(scope, system);
+    forbid_outputs(scope, system);
+    return scope;
+}
+
+}  // namespace
+
+Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    Scope scope = force_scope(system, layout, graph);
+    scope.allowed.erase("t");
+    scope.forbidden.emplace("t",
+                            "'t' may not stand in the kinetic energy, which may not depend on time: what moves belongs "
+                            "into the gap, the potential or a force");
+    return scope;
+}
+
+Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    Scope scope;
+    allow_positions(scope, system, layout, graph);
+    allow_rates(scope, system, layout, graph);
+    allow_parameters(scope, system, layout, graph);
+    scope.allowed.emplace("t", graph.symbol(layout.t()));
+    forbid_primes(scope, system);
+    forbid_outputs(scope, system);
+    return scope;
+}
+
+Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return position_scope(system, layout, graph, "potential", "what depends on rates is a force, or dissipation");
+}
+
+Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return position_scope(system, layout, graph, "gap", "it depends on coordinates and time alone");
+}
+
+Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return constant_scope(system, layout, graph, "the restitution");
+}
+
+Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return constant_scope(system, layout, graph, "a derived parameter");
+}
+
+Layout layout_of(const SystemDescription& system) {
+    const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
+    return {count(system.coordinates), count(system.parameters), count(system.constraints)};
+}
+
+std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {
+    std::vector<std::string> names(layout.count());
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+        names[layout.q(i)] = system.coordinates[i].name;
+        names[layout.v(i)] = system.coordinates[i].name + "'";
+    }
+    for (std::size_t i = 0; i < system.parameters.size(); ++i) names[layout.parameter(i)] = system.parameters[i].name;
+    names[layout.t()] = "t";
+    names[layout.contact()] = "contact";
+    names[layout.sigma()] = "sigma";
+    names[layout.own()] = "own";
+    names[layout.work()] = "work";
+    names[layout.loss()] = "loss";
+    for (std::size_t i = 0; i < layout.contacts; ++i) {
+        names[layout.acceleration(i)] = "gap_" + system.constraints[i].name + "''";
+        names[layout.force(i)] = "lambda_" + system.constraints[i].name;
+    }
+    return names;
+}
+
+namespace {
+
+// h, hdot, the acceleration of the gap and the force of each contact. With several, the last two follow from which are
+// held, and are told.
+std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Graph& graph, const Equations& equations) {
+    const Expression held = graph.symbol(layout.contact());
+    std::vector<std::array<Expression, 4>> values;
+    for (std::size_t i = 0; i < layout.contacts; ++i) {
+        const ContactEquations& c = equations.free.contacts[i];
+        const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
+        if (layout.contacts == 1) {
+            values.push_back(
+                {gap, hdot, (graph.number(1) - held) * graph.adopt(c.hddot), held * graph.adopt(c.lambda)});
+        } else {
+            values.push_back({gap, hdot, graph.symbol(layout.acceleration(i)), graph.symbol(layout.force(i))});
+        }
+    }
+    return values;
+}
+
+}  // namespace
+
+Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations) {
+    Scope scope;
+    allow_positions(scope, system, layout, graph);
+    allow_rates(scope, system, layout, graph);
+    allow_parameters(scope, system, layout, graph);
+    forbid_primes(scope, system);
+    scope.allowed.emplace("t", graph.symbol(layout.t()));
+    const std::vector<std::array<Expression, 4>> values = contact_values(layout, graph, equations);
+    for (std::size_t i = 0; i < contact_outputs.size(); ++i) {
+        const std::vector<std::string> names = output_names(system, contact_outputs[i]);
+        for (std::size_t k = 0; k < names.size(); ++k) scope.allowed.emplace(names[k], values[k][i]);
+        if (names.size() > 1)
+            scope.forbidden.emplace(contact_outputs[i],
+                                    fmt::format("{} is of one constraint, and there are several: {}",
+                                                in_quotes(contact_outputs[i]), fmt::join(names, ", ")));
+    }
+    scope.allowed.emplace("energy", graph.adopt(equations.energy));
+    Expression power = graph.adopt(equations.power);
+    for (std::size_t k = 0; k < values.size(); ++k)
+        power = power - values[k][3] * graph.adopt(equations.free.contacts[k].gap_t);
+    scope.allowed.emplace("power", power);
+    scope.allowed.emplace("work", graph.symbol(layout.work()));
+    scope.allowed.emplace("loss", graph.symbol(layout.loss()));
+    return scope;
+}
+
+Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return position_scope(system, layout, graph, "drawing", "it depends on coordinates and time alone");
+}
+
+}  // namespace achilles

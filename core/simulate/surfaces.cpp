@@ -1,0 +1,127 @@
+#include "simulate/surfaces.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+// W^-1 b; of least norm where gradients depend on one another.
+ContactVector<double> solve(const ContactMatrix<double>& W, const ContactVector<double>& b) {
+    ContactSet all;
+    for (Eigen::Index i = 0; i < W.rows(); ++i) all = with(all, i);
+    if (const auto block = HeldBlock<double>::of(W, all)) return block->solve(b);
+    return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(Eigen::VectorXd(b));
+}
+
+// v -= M^-1 G' W^-1 b
+void move_along(Vector& v, const Closed& closed, const ContactVector<double>& b) {
+    v = closed.after(v, -solve(closed.W, b));
+}
+
+}  // namespace
+
+ContactSet Closed::places_of(ContactSet set) const {
+    ContactSet places;
+    for (std::size_t i = 0; i < which.size(); ++i)
+        if (set.contains(which[i])) places = places.with(i);
+    return places;
+}
+
+ContactSet Closed::contacts_at(ContactSet places) const {
+    ContactSet set;
+    for (std::size_t i = 0; i < which.size(); ++i)
+        if (places.contains(i)) set = set.with(which[i]);
+    return set;
+}
+
+ContactVector<double> Closed::rates() const {
+    ContactVector<double> hdot(W.rows());
+    for (std::size_t i = 0; i < contacts.size(); ++i) hdot[static_cast<Eigen::Index>(i)] = contacts[i].hdot;
+    return hdot;
+}
+
+Vector Closed::after(const Vector& v, const ContactVector<double>& impulses) const {
+    Vector result = v;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        result += impulses[static_cast<Eigen::Index>(i)] * contacts[i].W * contacts[i].impulse_direction;
+    return result;
+}
+
+Surfaces::Surfaces(const Model& model, const Run& run) : model_(&model), run_(run) {
+    for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
+}
+
+ContactKinematics& Surfaces::of(std::size_t contact, ContactSet held) {
+    if (held.empty()) return free_[contact];
+    const std::pair key(held, contact);
+    const auto known = while_held_.find(key);
+    if (known != while_held_.end()) return known->second;
+    return while_held_.emplace(key, ContactKinematics(*model_, run_, contact, held)).first->second;
+}
+
+Closed Surfaces::at(const State& state, ContactSet contacts) {
+    Closed closed;
+    for (std::size_t i = 0; i < count(); ++i) {
+        if (!contacts.contains(i)) continue;
+        closed.which.push_back(i);
+        closed.contacts.push_back(free_[i].at(state));
+    }
+    const auto n = static_cast<Eigen::Index>(closed.which.size());
+    closed.W.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const Contact &a = closed.contacts[static_cast<std::size_t>(i)],
+                          &b = closed.contacts[static_cast<std::size_t>(j)];
+            closed.W(i, j) = closed.W(j, i) = i == j ? a.W : a.g.dot(b.impulse_direction) * b.W;
+        }
+    return closed;
+}
+
+// Newton's method, as ContactKinematics::project().
+std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSet still) {
+    if (onto.count() > most_contacts) return std::nullopt;
+    if (onto.count() == 1)
+        for (std::size_t i = 0; i < count(); ++i) {
+            if (onto != ContactSet::of(i)) continue;
+            const auto contact = free_[i].project(state, still.empty());
+            return contact ? std::optional(contact->h) : std::nullopt;
+        }
+    constexpr int rounds = 8;
+    double before = std::numeric_limits<double>::infinity();
+    for (int round = 0;; ++round) {
+        const Closed closed = at(state, onto);
+        double largest = 0.0, least = std::numeric_limits<double>::infinity();
+        bool near = true, regular = true;
+        ContactVector<double> h(closed.W.rows());
+        for (std::size_t i = 0; i < closed.contacts.size(); ++i) {
+            const Contact& c = closed.contacts[i];
+            regular = regular && c.W > 0.0 && std::isfinite(c.h);
+            h[static_cast<Eigen::Index>(i)] = c.h;
+            largest = std::max(largest, std::abs(c.h));
+            least = std::min(least, c.h);
+            near =
+                near && regular && free_[closed.which[i]].within_gap_error(c.h, round < rounds ? 1.0 : 4.0, c, state);
+        }
+        if (!regular) return std::nullopt;
+        if (near || (round > 0 && largest <= 0x1p-40 * before)) {
+            if (still.empty()) return least;
+            const Closed held = still == onto ? closed : at(state, still);
+            move_along(state.v, held, held.rates());
+            return least;
+        }
+        if (round == rounds) return std::nullopt;
+        before = largest;
+        move_along(state.q, closed, h);
+    }
+}
+
+std::optional<Contact> Surfaces::land(State& state, std::size_t contact, ContactSet held) {
+    if (held.empty()) return free_[contact].project(state, true);
+    if (!project(state, held.with(contact), held)) return std::nullopt;
+    return of(contact, held).at(state);
+}
+
+}  // namespace achilles

@@ -1,0 +1,71 @@
+#include "system/derived.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include "expression/parse.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A walk along the definitions, deepest first.
+class Walk {
+ public:
+    Walk(std::vector<DerivedDescription>& derived, Names& names, Mistakes& mistakes)
+        : derived_(derived), names_(names), mistakes_(mistakes), states_(derived.size(), State::unseen) {
+        for (std::size_t i = 0; i < derived.size(); ++i) places_.emplace(derived[i].name, i);
+        for (std::size_t i = 0; i < derived.size(); ++i) visit(i);
+    }
+
+    std::vector<DerivedDescription> ordered;
+
+ private:
+    enum class State { unseen, on_the_way, done };
+
+    void visit(std::size_t i) {
+        if (states_[i] == State::done) return;
+        if (states_[i] == State::on_the_way) return tell_circle(i);
+        states_[i] = State::on_the_way;
+        way_.push_back(i);
+        for (const std::string& name : names_in(derived_[i].definition.text))
+            if (const auto other = places_.find(name); other != places_.end()) visit(other->second);
+        way_.pop_back();
+        states_[i] = State::done;
+        if (!names_.excused.contains(derived_[i].name)) ordered.push_back(derived_[i]);
+    }
+
+    // The way from where it is met again: "J -> K -> J", from the one that stands first in the file.
+    void tell_circle(std::size_t again) {
+        std::vector<std::size_t> circle(std::find(way_.begin(), way_.end(), again), way_.end());
+        const bool is_told = std::any_of(circle.begin(), circle.end(),
+                                         [&](std::size_t i) { return names_.excused.contains(derived_[i].name); });
+        for (const std::size_t i : circle) names_.excused.insert(derived_[i].name);
+        if (is_told) return;
+        std::rotate(circle.begin(), std::min_element(circle.begin(), circle.end()), circle.end());
+        const DerivedDescription& first = derived_[circle.front()];
+        std::string way;
+        for (const std::size_t i : circle) way += derived_[i].name + " -> ";
+        mistakes_.add({first.definition.at,
+                       fmt::format("the parameter '{}' follows from itself: {}{}", first.name, way, first.name),
+                       "one of them needs a number for its value"});
+    }
+
+    std::vector<DerivedDescription>& derived_;
+    Names& names_;
+    Mistakes& mistakes_;
+    std::vector<State> states_;
+    std::map<std::string, std::size_t> places_;
+    std::vector<std::size_t> way_;
+};
+
+}  // namespace
+
+void order_derived(std::vector<DerivedDescription>& derived, Names& names, Mistakes& mistakes) {
+    derived = std::move(Walk(derived, names, mistakes).ordered);
+}
+
+}  // namespace achilles
