@@ -9,6 +9,9 @@
 
 namespace achilles {
 
+// Of what an impulse is passed on by.
+bool is_not_negative(const Interval& kappa);
+
 class OthersStay {
  public:
     OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held);

@@ -1,46 +1,8 @@
 #include "model/bouncing.hpp"
 
+#include "model/rows.hpp"
+
 namespace achilles {
-
-namespace {
-
-using Row = Expressions;
-
-Row adopt(Graph& graph, const Row& row) {
-    Row result;
-    for (const Expression e : row) result.push_back(graph.adopt(e));
-    return result;
-}
-
-// dx_i/d(slots) times a direction, for each entry.
-Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& direction) {
-    Row sums(x.size(), x.front().graph().number(0));
-    for (std::size_t k = 0; k < slots.size(); ++k) {
-        const Row slope = derivative(x, slots[k]);
-        for (std::size_t i = 0; i < x.size(); ++i) sums[i] = sums[i] + slope[i] * direction[k];
-    }
-    return sums;
-}
-
-Expression product(const Row& a, const Row& b) {
-    Expression sum = a.front().graph().number(0);
-    for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
-    return sum;
-}
-
-Row at_velocity(const Row& x, const std::vector<std::uint32_t>& v, const Row& velocity) {
-    Row result;
-    for (const Expression e : x) result.push_back(substitute(e, v, velocity));
-    return result;
-}
-
-Row sum(const Row& a, const Row& b) {
-    Row result;
-    for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
-    return result;
-}
-
-}  // namespace
 
 Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout) {
     Graph graph(contact.gap.graph());
@@ -72,12 +34,7 @@ Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equat
     }
     const Row ndot = sum(along(n, q, velocity), n_t);
     const Row Bdot = sum(sum(along(B, q, velocity), along(B, v, rate)), derivative(B, layout.t()));
-    const auto row_by_row = [&](const std::vector<std::uint32_t>& variables) {
-        Row slopes;
-        for (const Row& row : jacobian(A, variables)) slopes.insert(slopes.end(), row.begin(), row.end());
-        return slopes;
-    };
-    const Row dA_dq = row_by_row(q), dA_ds = row_by_row(v);
+    const Row dA_dq = row_by_row(A, q), dA_ds = row_by_row(A, v);
     const Expression hddot_of_v = graph.adopt(contact.hddot), hddot = substitute(hddot_of_v, v, velocity);
     const Row by_q = gradient(hddot_of_v, q), by_v = gradient(hddot_of_v, v);
     const Expression by_sigma = product(by_v, n),

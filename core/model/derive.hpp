@@ -22,8 +22,9 @@ struct Layout {
     std::uint32_t own() const { return 2 * dof + p + 3; }      // a drawn curve's own parameter
     std::uint32_t work() const { return 2 * dof + p + 4; }     // what a view shows beside the state
     std::uint32_t loss() const { return 2 * dof + p + 5; }
+    std::uint32_t second_sigma() const { return 2 * dof + p + 6; }  // of a pair of contacts
     // Of a contact, where there are several.
-    std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 6 + static_cast<std::uint32_t>(i); }
+    std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 7 + static_cast<std::uint32_t>(i); }
     std::uint32_t force(std::size_t i) const { return acceleration(contacts) + static_cast<std::uint32_t>(i); }
     std::uint32_t count() const { return force(contacts); }
     Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }

@@ -50,7 +50,6 @@ void Model::compile() {
     for (std::size_t i = 0; i < contacts(); ++i)
         free_.push_back(&programs_.emplace(WhileHeld({}, i), compile_contact(e.free, i)).first->second);
     energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
-    power_ = ProgramOf<PowerTerms>::of(slots, e.power, e.free.contacts[0].lambda * e.free.contacts[0].gap_t);
     start_ = ProgramOf<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
@@ -100,6 +99,16 @@ const Model::ContactPrograms& Model::programs_of(std::size_t contact, ContactSet
     return derived(programs_, {held, contact}, [&] { return compile_contact(held_motions().of(held), contact); });
 }
 
+const Program& Model::power(ContactSet held) const {
+    return derived(powers_, held, [&] {
+        const HeldEquations& motion = held_motions().of(held);
+        Expression power = held_motions().graph().adopt(equations_.power);
+        for (std::size_t i = 0; i < contacts(); ++i)
+            if (held.contains(i)) power = power - motion.contacts[i].lambda * motion.contacts[i].gap_t;
+        return Program(std::span(&power, 1), layout_.slots());
+    });
+}
+
 bool Model::is_carried(std::size_t contact, ContactSet held) const {
     const std::scoped_lock lock(held_mutex_);
     const Ground ground;
@@ -114,6 +123,11 @@ const Bouncing& Model::bouncing(std::size_t contact, ContactSet held) const {
 const Neighbours& Model::neighbours(std::size_t contact, ContactSet held) const {
     return derived(neighbours_, {held, contact},
                    [&] { return derive_neighbours(contact, held, held_motions(), layout_); });
+}
+
+const PairPrograms& Model::pair(std::size_t first, std::size_t second, ContactSet held) const {
+    return derived(pairs_, {held, ContactSet::of(first).with(second)},
+                   [&] { return derive_pair(first, second, held, held_motions(), equations_, layout_); });
 }
 
 LanePrograms Model::lane_programs() const {

@@ -22,6 +22,7 @@
 #include "model/derive.hpp"
 #include "model/edges.hpp"
 #include "model/motion.hpp"
+#include "model/pair.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
 #include "run/trajectory.hpp"
@@ -69,7 +70,8 @@ class Model {
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
     const ProgramOf<EnergyTerms>& energy() const { return energy_; }
-    const ProgramOf<PowerTerms>& power() const { return power_; }
+    // dE/dt along the motion that holds these contacts: v'Q + dV/dt, less lambda dh/dt of each that is held.
+    const Program& power(ContactSet held) const;
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }
@@ -79,6 +81,8 @@ class Model {
     // for. Throws InputError if they are too large.
     const Bouncing& bouncing(std::size_t contact = 0, ContactSet held = {}) const;
     const Neighbours& neighbours(std::size_t contact, ContactSet held) const;
+    // Of two contacts that bounce together while others are held; first < second.
+    const PairPrograms& pair(std::size_t first, std::size_t second, ContactSet held) const;
 
     // An evaluator of one of the programs above with the parameters' values in place.
     template <class Scalar = double>
@@ -144,15 +148,16 @@ class Model {
     mutable std::mutex held_mutex_;                        // of what is derived when it is asked for
     mutable std::unique_ptr<HeldMotions> held_;
     mutable std::map<ContactSet, Motion> motions_;
+    mutable std::map<ContactSet, Program> powers_;
     mutable std::map<WhileHeld, ContactPrograms> programs_;
     mutable std::map<WhileHeld, Bouncing> bouncings_;
     mutable std::map<WhileHeld, Neighbours> neighbours_;
+    mutable std::map<std::pair<ContactSet, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // of programs_, those of contacts while none is held
     std::vector<Program> restitutions_;
     SeriesProgram edge_series_;
     std::vector<Edge> edges_;
     ProgramOf<EnergyTerms> energy_;
-    ProgramOf<PowerTerms> power_;
     ProgramOf<StartTerms> start_;
 };
 

@@ -154,6 +154,7 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
     names[layout.t()] = "t";
     names[layout.contact()] = "contact";
     names[layout.sigma()] = "sigma";
+    names[layout.second_sigma()] = "sigma_2";
     names[layout.own()] = "own";
     names[layout.work()] = "work";
     names[layout.loss()] = "loss";
@@ -171,6 +172,8 @@ namespace {
 std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Graph& graph, const Equations& equations) {
     const Expression held = graph.symbol(layout.contact());
     std::vector<std::array<Expression, 4>> values;
+    const Expression any_value = graph.symbol(layout.t());
+    if (layout.contacts == 0) return {{any_value, any_value, any_value, any_value}};  // the file lacks them
     for (std::size_t i = 0; i < layout.contacts; ++i) {
         const ContactEquations& c = equations.free.contacts[i];
         const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
@@ -204,7 +207,7 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     }
     scope.allowed.emplace("energy", graph.adopt(equations.energy));
     Expression power = graph.adopt(equations.power);
-    for (std::size_t k = 0; k < values.size(); ++k)
+    for (std::size_t k = 0; k < layout.contacts; ++k)
         power = power - values[k][3] * graph.adopt(equations.free.contacts[k].gap_t);
     scope.allowed.emplace("power", power);
     scope.allowed.emplace("work", graph.symbol(layout.work()));

@@ -124,17 +124,6 @@ class EnergyTerms : public Terms<Base> {
     decltype(auto) potential() const { return this->output(2); }
 };
 
-// What changes the energy along a motion: dE/dt where it is free, and what a moving contact that is held takes from it,
-// lambda dh/dt.
-template <class Base>
-class PowerTerms : public Terms<Base> {
- public:
-    using Terms<Base>::Terms;
-    static Expressions list(Expression free, Expression taken) { return {free, taken}; }
-    decltype(auto) free() const { return this->output(0); }
-    decltype(auto) taken() const { return this->output(1); }
-};
-
 // What Def. 7 needs over a box: hddot, n and the free acceleration f.
 template <class Base>
 class Definition7Terms : public Terms<Base> {

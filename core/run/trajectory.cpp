@@ -84,6 +84,10 @@ std::string_view to_text(Outcome::Kind kind) {
             return "left the domain";
         case Outcome::Kind::step_too_small:
             return "step too small";
+        case Outcome::Kind::simultaneous_impacts:
+            return "simultaneous impacts";
+        case Outcome::Kind::redundant_contacts:
+            return "redundant contacts";
         case Outcome::Kind::cancelled:
             return "cancelled";
         default:

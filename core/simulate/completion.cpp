@@ -31,6 +31,12 @@ void Execution::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (surfaces_->count() > 1) {
+        // Contacts that strike in turn may leave no time between them, however high each would bounce alone.
+        constexpr double resolved = 16.0;
+        if (record_.impacts() > 1 && last_step_ < resolved * ulp(next_.state.t)) {
+            if (!complete_pair(ContactSet::of(which), true)) end_chatter(ContactSet::of(which));
+            return;
+        }
         const ContactSet landing = landing_with(which, contact);
         if (landing.count() > 1 || !next_.touching.empty() || !passes_on(which)) return collide(landing);
     }
@@ -41,7 +47,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
 void Execution::land_alone(const Contact& contact) {
     const double e = restitutions_[which_];
     conditions_ = nullptr;
-    for (const Conditions& known : all_conditions_)
+    for (const OfContact& known : all_conditions_)
         if (known.contact == which_ && known.held == next_.held) conditions_ = known.conditions.get();
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
@@ -60,12 +66,14 @@ void Execution::land_alone(const Contact& contact) {
     } else if (too_short_to_resolve(collision, e)) {
         if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
             complete(contact, collision, std::move(*proved));
+        } else if (surfaces_->count() > 1) {
+            if (!complete_pair(ContactSet::of(which_), true)) end_chatter(ContactSet::of(which_));
         } else {
             stop(Outcome::Kind::undecided,
                  "flights became shorter than floating point resolves, and no truncation is certified at " +
                      where(next_.state));
         }
-    } else {
+    } else if (surfaces_->count() == 1 || !complete_pair(ContactSet::of(which_), false)) {
         bounce(contact, e);
     }
 }
@@ -89,7 +97,7 @@ std::optional<Certificate> Execution::prove(
 // Newton's law, and the flight it starts.
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
-    record_.impact(next_.state, v_after, -contact.hdot, exchange(contact, e), ContactSet::of(which_));
+    record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
     const Vector v_before = next_.state.v;
     next_.state.v = v_after;
     const double hdot = -e * contact.hdot;
@@ -151,7 +159,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
 // phase changes at the best estimate of the Zeno time.
 void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
     // A plastic impact leads to s. Nothing does to the v* of Def. 7.
-    Exchange plastic = exchange(contact, 0.0);
+    Exchange plastic = exchange_of(contact, 0.0);
     if (collision.restart != collision.tangential)
         plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
     record_.impact(next_.state, impact(contact, next_.state.v, restitutions_[which_]), collision.speed, plastic,
@@ -222,6 +230,11 @@ void Execution::leave(ContactSet contacts) {
     event.kind = Event::Kind::release;
     event.contacts = contacts;
     event.held = next_.held;
+    if (not_unique_) {
+        auto joint = std::make_shared<Joint>();
+        joint->not_unique = true;
+        event.joint = std::move(joint);
+    }
     event.t = next_.state.t;
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;

@@ -43,7 +43,7 @@ bool Execution::restart(const Run& run) {
         run.parameters != run_.parameters)
         return false;
     run_ = run;
-    for (Conditions& known : all_conditions_) known.conditions->forget();
+    for (OfContact& known : all_conditions_) known.conditions->forget();
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = 0;

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "certify/pair.hpp"
 #include "certify/truncation.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/simulate.hpp"
@@ -88,6 +89,7 @@ class Execution {
     // At events.
     void land(std::size_t which, const Contact& contact);
     void land_alone(const Contact& contact);
+    Exchange exchange_of(const Contact& contact, double e);
     ContactKinematics& kinematics() { return surfaces_->of(which_, next_.held); }
     // What some work gives; its time counts as that of proofs.
     template <class Work>
@@ -113,10 +115,14 @@ class Execution {
     ContactSet landing_with(std::size_t which, const Contact& contact);
     bool passes_on(std::size_t which);
     void collide(ContactSet landing);
+    bool complete_pair(ContactSet landing, bool below_rounding);
+    bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing, bool below_rounding);
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed);
     bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
     bool judge(ContactSet closed, ContactSet active);
+    ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
+    void end_chatter(ContactSet contacts);
     bool stays_closed(std::size_t contact, ContactSet held);
     std::string names_of(ContactSet contacts) const;
 
@@ -134,12 +140,18 @@ class Execution {
     Beginning beginning_;              // of the stretch, where it may be asked for again
     std::optional<Event> completion_;  // the Zeno event that the run is on its way to
     // The truncation conditions of contacts while others are held, those met so far.
-    struct Conditions {
+    struct OfContact {
         std::size_t contact;
         ContactSet held;
         std::unique_ptr<TruncationConditions> conditions;
     };
-    std::vector<Conditions> all_conditions_;
+    std::vector<OfContact> all_conditions_;
+    struct PairOf {
+        std::size_t first, second;
+        ContactSet held;
+        std::unique_ptr<PairConditions> conditions;
+    };
+    std::vector<PairOf> all_pairs_;               // the same of two contacts
     TruncationConditions* conditions_ = nullptr;  // of them, those of which_; null: not met yet
     std::size_t which_ = 0;                       // the contact whose event this is
     std::vector<double> restitutions_;

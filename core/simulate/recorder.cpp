@@ -17,6 +17,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.model = std::move(model);
     trajectory_.run = run;
     any_gap_ = false;
+    largest_ = 0.0;
     if (keep_ == Keep::end) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
         return;
@@ -112,9 +113,14 @@ void Recorder::step(const Flow& flow, double gap) {
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
     scale_ = std::max(scale_, std::abs(energy_.kinetic()) + std::abs(energy_.potential()));
-    if (scale_ > 0.0)
-        statistics.energy_drift =
-            std::max(statistics.energy_drift, std::abs(energy_.total() - trajectory_.work - reference_) / scale_);
+    largest_ = std::max(largest_, scale_ + std::abs(trajectory_.work));
+    // At rest nothing is left but the rounding of what there was.
+    const double change = std::abs(energy_.total() - trajectory_.work - reference_);
+    if (change > 0x1p-60 * largest_) {
+        // What a drive gives and takes may be large where T and V are nothing.
+        const double size = work_.any() ? largest_ : scale_;
+        statistics.energy_drift = std::max(statistics.energy_drift, change / size);
+    }
 }
 
 Exchange Recorder::exchange_of_jump(const State& before, const State& after, double work) {

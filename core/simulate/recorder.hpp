@@ -65,6 +65,7 @@ class Recorder {
     Work work_;
     double reference_ = 0.0;  // energy less work at the start of the stretch
     double scale_ = 0.0;      // the largest |T| + |V| of the stretch so far
+    double largest_ = 0.0;    // the same of the run
     bool any_gap_ = false;
 };
 

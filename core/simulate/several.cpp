@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -62,6 +63,22 @@ bool Execution::passes_on(std::size_t which) {
                 .by_transmission;
 }
 
+// What an impact does to the energy, with what is passed on to held contacts that move.
+Exchange Execution::exchange_of(const Contact& contact, double e) {
+    Exchange result = exchange(contact, e);
+    if (next_.held.empty() || !model_->equations().has_power()) return result;
+    const Closed closed = surfaces_->at(next_.state, next_.held.with(which_));
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.held));
+    if (!block) return result;
+    const auto place = std::find(closed.which.begin(), closed.which.end(), which_) - closed.which.begin();
+    const ContactVector<double> kappa = block->transmission(closed.W, place).kappa;
+    const double impulse = -(1.0 + e) * contact.hdot / contact.W;
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        if (next_.held.contains(closed.which[i]))
+            result.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
+    return result;
+}
+
 // An impact of several at once, by Newton's law in Moreau's form.
 void Execution::collide(ContactSet landing) {
     const ContactSet held = next_.held, still = held.with(next_.touching), all = still.with(landing);
@@ -73,6 +90,7 @@ void Execution::collide(ContactSet landing) {
         return stop(Outcome::Kind::undecided, fmt::format("{} before the Zeno time of another contact, at {}",
                                                           names_of(landing), where(next_.state)));
     if (!surfaces_->project(next_.state, all, still)) return fail_projection();
+    if (complete_pair(landing, false)) return;
     const Closed closed = surfaces_->at(next_.state, all);
     const ContactSet places = closed.places_of(held);
     ContactVector<double> before = closed.rates(), e(before.size());
@@ -109,6 +127,12 @@ void Execution::collide(ContactSet landing) {
             joint->alternatives.push_back(
                 {closed.which[static_cast<std::size_t>(other.first)], rates(other.hdot_after)});
     }
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
+        if (!(hdot > 0.0) || !too_short_to_resolve(closed.which[i], hdot)) continue;
+        if (!complete_pair(landing, true)) end_chatter(all);
+        return;
+    }
     Exchange exchange{0.0, impact->loss};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         exchange.work -= impact->impulses[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
@@ -126,15 +150,7 @@ void Execution::collide(ContactSet landing) {
         const std::size_t contact = closed.which[i];
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         next_.starts[contact] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
-        if (hdot > 0.0) {
-            if (too_short_to_resolve(contact, hdot))
-                return stop(Outcome::Kind::undecided,
-                            fmt::format("contacts {} chatter together, in flights shorter than "
-                                        "floating point resolves, at {}",
-                                        names_of(all), where(next_.state)));
-        } else {
-            resting = resting.with(contact);
-        }
+        if (!(hdot > 0.0)) resting = resting.with(contact);
     }
     next_.held = {};
     change_rates(v_before, all);
@@ -142,6 +158,93 @@ void Execution::collide(ContactSet landing) {
     record_.after_impact(held.without(next_.held), next_.held);
     if (next_.held != held) enter_phase();
     if (!outcome_) begin_stretch(next_.held, run_.options.end_time);
+}
+
+// Whether one of those that land comes to rest together with another contact, which is open, or which the impacts would open.
+bool Execution::complete_pair(ContactSet landing, bool below_rounding) {
+    if (completing() || run_.options.truncation.conditions != Conditions::sharp) return false;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (!landing.contains(i) || !(restitutions_[i] < 1.0)) continue;
+        for (std::size_t j = 0; j < surfaces_->count(); ++j) {
+            const ContactSet two = ContactSet::of(i).with(j);
+            // All that is closed but these two has to be held.
+            if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
+            if (complete_pair(std::min(i, j), std::max(i, j), next_.held.without(two), landing, below_rounding))
+                return true;
+        }
+    }
+    return false;
+}
+
+bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
+                              bool below_rounding) {
+    const std::array<std::size_t, 2> pair{first, second};
+    PairCollision collision{next_.state, {}, {}};
+    double speed = 0.0;
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Contact contact = surfaces_->of(pair[k], held).at(next_.state);
+        const bool closed =
+            landing.contains(pair[k]) || next_.held.contains(pair[k]) || next_.touching.contains(pair[k]);
+        collision.h[k] = closed ? 0.0 : contact.h;
+        collision.sigma[k] = next_.held.contains(pair[k]) ? 0.0 : contact.hdot;
+        if (landing.contains(pair[k])) speed = std::max(speed, -contact.hdot);
+    }
+    // Quick: what is high above the tolerances needs no look.
+    if (!below_rounding && (speed > 1e-2 || collision.h[0] + collision.h[1] > 1e-4)) return false;
+    const auto same = [&](const PairOf& known) {
+        return known.first == first && known.second == second && known.held == held;
+    };
+    auto known = std::find_if(all_pairs_.begin(), all_pairs_.end(), same);
+    if (known == all_pairs_.end()) {
+        const Closed both = surfaces_->at(next_.state, held.with(first).with(second));
+        ContactSet places;
+        for (std::size_t i = 0; i < both.which.size(); ++i) places = places.with(i);
+        if (!HeldBlock<double>::of(both.W, places)) return false;  // they cannot both be held with the others
+        const Ground ground;
+        all_pairs_.push_back(
+            {first, second, held, std::make_unique<PairConditions>(*model_, run_, first, second, held, ground)});
+        known = std::prev(all_pairs_.end());
+    }
+    auto completion = timed([&] { return known->conditions->certify(collision, below_rounding); });
+    if (!completion) return false;
+    const ContactSet all = held.with(first).with(second);
+    State restart = completion->restart;
+    if (!surfaces_->project(restart, all, all)) return false;
+    const State before = next_.state;
+    const Exchange exchange = record_.exchange_of_jump(before, restart, 0.0);
+    Vector v_after = before.v;
+    for (const std::size_t i : pair)
+        if (landing.contains(i)) {
+            const Contact contact = surfaces_->of(i, held).at(before);
+            if (contact.hdot < 0.0) v_after = impact(contact, v_after, restitutions_[i]);
+        }
+    record_.impact(before, v_after, speed, exchange, landing);
+    Event& event = completion_.emplace();
+    event.kind = Event::Kind::zeno;
+    event.t = completion->certificate.zeno_time;
+    event.truncation = Event::Truncation{before.t, before.q, before.v, restart.v, speed};
+    cut_error_ += std::max(completion->certificate.shadowing_position.value_or(0.0),
+                           completion->certificate.shadowing_velocity.value_or(0.0));
+    event.certificate = std::move(completion->certificate);
+    event.contacts = ContactSet::of(first).with(second);
+    event.held = all;
+    next_.state = restart;
+    next_.touching = {};
+    for (std::size_t i = 0; i < next_.starts.size(); ++i)
+        if (all.contains(i)) next_.starts[i] = {};
+    change_rates(before.v, all);
+    begin_stretch(all, std::min(event.t, run_.options.end_time));
+    return true;
+}
+
+// Nothing proves how a chatter that cannot be resolved any more ends. It is of these contacts and of what is near.
+void Execution::end_chatter(ContactSet contacts) {
+    constexpr double close = 1e-6;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
+    stop(Outcome::Kind::undecided,
+         fmt::format("contacts {} chatter together, in flights shorter than floating point resolves, at {}",
+                     names_of(contacts), where(next_.state)));
 }
 
 // As for one contact: the flight that begins now, to leading order.
@@ -196,20 +299,50 @@ bool Execution::hold_independent(const Closed& closed, const ContactVector<doubl
             const ContactVector<double> lambda = -block->solve(hddot);
             const ContactVector<double> y = hddot + closed.W * lambda;
             bool valid = true;
-            ContactSet carried, leaving;
+            ContactSet carried, others;
             for (std::size_t i = 0; i < count; ++i) {
                 const auto k = static_cast<Eigen::Index>(i);
                 const double scale = 1e-12 * (std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs()));
                 if (some.contains(i)) valid = valid && lambda[k] > 0.0;
                 if (some.contains(i)) continue;
                 valid = valid && y[k] >= -scale;
-                (y[k] <= scale ? carried : leaving) = (y[k] <= scale ? carried : leaving).with(i);
+                const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
+                (depends ? carried : others) = (depends ? carried : others).with(i);
             }
             if (!valid) continue;
             next_.touching = closed.contacts_at(carried);
-            return judge(closed.contacts_at(some.with(leaving)), closed.contacts_at(some));
+            return judge(closed.contacts_at(some.with(others)), closed.contacts_at(some));
         }
     return false;
+}
+
+// Those of the doubtful whose force grows from 0, while these are held.
+ContactSet Execution::pressed_by_rates(ContactSet doubtful, ContactSet held) {
+    const Closed closed = surfaces_->at(next_.state, doubtful.with(held));
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(held));
+    if (!block) return {};
+    std::vector<std::size_t> which;
+    std::vector<Eigen::Index> places;
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        if (doubtful.contains(closed.which[i])) {
+            which.push_back(closed.which[i]);
+            places.push_back(static_cast<Eigen::Index>(i));
+        }
+    const auto n = static_cast<Eigen::Index>(which.size());
+    ContactMatrix<double> W(n, n);
+    ContactVector<double> jerk(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        jerk[i] = surfaces_->of(which[at], held).jerk(next_.state);
+        const ContactVector<double> kappa = block->transmission(closed.W, places[at]).kappa;
+        for (Eigen::Index k = 0; k < n; ++k)
+            W(k, i) = HeldBlock<double>::between(closed.W, places[static_cast<std::size_t>(k)], places[at], kappa);
+    }
+    const auto rates = solve_complementarity(W, jerk);
+    ContactSet pressed;
+    for (std::size_t i = 0; rates && i < which.size(); ++i)
+        if (rates->active.contains(i)) pressed = pressed.with(which[i]);
+    return pressed;
 }
 
 // Proves for each contact what the forces say of it: `active` are held by them, the others leave. Where that cannot be told,
@@ -229,13 +362,16 @@ bool Execution::judge(ContactSet closed, ContactSet active) {
         }
     }
     if (!doubtful.empty()) {
+        // The rates of hddot decide, 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful, as far as they are proved.
+        ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, held);
+        const bool alone = doubtful.count() == 1;
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {
             if (!doubtful.contains(i)) continue;
-            const auto normal = surfaces_->of(i, held).normal(next_.state);
-            if (certainly_negative(normal.jerk) && doubtful.count() == 1) {
+            const auto normal = surfaces_->of(i, alone ? held : held.with(pressed).without(i)).normal(next_.state);
+            if (certainly_negative(normal.jerk) && pressed.contains(i)) {
                 held = held.with(i);
                 next_.starts[i] = {{}, 1};
-            } else if (certainly_positive(normal.jerk) && doubtful.count() == 1) {
+            } else if (certainly_positive(normal.jerk) && (alone || !pressed.contains(i))) {
                 next_.starts[i] = {{0.0, 0.0}, 3};
             } else if (stays_closed(i, held)) {
                 next_.touching = next_.touching.with(i);

@@ -5,16 +5,22 @@
 namespace achilles {
 
 Work::Work(const Model& model, const Run& run)
-    : any_(model.equations().has_power()), dof_(model.dof()), power_(model.evaluator(model.power(), run.parameters)) {}
+    : any_(model.equations().has_power()), dof_(model.dof()), model_(&model), parameters_(run.parameters) {}
 
 double Work::along(const Piece& piece, std::span<const double> coefficients, double from, double to) {
     if (!any_ || !(to > from)) return 0.0;
+    auto known = powers_.find(piece.held);
+    if (known == powers_.end())
+        known = powers_.emplace(piece.held, model_->evaluator(model_->power(piece.held), parameters_)).first;
+    Evaluator<double>& power = known->second;
     const auto power_at = [&](double t) {
-        set_state(power_, state_in(piece, coefficients, dof_, t));
-        power_.run();
-        return power_.free() - (!piece.held.empty() ? power_.taken() : 0.0);
+        set_state(power, state_in(piece, coefficients, dof_, t));
+        power.run();
+        return power.output(0);
     };
     using boost::math::quadrature::gauss;
+    // A power that depends on the time may change while the motion stands still.
+    if (!model_->equations().autonomous) return gauss<double, 30>::integrate(power_at, from, to);
     if (piece.degree <= 7) return gauss<double, 7>::integrate(power_at, from, to);
     if (piece.degree <= 10) return gauss<double, 10>::integrate(power_at, from, to);
     if (piece.degree <= 15) return gauss<double, 15>::integrate(power_at, from, to);

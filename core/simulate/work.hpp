@@ -1,7 +1,9 @@
 // What is done on a system along its run: E(t) - E(0) = work - loss (theory-gaps.md 1).
 #pragma once
 
+#include <map>
 #include <span>
+#include <vector>
 
 #include "model/model.hpp"
 #include "run/trajectory.hpp"
@@ -22,7 +24,9 @@ class Work {
  private:
     bool any_;
     Eigen::Index dof_;
-    PowerTerms<Evaluator<double>> power_;
+    const Model* model_;
+    std::vector<double> parameters_;
+    std::map<ContactSet, Evaluator<double>> powers_;  // of the motions met so far
 };
 
 }  // namespace achilles

@@ -1,0 +1,352 @@
+#include "certify/pair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "certify/others.hpp"
+#include "certify/truncation.hpp"
+
+namespace achilles {
+
+namespace {
+
+Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
+double inflated(double need) { return 1.5 * need + 0x1p-200; }
+
+// x' W^-1 y of 2-vectors.
+Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
+                    const std::array<Interval, 2>& y) {
+    const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
+    return (W[1][1] * x[0] * y[0] - W[0][1] * (x[0] * y[1] + x[1] * y[0]) + W[0][0] * x[1] * y[1]) / det;
+}
+
+// Upper bounds, as points: rounded up by the interval operations.
+Interval top(const Interval& x) { return Interval(x.hi()); }
+
+// One choice of eta, in exact bounds.
+class Chatter {
+ public:
+    explicit Chatter(const PairAtCollision& pair) : p_(pair) {
+        for (std::size_t i = 0; i < 2; ++i) {
+            d_[i] = sqrt(p_.W[i][i]);
+            rest_[i] = p_.W[i][i] - square(p_.W[0][1]) / p_.W[1 - i][1 - i];  // W_i', the other one held
+            a_least_[i] = p_.a[i] - d_[i] * p_.Delta;
+            slope_[i] = rest_[i] * p_.lambda[i] - sqrt(rest_[i]) * p_.Delta;
+        }
+        const Interval one(1.0), two(2.0);
+        L_ = sqrt(square(p_.lambda[0]) * p_.W[0][0] + two * p_.lambda[0] * p_.lambda[1] * p_.W[0][1] +
+                  square(p_.lambda[1]) * p_.W[1][1]);
+        kd_ = sqrt(two / (one + p_.W[0][1] / (d_[0] * d_[1])));
+    }
+    bool is_possible() const {
+        return certainly_positive(a_least_[0]) && certainly_positive(a_least_[1]) && certainly_positive(slope_[0]) &&
+               certainly_positive(slope_[1]) && certainly_positive(L_ - p_.Delta) &&
+               certainly_less(kd_ * p_.omega, Interval(1.0));
+    }
+
+    std::optional<PairBound> with(double share) const {
+        const Interval eta(share), one(1.0), two(2.0), four(4.0), c = abs(p_.W[0][1]);
+        std::array<Interval, 2> hat, low;
+        for (std::size_t i = 0; i < 2; ++i) {
+            hat[i] = d_[i] * sqrt((one + p_.omega) * eta / (one - square(p_.e[i])));
+            low[i] = c * square(hat[i]) / (two * p_.W[i][i] * a_least_[i]);
+        }
+        Interval gam(0.0), S(0.0), m(1.0), Ct(0.0);
+        bool stands = false;
+        for (int round = 0; round < 60 && !stands; ++round) {
+            m = one + gam;
+            const Interval M = m + p_.omega * S;
+            Interval fall(0.0);
+            for (std::size_t i = 0; i < 2; ++i) {
+                const std::size_t j = 1 - i;
+                const Interval root = sqrt(rest_[j] * square(M) + four * slope_[j] * low[i]);
+                fall = max(fall, (sqrt(rest_[j]) * M + root) / slope_[j]);
+            }
+            Ct = top(two * m / (L_ - p_.Delta) + fall);
+            const Interval next_S =
+                top((two * kd_ * m + (d_[0] * p_.lambda[0] + d_[1] * p_.lambda[1] + kd_ * p_.Delta) * Ct) /
+                    (one - kd_ * p_.omega));
+            const Interval next_gam = top(p_.Delta * Ct + two * p_.omega * next_S / (one - p_.omega));
+            if (!next_gam.is_defined() || !next_S.is_defined() || next_gam.hi() > 1.0) return std::nullopt;
+            stands = next_gam.hi() <= gam.hi() && next_S.hi() <= S.hi();  // what was assumed is what follows
+            if (!stands) {
+                gam = Interval(next_gam.hi() * (1.0 + 1e-9) + 1e-300);
+                S = Interval(next_S.hi() * (1.0 + 1e-9));
+            }
+        }
+        const Interval z2 = square(one + gam) - eta;
+        if (!stands || !certainly_less(z2, one)) return std::nullopt;
+        for (std::size_t i = 0; i < 2; ++i) {
+            const std::size_t j = 1 - i;
+            const Interval strong =
+                rest_[j] * (square(one - gam) - eta - square(hat[i]) * (one / p_.W[i][i] + p_.lambda[i] / a_least_[i]));
+            const Interval needed = hat[j] + c * hat[i] / p_.W[i][i];
+            if (!(strong.lo() > 0.0) || !(sqrt(strong).lo() >= needed.hi())) return std::nullopt;
+        }
+        const Interval z = sqrt(max(z2, Interval(0.0)));
+        return PairBound{top(Ct * p_.r0 / (one - z)),
+                         top(Ct * square(m) * p_.r0 * square(p_.r0) / (two * (one - z * z2))), m};
+    }
+
+ private:
+    const PairAtCollision& p_;
+    std::array<Interval, 2> d_, rest_, a_least_, slope_;
+    Interval L_, kd_;
+};
+
+}  // namespace
+
+std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
+    if (pair.e[0].lo() != pair.e[1].lo() || pair.e[0].hi() != pair.e[1].hi()) return std::nullopt;
+    const Chatter chatter(pair);
+    if (!chatter.is_possible()) return std::nullopt;
+    std::optional<PairBound> best;
+    for (double eta = 0.5; eta > 1e-7; eta *= 0.8)
+        if (const auto bound = chatter.with(eta); bound && (!best || bound->T.hi() < best->T.hi())) best = bound;
+    return best;
+}
+
+PairConditions::PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second,
+                               ContactSet held, const Ground&)
+    : dof_(static_cast<std::size_t>(model.dof())),
+      pair_{first, second},
+      held_(held),
+      autonomous_(model.equations().autonomous),
+      layout_(model.layout()),
+      truncation_(run.options.truncation),
+      e_{model.evaluator<Interval>(model.restitution(first), run.parameters).output(0),
+         model.evaluator<Interval>(model.restitution(second), run.parameters).output(0)},
+      programs_(&model.pair(first, second, held)),
+      terms_(model.evaluator<Interval>(programs_->terms, run.parameters)),
+      point_(model.evaluator(programs_->terms, run.parameters)),
+      others_(model.evaluator<Interval>(programs_->others, run.parameters)) {}
+
+// The terms over a box of q, s, the two sigma and t.
+bool PairConditions::look(const std::vector<Interval>& box) {
+    for (std::size_t i = 0; i < 2 * dof_; ++i) terms_.input(i) = box[i];
+    terms_.input(layout_.sigma()) = box[2 * dof_];
+    terms_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
+    terms_.clock() = box[2 * dof_ + 2];
+    terms_.run();
+    return certainly_negative(terms_.hddot(0)) && certainly_negative(terms_.hddot(1)) &&
+           certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
+}
+
+std::optional<Certificate::Others> PairConditions::others_stay(const std::vector<Interval>& box) {
+    for (std::size_t i = 0; i < 2 * dof_; ++i) others_.input(i) = box[i];
+    others_.input(layout_.sigma()) = box[2 * dof_];
+    others_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
+    others_.clock() = box[2 * dof_ + 2];
+    others_.run();
+    Certificate::Others others;
+    std::size_t next = 0;
+    for (const std::size_t contact : programs_->held) {
+        const Interval hddot = others_.output(next), W = others_.output(next + 1);
+        const Interval kappa = hull(others_.output(next + 2), others_.output(next + 3));
+        next += 4;
+        if (!certainly_negative(hddot) || !certainly_positive(W) || !is_not_negative(kappa)) return std::nullopt;
+        others.held.push_back({contact, kappa.lo(), kappa.hi(), (-hddot / W).lo()});
+    }
+    for (std::size_t i = 0; i < programs_->open.size(); ++i) {
+        const Interval gap = others_.output(next++);
+        if (!certainly_positive(gap)) return std::nullopt;
+        others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
+    }
+    return others;
+}
+
+// What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.
+std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision& collision, const State& tangential) {
+    std::vector<Interval> here;
+    for (const double q : tangential.q) here.emplace_back(q);
+    for (const double s : tangential.v) here.emplace_back(s);
+    here.insert(here.end(), {Interval(0.0), Interval(0.0), Interval(tangential.t)});
+    if (!look(here)) return std::nullopt;
+    PairAtCollision pair;
+    pair.e = e_;
+    for (std::size_t k = 0; k < 2; ++k) {
+        pair.a[k] = -terms_.hddot(k);
+        for (std::size_t l = 0; l < 2; ++l) pair.W[k][l] = terms_.W(k, l);
+    }
+    const Interval det = pair.W[0][0] * pair.W[1][1] - square(pair.W[0][1]);
+    if (!certainly_positive(det)) return std::nullopt;
+    Interval energy(0.0);
+    const std::array<Interval, 2> sigma{Interval(collision.sigma[0]), Interval(collision.sigma[1])};
+    for (std::size_t k = 0; k < 2; ++k) {
+        pair.lambda[k] = (pair.W[1 - k][1 - k] * pair.a[k] - pair.W[0][1] * pair.a[1 - k]) / det;
+        if (!certainly_positive(pair.lambda[k])) return std::nullopt;
+        energy = energy + Interval(2.0) * pair.lambda[k] * Interval(std::max(0.0, collision.h[k]));
+    }
+    pair.r0 = top(sqrt(energy + by_inverse(pair.W, sigma, sigma)));
+    return pair;
+}
+
+// Is the motion until tau_inf proved to stay inside the box, with the shifted variables? If not it grows to what was asked
+// for. terms_ are those over the box.
+bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtCollision& pair) {
+    bool inside = bound.T.hi() < box.duration && bound.m.hi() <= box.growth;
+    if (!(bound.T.hi() < box.duration)) box.duration = inflated(bound.T.hi());
+    if (!(bound.m.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bound.m.hi() - 1.0);
+    const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        Interval rate = box.all[dof_ + i], F = terms_.A(i), shift_q(0.0), shift_s(0.0);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Interval &sigma = box.all[2 * dof_ + k], h = energy / pair.lambda[k];
+            rate = rate + terms_.N(k, i) * sigma;
+            F = F + terms_.B(k, i) * sigma;
+            shift_q = shift_q + abs(terms_.N(k, i)) * h;
+            shift_s = shift_s + abs(terms_.B(k, i)) * h;
+        }
+        const Interval &u = box.all[2 * dof_], &w = box.all[2 * dof_ + 1];
+        F = F + terms_.D(0, i) * square(u) + terms_.D(1, i) * u * w + terms_.D(2, i) * square(w);
+        const double q = (abs(rate) * bound.T + shift_q).hi(), v = (abs(F) * bound.T + shift_s).hi();
+        if (!(q < box.q_radius[i])) inside = false, box.q_radius[i] = inflated(q);
+        if (!(v < box.s_radius[i])) inside = false, box.s_radius[i] = inflated(v);
+    }
+    return inside;
+}
+
+Certificate PairConditions::certificate_of(const Box& box, const PairBound& bound, const PairAtCollision& pair,
+                                           const PairCollision& collision) const {
+    // The integrals of h and of sigma_k sigma_l, in place of those of one contact.
+    const std::array<Interval, 2> gap{bound.J / pair.lambda[0], bound.J / pair.lambda[1]};
+    const auto products = [&](std::size_t k, std::size_t l) {
+        return Interval(2.0) * sqrt(pair.W[k][k]) * sqrt(pair.W[l][l]) * bound.J;
+    };
+    const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
+    const PairTerms<Evaluator<Interval>>& x = terms_;
+    double lipschitz = 1.0, largest = 0.0;
+    std::vector<Interval> E_q(dof_), E_s(dof_), uniform(dof_);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        Interval row(0.0), c_q(0.0);
+        Interval c_s =
+            abs(x.D(0, i)) * products(0, 0) + abs(x.D(1, i)) * products(0, 1) + abs(x.D(2, i)) * products(1, 1);
+        for (std::size_t k = 0; k < 2; ++k) {
+            Interval drift = -x.Bdot(k, i);
+            for (std::size_t j = 0; j < dof_; ++j)
+                drift = drift + x.dA_dq(i, j) * x.N(k, j) + x.dA_ds(i, j) * x.B(k, j);
+            c_q = c_q + abs(x.B(k, i) - x.Ndot(k, i)) * gap[k];
+            c_s = c_s + abs(drift) * gap[k];
+            uniform[i] = uniform[i] + abs(x.N(k, i)) * energy / pair.lambda[k];
+        }
+        for (std::size_t j = 0; j < dof_; ++j) row = row + abs(x.dA_dq(i, j)) + abs(x.dA_ds(i, j));
+        lipschitz = std::max(lipschitz, row.hi());
+        E_q[i] = top(c_q);
+        E_s[i] = top(c_s);
+        largest = std::max({largest, c_q.hi(), c_s.hi()});
+    }
+    const Interval grown = (exp(Interval(lipschitz) * bound.T) - Interval(1.0)) * Interval(largest);
+    Interval position(0.0), velocity(0.0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        E_q[i] = E_q[i] + grown;
+        E_s[i] = E_s[i] + grown;
+        uniform[i] = uniform[i] + E_q[i];
+        position = position + square(Interval(box.q_radius[i]));
+        velocity = velocity + square(Interval(box.s_radius[i]));
+    }
+    Certificate c;
+    c.certified = true;
+    c.conditions = Conditions::sharp;
+    c.reinitialization = Reinitialization::kinetic;
+    double wait = 0.0;  // as if each bounced alone with what it has now
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double e = mid(e_[k]), a = mid(pair.a[k]), h = std::max(0.0, collision.h[k]);
+        const double falling = std::sqrt(collision.sigma[k] * collision.sigma[k] + 2.0 * a * h);
+        const double landing = h > 0.0 ? (collision.sigma[k] + falling) / a : 0.0;
+        wait = std::max(wait, landing + 2.0 * e * falling / (a * (1.0 - e)));
+    }
+    set_zeno_time(c, collision.before.t, {Interval(0.0), bound.T}, wait);
+    c.zeno_low = collision.before.t;
+    c.position_bound = sqrt(position).hi();
+    c.velocity_bound = sqrt(velocity).hi();
+    c.shadowing_position = norm(E_q).hi();
+    c.shadowing_velocity = norm(E_s).hi();
+    c.uniform_position = norm(uniform).hi();
+    c.a_min = std::min(pair.a[0].lo(), pair.a[1].lo());
+    c.a_max = std::max(pair.a[0].hi(), pair.a[1].hi());
+    c.decision = {{"time bound", 0.5 * bound.T.hi(), truncation_.eps_t},
+                  {"position bound", *c.uniform_position, truncation_.eps_q},
+                  {"velocity bound", *c.shadowing_velocity, truncation_.eps_v}};
+    c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0}, {"normal acceleration", -c.a_min, 0.0}};
+    c.decisive = c.decision->closest().name;
+    return c;
+}
+
+std::optional<PairConditions::Completion> PairConditions::certify(const PairCollision& collision, bool below_rounding) {
+    const Ground ground;
+    const auto n = static_cast<Eigen::Index>(dof_);
+    State tangential = collision.before;  // N does not depend on the velocity
+    set_state(point_, tangential);
+    point_.input(layout_.sigma()) = point_.input(layout_.second_sigma()) = 0.0;
+    point_.run();
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < 2; ++k)
+            tangential.v[i] -= point_.N(k, static_cast<std::size_t>(i)) * collision.sigma[k];
+    auto pair = at_collision(collision, tangential);
+    if (!pair) return std::nullopt;
+    const auto first = pair_bound(*pair);
+    if (!first || (!below_rounding && 0.5 * first->T.hi() > truncation_.eps_t)) return std::nullopt;
+    set_state(point_, tangential);
+    point_.run();
+
+    Box box;
+    box.duration = inflated(first->T.hi());
+    box.growth = 1.0 + 2.0 * (first->m.hi() - 1.0) + 1e-6;
+    const double ulp = 0x1p-52 * std::abs(tangential.t);
+    box.t0 = Interval(tangential.t) + Interval(-4.0 * ulp, 4.0 * ulp);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double q = tangential.q[i], v = std::abs(collision.before.v[i]) + std::abs(tangential.v[i]);
+        box.q0.push_back(widened(Interval(q), 0x1p-50 * std::abs(q)));
+        box.s0.push_back(widened(Interval(tangential.v[i]), 0x1p-50 * v));
+        box.q_radius.push_back(inflated(std::abs(tangential.v[i]) * first->T.hi()));
+        box.s_radius.push_back(inflated(std::abs(point_.A(k)) * first->T.hi()));
+    }
+    for (int round = 0; round < 40; ++round) {
+        box.all.clear();
+        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.q0[i], box.q_radius[i]));
+        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.s0[i], box.s_radius[i]));
+        for (std::size_t k = 0; k < 2; ++k) {
+            const double most = (sqrt(pair->W[k][k]) * Interval(box.growth) * pair->r0).hi();
+            box.all.emplace_back(-most, most);
+        }
+        box.all.emplace_back(box.t0.lo(), (Interval(box.t0.hi()) + Interval(box.duration)).hi());
+        if (!look(box.all)) return std::nullopt;
+        const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
+        pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
+        // The Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, by K = W^-1 (W(q) - W).
+        const Interval det = pair->W[0][0] * pair->W[1][1] - square(pair->W[0][1]);
+        const Interval d0 = terms_.W(0, 0) - pair->W[0][0], d1 = terms_.W(0, 1) - pair->W[0][1],
+                       d2 = terms_.W(1, 1) - pair->W[1][1];
+        const Interval k00 = (pair->W[1][1] * d0 - pair->W[0][1] * d1) / det,
+                       k11 = (pair->W[0][0] * d2 - pair->W[0][1] * d1) / det;
+        const Interval k01 = (pair->W[1][1] * d1 - pair->W[0][1] * d2) / det,
+                       k10 = (pair->W[0][0] * d1 - pair->W[0][1] * d0) / det;
+        pair->omega = top(sqrt(abs(square(k00) + Interval(2.0) * k01 * k10 + square(k11))));
+        const auto bound = pair_bound(*pair);
+        if (!bound) return std::nullopt;
+        if (!contain(box, *bound, *pair)) continue;
+        auto others = others_stay(box.all);
+        if (!others) return std::nullopt;
+        look(box.all);
+        Completion result{certificate_of(box, *bound, *pair, collision), tangential};
+        result.certificate.others = std::move(others);
+        result.certificate.below_rounding = below_rounding;
+        if (!below_rounding)
+            for (const Inequality& inequality :
+                 {result.certificate.decision->time, result.certificate.decision->position,
+                  result.certificate.decision->velocity})
+                if (!(inequality.left <= inequality.right)) return std::nullopt;
+        for (Eigen::Index i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < 2; ++k) {
+                const auto c = static_cast<std::size_t>(i);
+                result.restart.q[i] -= point_.N(k, c) * collision.h[k];
+                result.restart.v[i] -= point_.B(k, c) * collision.h[k];
+            }
+        return result;
+    }
+    return std::nullopt;
+}
+
+}  // namespace achilles

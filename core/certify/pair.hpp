@@ -1,0 +1,79 @@
+// The time that two contacts which chatter together still need until both rest, and how far the motion that holds both is
+// from theirs (theory-gaps.md 3).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "contacts/delassus.hpp"
+#include "model/model.hpp"
+#include "number/ground.hpp"
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+// What is known of the pair at a collision, in units of its energy E = sigma' W^-1 sigma/2 + lambda' h, r0 = sqrt(2 E).
+struct PairAtCollision {
+    std::array<Interval, 2> a, lambda, e;  // -hddot, the forces that hold both, restitutions
+    std::array<std::array<Interval, 2>, 2> W;
+    Interval r0;
+    // Over the neighbourhood: |W^-1/2 (hddot + a)| and |W^-1/2 (W(q) - W) W^-1/2| are at most these.
+    Interval Delta, omega;
+};
+// T, and J: tau_inf - tau_k <= T, integral of h_i <= J/lambda_i, of |sigma_i sigma_j| <= 2 d_i d_j J, d_i = sqrt(W_ii). m is
+// by how much sqrt(2 E) may grow on the way.
+struct PairBound {
+    Interval T, J, m;
+};
+// Nothing where no eta is admissible. Restitutions must be equal: landings of both at once are covered for these only.
+std::optional<PairBound> pair_bound(const PairAtCollision& pair);
+
+// A collision of the pair: the state before it, h and hdot of the two.
+struct PairCollision {
+    State before;
+    std::array<double, 2> h, sigma;
+};
+
+class PairConditions {
+ public:
+    PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second, ContactSet held,
+                   const Ground& ground);
+
+    struct Completion {
+        Certificate certificate;
+        State restart;  // (q - N h, s - B h), to be projected onto all surfaces
+    };
+    // The certificate where it is within the run's tolerances, or, of a chatter that cannot be resolved any more, whatever it is.
+    std::optional<Completion> certify(const PairCollision& collision, bool below_rounding);
+
+ private:
+    // A box around the collision in q, s, the two sigma and t, and what it is made of.
+    struct Box {
+        std::vector<Interval> q0, s0;
+        std::vector<double> q_radius, s_radius;
+        Interval t0;
+        double duration, growth;  // T and m as they are assumed
+        std::vector<Interval> all;
+    };
+    bool look(const std::vector<Interval>& box);
+    std::optional<PairAtCollision> at_collision(const PairCollision& collision, const State& shifted);
+    bool contain(Box& box, const PairBound& bound, const PairAtCollision& pair);
+    Certificate certificate_of(const Box& box, const PairBound& bound, const PairAtCollision& pair,
+                               const PairCollision& collision) const;
+    std::optional<Certificate::Others> others_stay(const std::vector<Interval>& box);
+
+    std::size_t dof_;
+    std::array<std::size_t, 2> pair_;
+    ContactSet held_;
+    bool autonomous_;
+    Layout layout_;
+    Truncation truncation_;
+    std::array<Interval, 2> e_;
+    const PairPrograms* programs_;
+    PairTerms<Evaluator<Interval>> terms_;
+    PairTerms<Evaluator<double>> point_;
+    Evaluator<Interval> others_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,51 @@
+// Rows of expressions: what derivations of more than one file are made of.
+#pragma once
+
+#include "program/terms.hpp"
+
+namespace achilles {
+
+using Row = Expressions;
+
+inline Row adopt(Graph& graph, const Row& row) {
+    Row result;
+    for (const Expression e : row) result.push_back(graph.adopt(e));
+    return result;
+}
+
+// dx_i/d(slots) times a direction, for each entry.
+inline Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& direction) {
+    Row sums(x.size(), x.front().graph().number(0));
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+        const Row slope = derivative(x, slots[k]);
+        for (std::size_t i = 0; i < x.size(); ++i) sums[i] = sums[i] + slope[i] * direction[k];
+    }
+    return sums;
+}
+
+inline Expression product(const Row& a, const Row& b) {
+    Expression sum = a.front().graph().number(0);
+    for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
+    return sum;
+}
+
+inline Row at_velocity(const Row& x, const std::vector<std::uint32_t>& v, const Row& velocity) {
+    Row result;
+    for (const Expression e : x) result.push_back(substitute(e, v, velocity));
+    return result;
+}
+
+inline Row sum(const Row& a, const Row& b) {
+    Row result;
+    for (std::size_t i = 0; i < a.size(); ++i) result.push_back(a[i] + b[i]);
+    return result;
+}
+
+// dx_i/d(slots), row by row.
+inline Row row_by_row(const Row& x, const std::vector<std::uint32_t>& slots) {
+    Row slopes;
+    for (const Row& row : jacobian(x, slots)) slopes.insert(slopes.end(), row.begin(), row.end());
+    return slopes;
+}
+
+}  // namespace achilles
