@@ -34,7 +34,8 @@ void Execution::land(std::size_t which, const Contact& contact) {
         // Contacts that strike in turn may leave no time between them, however high each would bounce alone.
         constexpr double resolved = 16.0;
         if (record_.impacts() > 1 && last_step_ < resolved * ulp(next_.state.t)) {
-            if (!complete_pair(ContactSet::of(which), true)) end_chatter(ContactSet::of(which));
+            const Vector v_after = impact(contact, next_.state.v, restitutions_[which]);
+            if (!complete_pair(ContactSet::of(which), v_after, true)) end_chatter(ContactSet::of(which));
             return;
         }
         const ContactSet landing = landing_with(which, contact);
@@ -67,13 +68,15 @@ void Execution::land_alone(const Contact& contact) {
         if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
             complete(contact, collision, std::move(*proved));
         } else if (surfaces_->count() > 1) {
-            if (!complete_pair(ContactSet::of(which_), true)) end_chatter(ContactSet::of(which_));
+            if (!complete_pair(ContactSet::of(which_), impact(contact, next_.state.v, e), true))
+                end_chatter(ContactSet::of(which_));
         } else {
             stop(Outcome::Kind::undecided,
                  "flights became shorter than floating point resolves, and no truncation is certified at " +
                      where(next_.state));
         }
-    } else if (surfaces_->count() == 1 || !complete_pair(ContactSet::of(which_), false)) {
+    } else if (surfaces_->count() == 1 ||
+               !complete_pair(ContactSet::of(which_), impact(contact, next_.state.v, e), false)) {
         bounce(contact, e);
     }
 }

@@ -115,8 +115,9 @@ class Execution {
     ContactSet landing_with(std::size_t which, const Contact& contact);
     bool passes_on(std::size_t which);
     void collide(ContactSet landing);
-    bool complete_pair(ContactSet landing, bool below_rounding);
-    bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing, bool below_rounding);
+    bool complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding);
+    bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
+                       const Vector& v_after, bool below_rounding);
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed);
     bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);

@@ -90,7 +90,6 @@ void Execution::collide(ContactSet landing) {
         return stop(Outcome::Kind::undecided, fmt::format("{} before the Zeno time of another contact, at {}",
                                                           names_of(landing), where(next_.state)));
     if (!surfaces_->project(next_.state, all, still)) return fail_projection();
-    if (complete_pair(landing, false)) return;
     const Closed closed = surfaces_->at(next_.state, all);
     const ContactSet places = closed.places_of(held);
     ContactVector<double> before = closed.rates(), e(before.size());
@@ -103,6 +102,8 @@ void Execution::collide(ContactSet landing) {
     if (!impact)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("no impulse obeys the impact law of {}, at {}", names_of(all), where(next_.state)));
+    const Vector v_before = next_.state.v, v_after = closed.after(v_before, impact->impulses);
+    if (complete_pair(landing, v_after, false)) return;
     auto joint = std::make_shared<Joint>();
     joint->not_unique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -130,7 +131,7 @@ void Execution::collide(ContactSet landing) {
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         if (!(hdot > 0.0) || !too_short_to_resolve(closed.which[i], hdot)) continue;
-        if (!complete_pair(landing, true)) end_chatter(all);
+        if (!complete_pair(landing, v_after, true)) end_chatter(all);
         return;
     }
     Exchange exchange{0.0, impact->loss};
@@ -139,8 +140,6 @@ void Execution::collide(ContactSet landing) {
     double speed = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
-    const Vector v_before = next_.state.v;
-    const Vector v_after = closed.after(v_before, impact->impulses);
     record_.impact(next_.state, v_after, speed, exchange, landing, std::move(joint));
     next_.state.v = v_after;
     // Who leaves at once, and who may be held.
@@ -160,8 +159,8 @@ void Execution::collide(ContactSet landing) {
     if (!outcome_) begin_stretch(next_.held, run_.options.end_time);
 }
 
-// Whether one of those that land comes to rest together with another contact, which is open, or which the impacts would open.
-bool Execution::complete_pair(ContactSet landing, bool below_rounding) {
+// The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is open, or which the impacts would open.
+bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding) {
     if (completing() || run_.options.truncation.conditions != Conditions::sharp) return false;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (!landing.contains(i) || !(restitutions_[i] < 1.0)) continue;
@@ -169,7 +168,8 @@ bool Execution::complete_pair(ContactSet landing, bool below_rounding) {
             const ContactSet two = ContactSet::of(i).with(j);
             // All that is closed but these two has to be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
-            if (complete_pair(std::min(i, j), std::max(i, j), next_.held.without(two), landing, below_rounding))
+            if (complete_pair(std::min(i, j), std::max(i, j), next_.held.without(two), landing, v_after,
+                              below_rounding))
                 return true;
         }
     }
@@ -177,7 +177,7 @@ bool Execution::complete_pair(ContactSet landing, bool below_rounding) {
 }
 
 bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
-                              bool below_rounding) {
+                              const Vector& v_after, bool below_rounding) {
     const std::array<std::size_t, 2> pair{first, second};
     PairCollision collision{next_.state, {}, {}};
     double speed = 0.0;
@@ -212,12 +212,6 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     if (!surfaces_->project(restart, all, all)) return false;
     const State before = next_.state;
     const Exchange exchange = record_.exchange_of_jump(before, restart, 0.0);
-    Vector v_after = before.v;
-    for (const std::size_t i : pair)
-        if (landing.contains(i)) {
-            const Contact contact = surfaces_->of(i, held).at(before);
-            if (contact.hdot < 0.0) v_after = impact(contact, v_after, restitutions_[i]);
-        }
     record_.impact(before, v_after, speed, exchange, landing);
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -287,6 +281,7 @@ void Execution::decide(ContactSet closed) {
 // Contacts whose gradients depend on one another are held by some of them, which carry all: the gaps of the others stay 0
 // with theirs.
 bool Execution::hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
+    constexpr double pressed = 1e-9;  // a force below that part of the others is in doubt, and carries nothing
     const std::size_t count = closed.which.size();
     for (int size = static_cast<int>(count); size > 0; --size)
         for (std::uint32_t bits = 1; bits < 1u << count; ++bits) {
@@ -303,7 +298,7 @@ bool Execution::hold_independent(const Closed& closed, const ContactVector<doubl
             for (std::size_t i = 0; i < count; ++i) {
                 const auto k = static_cast<Eigen::Index>(i);
                 const double scale = 1e-12 * (std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs()));
-                if (some.contains(i)) valid = valid && lambda[k] > 0.0;
+                if (some.contains(i)) valid = valid && lambda[k] > pressed * lambda.cwiseAbs().maxCoeff();
                 if (some.contains(i)) continue;
                 valid = valid && y[k] >= -scale;
                 const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
@@ -311,7 +306,9 @@ bool Execution::hold_independent(const Closed& closed, const ContactVector<doubl
             }
             if (!valid) continue;
             next_.touching = closed.contacts_at(carried);
-            return judge(closed.contacts_at(some.with(others)), closed.contacts_at(some));
+            // What is carried is so by all of these.
+            return judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
+                   closed.contacts_at(some).without(next_.held).empty();
         }
     return false;
 }
