@@ -3,10 +3,21 @@
 #include <cmath>
 
 #include "certify/truncation.hpp"
+#include "simulate/contact_forces.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
+
+namespace {
+
+std::size_t first_of(ContactSet contacts, const Model& model) {
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (contacts.contains(i)) return i;
+    return 0;
+}
+
+}  // namespace
 
 ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     const Event& impact = trajectory.events[event];
@@ -20,18 +31,23 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     };
     ImpactReason reason;
     const Event* next = event + 1 < trajectory.events.size() ? &trajectory.events[event + 1] : nullptr;
-    reason.cut = next != nullptr && next->kind == Event::Kind::zeno;
+    reason.cut = next != nullptr && next->kind == Event::Kind::zeno && next->contacts == impact.contacts;
     reason.energy_before = energy_at(impact.v_before);
     reason.energy_after = energy_at(impact.v_after);
 
-    ContactKinematics surface(model, run);
+    reason.held = held_before(trajectory, event);
+    if (impact.contacts.count() != 1 || !impact.opened.empty()) return reason;
+    const std::size_t which = first_of(impact.contacts, model);
+    reason.contact = which;
+    ContactKinematics surface(model, run, which, reason.held);
     const State before{impact.q, impact.v_before, impact.t};
     const Contact contact = surface.at(before);
     const Collision collision{before, std::abs(contact.hdot),
                               reinitialize(contact, before.v, Reinitialization::kinetic),
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
     reason.normal_acceleration = surface.normal_acceleration(collision.with(collision.restart));
-    if (reason.normal_acceleration < 0.0) reason.attempt = truncation_conditions(model, run)->prove_any(collision);
+    if (reason.normal_acceleration < 0.0)
+        reason.attempt = truncation_conditions(model, run, which, reason.held)->prove_any(collision);
     return reason;
 }
 
@@ -39,25 +55,27 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const Event& release = trajectory.events[event];
     const Model& model = *trajectory.model;
     const State state{release.q, release.v_after, release.t};
-    ContactKinematics surface(model, trajectory.run);
-    const double W = surface.at(state).W;
     ReleaseReason reason;
+    const std::size_t which = reason.contact = first_of(release.contacts, model);
+    ContactKinematics surface(model, trajectory.run, which, held_before(trajectory, event).without(which));
+    const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);
     // hddot vanishes here, so the change of W does not matter.
     reason.lambda_rate = -reason.jerk / W;
 
     constexpr int instants = 60;
-    double start = 0.0;
-    for (const Phase& phase : trajectory.phases)
-        if (phase.kind == Phase::Kind::constrained && phase.end <= release.t) start = phase.start;
-    auto force = model.evaluator(model.force(), trajectory.run.parameters);
+    double start = trajectory.run.options.start_time;
+    for (const Phase& phase : trajectory.phases) {
+        if (phase.end > release.t) break;
+        if (!phase.held.contains(which)) start = phase.end;
+    }
+    ContactForces forces(model, trajectory.run.parameters);
     Sampler sampler(trajectory);
-    for (int i = 0; i < instants; ++i) {  // the release itself belongs to the flight
+    for (int i = 0; i < instants; ++i) {  // the release itself belongs to what follows
         const double t = start + (release.t - start) * i / instants;
-        set_state(force, sampler.at(t).state);
-        force.run();
-        reason.force.emplace_back(t, force.output(0));
+        forces.set(sampler.at(t));
+        reason.force.emplace_back(t, forces.force(which));
     }
     reason.force.emplace_back(release.t, reason.lambda);
     return reason;

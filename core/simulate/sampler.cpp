@@ -2,10 +2,15 @@
 
 #include <algorithm>
 
+#include "model/model.hpp"
 #include "simulate/surfaces.hpp"
 #include "simulate/work.hpp"
 
 namespace achilles {
+
+ContactSet held_before(const Trajectory& trajectory, std::size_t event) {
+    return event == 0 ? trajectory.phases.front().held : trajectory.events[event - 1].held;
+}
 
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
 struct Sampler::Projection {
@@ -44,6 +49,8 @@ Sample Sampler::at(double t) {
     sample.j = static_cast<int>(event - trajectory_.events.begin());
     sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
+        sample.held = trajectory_.end_held;
+        sample.contact = !sample.held.empty();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
@@ -56,6 +63,11 @@ Sample Sampler::at(double t) {
     sample.loss = std::prev(piece)->loss;
     // The last piece may end at an impact after which no step was made.
     if (t == trajectory_.end_time) {
+        const auto& events = trajectory_.events;
+        if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
+            sample.held = events.back().held;
+            sample.contact = !sample.held.empty();
+        }
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
@@ -92,9 +104,12 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
             const bool shown =
                 !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
             const bool is_left_out = stride > 1 && event.t < until;
-            if (event.kind == Event::Kind::impact && !shown && !is_left_out)
-                add(event.t, Phase::Kind::hybrid, {}, {event.q, event.v_before, event.t},
-                    j == 0 ? 0.0 : events[j - 1].work, j == 0 ? 0.0 : events[j - 1].loss);
+            if (event.kind == Event::Kind::impact && !shown && !is_left_out) {
+                const ContactSet before = held_before(trajectory_, j);
+                add(event.t, before.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained, before,
+                    {event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
+                    j == 0 ? 0.0 : events[j - 1].loss);
+            }
             ++j;
         }
         return any;

@@ -19,6 +19,9 @@ struct Sample {
     double work = 0.0, loss = 0.0;  // of the run until then
 };
 
+// What is held just before an event: what the last one left, or the start.
+ContactSet held_before(const Trajectory& trajectory, std::size_t event);
+
 // The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
 class Sampler {
  public:

@@ -1,0 +1,71 @@
+#include "simulate/contact_forces.hpp"
+
+namespace achilles {
+
+ContactForces::ContactForces(const Model& model, std::span<const double> parameters)
+    : model_(&model), parameters_(parameters.begin(), parameters.end()), surfaces_(model.contacts()) {}
+
+void ContactForces::set(const State& state, ContactSet held) {
+    state_ = state;
+    held_ = held;
+    motion_ = nullptr;
+}
+
+double ContactForces::force(std::size_t contact) {
+    if (!held_.contains(contact)) return 0.0;
+    const ContactSet others = held_.without(contact);
+    const std::pair key(others, contact);
+    auto known = forces_.find(key);
+    if (known == forces_.end())
+        known = forces_.emplace(key, model_->evaluator(model_->programs_of(contact, others).force, parameters_)).first;
+    set_state(known->second, state_);
+    known->second.run();
+    return known->second.output(0);
+}
+
+double ContactForces::acceleration(std::size_t contact) {
+    if (held_.contains(contact)) return 0.0;
+    if (motion_ == nullptr) {
+        motion_ = &model_->lazily(motions_, held_, parameters_);
+        set_state(*motion_, state_);
+        motion_->run();
+    }
+    return motion_->hddot(contact);
+}
+
+const ContactTerms<Evaluator<double>>& ContactForces::surface(std::size_t contact) {
+    auto& terms = model_->lazily(surfaces_[contact], model_->programs_of(contact).contact_terms, parameters_);
+    set_state(terms, state_);
+    terms.run();
+    return terms;
+}
+
+Vector ContactForces::generalised() {
+    Vector Q = Vector::Zero(state_.q.size());
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        if (!held_.contains(i)) continue;
+        const double lambda = force(i);
+        const auto& terms = surface(i);
+        for (Eigen::Index k = 0; k < Q.size(); ++k) Q[k] += lambda * terms.gradient(static_cast<std::size_t>(k));
+    }
+    return Q;
+}
+
+void ContactForces::run_view(Evaluator<double>& view, const Sample& sample) {
+    const Layout& layout = model_->layout();
+    set_state(view, sample.state);
+    view.input(layout.work()) = sample.work;
+    view.input(layout.loss()) = sample.loss;
+    if (layout.contacts == 1) {
+        view.input(layout.contact()) = sample.contact ? 1.0 : 0.0;
+    } else {
+        set(sample);
+        for (std::size_t i = 0; i < layout.contacts; ++i) {
+            view.input(layout.acceleration(i)) = acceleration(i);
+            view.input(layout.force(i)) = force(i);
+        }
+    }
+    view.run();
+}
+
+}  // namespace achilles

@@ -1,0 +1,47 @@
+// The forces that hold contacts, and how the gaps accelerate, at an instant of a run (theory-gaps.md 2).
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "model/model.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+// One per thread. Refers to the model.
+class ContactForces {
+ public:
+    ContactForces(const Model& model, std::span<const double> parameters);
+
+    // What is asked next is asked of this state, in the motion that holds these.
+    void set(const State& state, ContactSet held);
+    void set(const Sample& sample) { set(sample.state, sample.held); }
+
+    // lambda_i, that which holds contact i while the others of them are held; 0 where it is not held.
+    double force(std::size_t contact);
+    // hddot_i of the motion; 0 where contact i is held.
+    double acceleration(std::size_t contact);
+    // sum lambda_i g_i', as a generalised force.
+    Vector generalised();
+
+    // Gives the program of a view all that it may ask for of a sample, and runs it.
+    void run_view(Evaluator<double>& view, const Sample& sample);
+
+ private:
+    const ContactTerms<Evaluator<double>>& surface(std::size_t contact);
+
+    const Model* model_;
+    std::vector<double> parameters_;
+    State state_;
+    ContactSet held_;
+    Model::MotionEvaluators motions_;
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until it is asked for
+    std::map<std::pair<ContactSet, std::size_t>, Evaluator<double>> forces_;
+    std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
+};
+
+}  // namespace achilles
