@@ -5,9 +5,11 @@
 
 #include "model/model.hpp"
 #include "number/ground.hpp"
+#include "output/contacts.hpp"
 #include "output/output.hpp"
-#include "simulate/sampler.hpp"
+#include "simulate/contact_forces.hpp"
 #include "system/input_error.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -47,6 +49,9 @@ std::string row_of(const std::vector<std::string>& cells) {
     return row + "\n";
 }
 
+bool is_of_several(const Model& model) { return model.contacts() > 1; }
+bool has_work(const Model& model) { return is_of_several(model) || model.equations().has_power(); }
+
 // The names of the columns and, if wished for, their units.
 std::string heading(const Model& model, const CsvStyle& style) {
     std::vector<std::string> columns{"t", "phase"}, units{"s", ""};
@@ -54,9 +59,26 @@ std::string heading(const Model& model, const CsvStyle& style) {
         columns.push_back(model.slot_names()[i]);
         units.push_back(printable(unit_of(model.description(), columns.back())));
     }
-    columns.insert(columns.end(), {"gap", "gap rate", "lambda", "energy", "j"});
-    if (model.equations().has_power()) columns.insert(columns.end(), {"work", "loss"});
-    units.resize(columns.size());
+    const auto add = [&](const std::string& column, const std::string& of = {}) {
+        columns.push_back(column);
+        units.push_back(of.empty() ? "" : unit_of_expression(model.description(), of));
+    };
+    if (is_of_several(model)) {
+        for (const ConstraintDescription& constraint : model.description().constraints) {
+            add("gap_" + constraint.name, "gap_" + constraint.name);
+            add("rate_" + constraint.name, "gap_" + constraint.name + "'");
+            add("lambda_" + constraint.name, "lambda_" + constraint.name);
+        }
+        add("energy", "energy");
+        add("j");
+        add("held");
+    } else {
+        for (const char* column : {"gap", "gap rate", "lambda", "energy", "j"}) add(column);
+    }
+    if (has_work(model)) {
+        add("work", "work");
+        add("loss", "loss");
+    }
     return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
 }
 
@@ -72,23 +94,29 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
     const Ground ground;
     const Model& model = *trajectory.model;
     std::string text = heading(model, style);
-    auto contact = model.evaluator(model.contact_terms(), trajectory.run.parameters);
-    auto force = model.evaluator(model.force(), trajectory.run.parameters);
+    std::vector<ContactTerms<Evaluator<double>>> contacts;
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        contacts.push_back(model.evaluator(model.programs_of(i).contact_terms, trajectory.run.parameters));
+    ContactForces forces(model, trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
     for (const Sample& sample : style.instants ? samples_at(trajectory, *style.instants) : all_samples(trajectory)) {
-        for (Evaluator<double>* program : std::initializer_list<Evaluator<double>*>{&contact, &force, &energy}) {
-            set_state(*program, sample.state);
-            program->run();
-        }
+        forces.set(sample);
+        set_state(energy, sample.state);
+        energy.run();
         text += fmt::format("{},{}", sample.t + 0.0, to_text(sample.phase));
         for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.q[i]);
         for (Eigen::Index i = 0; i < model.dof(); ++i) append(text, sample.state.v[i]);
-        append(text, contact.h());
-        append(text, contact.hdot());
-        append(text, sample.contact ? force.output(0) : 0.0);
+        for (std::size_t i = 0; i < contacts.size(); ++i) {
+            set_state(contacts[i], sample.state);
+            contacts[i].run();
+            append(text, contacts[i].h());
+            append(text, contacts[i].hdot());
+            append(text, forces.force(i));
+        }
         append(text, energy.total());
         text += fmt::format(",{}", sample.j);
-        if (model.equations().has_power()) {
+        if (is_of_several(model)) text += "," + joined_names(model, sample.held, "+");
+        if (has_work(model)) {
             append(text, sample.work);
             append(text, sample.loss);
         }

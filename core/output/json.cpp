@@ -4,6 +4,7 @@
 #include "model/derived_values.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
+#include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "system/input_error.hpp"
 
@@ -31,7 +32,10 @@ Json system_of(const Trajectory& trajectory) {
         parameters[description.parameters[i].name] = number(trajectory.run.parameters[i]);
     const std::vector<double> derived = derived_values(*trajectory.model, trajectory.run.parameters);
     for (std::size_t i = 0; i < derived.size(); ++i) parameters[description.derived[i].name] = number(derived[i]);
-    return {{"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}};
+    Json contacts = Json::array();
+    for (const ConstraintDescription& constraint : description.constraints) contacts.push_back(constraint.name);
+    return {
+        {"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}, {"contacts", contacts}};
 }
 
 // Of what has one that is known.
@@ -66,7 +70,35 @@ Json options_of(const Options& options) {
     return result;
 }
 
-Json certificate_of(const Certificate& c) {
+Json names(const Trajectory& trajectory, ContactSet contacts) { return contact_names(*trajectory.model, contacts); }
+
+// Values by the names of contacts.
+template <class Pairs, class Value>
+Json by_contact(const Trajectory& trajectory, const Pairs& pairs, const Value& value) {
+    Json result = Json::object();
+    for (const auto& entry : pairs) {
+        const auto& [contact, json] = value(entry);
+        result[trajectory.model->description().constraints[contact].name] = json;
+    }
+    return result;
+}
+Json by_contact(const Trajectory& trajectory, const std::vector<std::pair<std::size_t, double>>& values) {
+    return by_contact(trajectory, values,
+                      [](const auto& entry) { return std::pair(entry.first, number(entry.second)); });
+}
+
+// Of the others while one contact bounces.
+void add_others(Json& result, const Trajectory& trajectory, const Certificate::Others& others) {
+    using Held = Certificate::Others::Held;
+    result["transmission"] = by_contact(trajectory, others.held, [](const Held& held) {
+        return std::pair(held.contact, Json{number(held.transmission_low), number(held.transmission_high)});
+    });
+    result["least_force"] = by_contact(
+        trajectory, others.held, [](const Held& held) { return std::pair(held.contact, number(held.least_force)); });
+    result["least_other_gap"] = number(others.least_gap);
+}
+
+Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
     Json result = {{"certified", c.certified},
                    {"conditions", to_text(c.conditions)},
                    {"reinitialization", to_text(c.reinitialization)},
@@ -96,15 +128,40 @@ Json certificate_of(const Certificate& c) {
         inequalities.push_back(
             {{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
     result["inequalities"] = inequalities;
+    if (c.others) add_others(result, trajectory, *c.others);
     return result;
 }
 
-Json event_of(const Event& event) {
-    Json result = {{"kind", to_text(event.kind)}, {"t", number(event.t)}, {"q", list(event.q)}};
+// What is only said where several contacts took part in an impact.
+void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
+    result["order_matters"] = joint.order_matters;
+    result["not_unique"] = joint.not_unique;
+    if (!joint.order_matters) return;
+    Json& alternatives = result["alternatives"] = Json::array();
+    for (const Joint::Alternative& other : joint.alternatives) {
+        Json first = nullptr;
+        if (other.first) first = trajectory.model->description().constraints[*other.first].name;
+        alternatives.push_back({{"first", first}, {"rates_after", by_contact(trajectory, other.rates_after)}});
+    }
+}
+
+Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulses) {
+    const Event& event = trajectory.events[index];
+    Json result = {{"kind", to_text(event.kind)}, {"t", number(event.t)}};
+    const Json contacts = names(trajectory, event.contacts);
+    if (contacts.size() == 1)
+        result["contact"] = contacts[0];
+    else
+        result["contacts"] = contacts;
+    result["held"] = names(trajectory, event.held);
+    result["opened"] = names(trajectory, event.opened);
+    result["q"] = list(event.q);
     if (event.kind == Event::Kind::impact) {
         result["v_before"] = list(event.v_before);
         result["v_after"] = list(event.v_after);
         result["impact_speed"] = number(event.impact_speed);
+        result["impulses"] = by_contact(trajectory, impulses.of(index));
+        if (event.joint) add_joint(result, trajectory, *event.joint);
     } else {
         result["v"] = list(event.v_after);
     }
@@ -115,7 +172,7 @@ Json event_of(const Event& event) {
                                 {"v_before", list(event.truncation->v_before)},
                                 {"v", list(event.truncation->v)},
                                 {"impact_speed", number(event.truncation->impact_speed)}};
-    if (event.certificate) result["certificate"] = certificate_of(*event.certificate);
+    if (event.certificate) result["certificate"] = certificate_of(trajectory, *event.certificate);
     return result;
 }
 
@@ -128,10 +185,12 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
     Json phases = Json::array(), events = Json::array();
     for (const Phase& phase : trajectory.phases)
         phases.push_back({{"kind", to_text(phase.kind)},
+                          {"held", names(trajectory, phase.held)},
                           {"start", number(phase.start)},
                           {"end", number(phase.end)},
                           {"impacts", phase.impacts}});
-    for (const Event& event : trajectory.events) events.push_back(event_of(event));
+    Impulses impulses(trajectory);
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) events.push_back(event_of(trajectory, i, impulses));
     const Statistics& s = trajectory.statistics;
     Json result = {{"achilles", version()},
                    {"system", system_of(trajectory)},
@@ -143,8 +202,10 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"q", list(trajectory.end.q)},
                      {"v", list(trajectory.end.v)},
                      {"phase", to_text(trajectory.end_phase)},
+                     {"held", names(trajectory, trajectory.end_held)},
                      {"work", number(trajectory.work)},
-                     {"loss", number(trajectory.loss)}}},
+                     {"loss", number(trajectory.loss)},
+                     {"by_convention", trajectory.by_convention}}},
                    {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
                    {"start",
                     {{"t", number(trajectory.run.options.start_time)},

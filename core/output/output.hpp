@@ -19,6 +19,8 @@ struct CsvStyle {
 };
 std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
 std::string summary(const Trajectory& trajectory);
+// Phases, events and end, 9 significant digits: what golden tests compare first.
+std::string to_text(const Trajectory& trajectory);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate);
 // "[low, high]" with as many digits as tell the ends apart, and two more.

@@ -4,7 +4,9 @@
 
 #include "model/model.hpp"
 #include "number/ground.hpp"
+#include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -27,20 +29,6 @@ std::string named(const Model& model, std::size_t first_slot, const Vector& valu
     return text;
 }
 
-std::string impact_lines(const std::vector<const Event*>& impacts) {
-    constexpr std::size_t shown_first = 4, shown_last = 1;
-    std::string text;
-    for (std::size_t i = 0; i < impacts.size(); ++i) {
-        const std::size_t left = impacts.size() - i;
-        if (i == shown_first && left > shown_last + 1) {
-            text += fmt::format("  ...       {} more impacts\n", left - shown_last);
-            i = impacts.size() - shown_last;
-        }
-        text += fmt::format("  impact    t = {:<16.10g} gap speed {:.6g}\n", impacts[i]->t, impacts[i]->impact_speed);
-    }
-    return text;
-}
-
 // A line for each part of a sentence.
 std::string indented(std::string sentence) {
     const std::string margin(12, ' ');
@@ -49,18 +37,141 @@ std::string indented(std::string sentence) {
     return margin + sentence + "\n";
 }
 
-std::string event_line(const Model& model, const Event& event, const State& scale) {
-    const bool is_plastic = is_plastic_landing(event);
-    std::string text = fmt::format("  {:<9} t = {:<16.10g} {}\n", is_plastic ? "landing" : to_text(event.kind), event.t,
-                                   named(model, 0, event.q, scale.q));
-    if (is_plastic)
-        text += "            plastic: it comes to rest on the surface by its first impact, without a bounce\n";
-    else if (event.kind == Event::Kind::zeno)
-        text +=
-            fmt::format("            after {} impacts, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
-                        event.impacts, event.truncation->t, event.truncation->impact_speed);
-    if (event.certificate) text += indented(sentence(*event.certificate));
-    return text;
+// " holding knee", of a system with several contacts.
+std::string holding(const Trajectory& trajectory, ContactSet held) {
+    const Model& model = *trajectory.model;
+    return model.contacts() > 1 && !held.empty() ? " holding " + joined_names(model, held) : "";
+}
+
+// Phase by phase, event by event.
+class Course {
+ public:
+    explicit Course(const Trajectory& trajectory)
+        : trajectory_(trajectory),
+          model_(*trajectory.model),
+          scale_(scale_of(trajectory)),
+          ends_(ends_of_phases(trajectory)) {}
+
+    std::string told() const {
+        std::string text;
+        const std::vector<Chatter> chatters = chatters_of(trajectory_);
+        auto chatter = chatters.begin();
+        for (std::size_t phase = 0; phase < ends_.size(); ++phase) {
+            if (chatter != chatters.end() && chatter->first == phase) {
+                text += chatter_line(*chatter);
+                phase = chatter++->last - 1;
+                continue;
+            }
+            text += phase_line(trajectory_.phases[phase]) + events(phase);
+        }
+        return text;
+    }
+
+ private:
+    bool is_of_several() const { return model_.contacts() > 1; }
+    std::string names(ContactSet contacts) const { return joined_names(model_, contacts); }
+
+    std::string phase_line(const Phase& phase) const {
+        return fmt::format("{} phase{}, t = {:.10g} to {:.10g} s\n", to_text(phase.kind),
+                           holding(trajectory_, phase.held), phase.start, phase.end);
+    }
+
+    std::string chatter_line(const Chatter& chatter) const {
+        int impacts = 0;
+        ContactSet held;
+        for (std::size_t i = chatter.first; i < chatter.last; ++i) {
+            impacts += trajectory_.phases[i].impacts;
+            held = held.with(trajectory_.phases[i].held);
+        }
+        return fmt::format(
+            "{} phases in a row, t = {:.10g} to {:.10g} s, with {} impacts: a contact comes to rest and an impact of "
+            "another opens it, again and again ({})\n",
+            chatter.last - chatter.first, trajectory_.phases[chatter.first].start,
+            trajectory_.phases[chatter.last - 1].end, impacts, names(held));
+    }
+
+    std::string events(std::size_t phase) const {
+        std::size_t first = phase == 0 ? 0 : ends_[phase - 1];
+        std::string text;
+        for (std::size_t i = first; i < ends_[phase]; ++i) {
+            if (trajectory_.events[i].kind == Event::Kind::impact) continue;
+            text += impact_lines(first, i) + event_line(i);
+            first = i + 1;
+        }
+        return text + impact_lines(first, ends_[phase]);
+    }
+
+    // Of impacts one after the other.
+    std::string impact_lines(std::size_t first, std::size_t end) const {
+        constexpr std::size_t shown_first = 4, shown_last = 1;
+        std::string text;
+        for (std::size_t i = first; i < end; ++i) {
+            const std::size_t left = end - i;
+            if (i - first == shown_first && left > shown_last + 1) {
+                text += fmt::format("  ...       {} more impacts\n", left - shown_last);
+                i = end - shown_last;
+            }
+            const Event& impact = trajectory_.events[i];
+            text += fmt::format("  impact    t = {:<16.10g} gap speed {:.6g}{}\n", impact.t, impact.impact_speed,
+                                of_contacts(impact));
+        }
+        return text;
+    }
+
+    std::string of_contacts(const Event& impact) const {
+        if (!is_of_several()) return "";
+        std::string text = " of " + names(impact.contacts);
+        if (!impact.opened.empty()) text += ", opens " + names(impact.opened);
+        if (impact.joint && impact.joint->order_matters) text += ", in an order by convention";
+        if (impact.joint && impact.joint->not_unique) text += ", impulses not unique";
+        return text;
+    }
+
+    std::string event_line(std::size_t index) const {
+        const Event& event = trajectory_.events[index];
+        const bool is_plastic = is_plastic_landing(event);
+        const std::string contacts = is_of_several() ? " of " + names(event.contacts) + "," : "";
+        std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
+                                       event.t, contacts, named(model_, 0, event.q, scale_.q));
+        if (is_plastic)
+            text += "            plastic: it comes to rest on the surface by its first impact, without a bounce\n";
+        else if (event.kind == Event::Kind::zeno)
+            text += fmt::format(
+                "            after {} impacts, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
+                event.impacts, event.truncation->t, event.truncation->impact_speed);
+        if (!event.certificate) return text;
+        text += indented(sentence(*event.certificate));
+        const auto& others = event.certificate->others;
+        if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
+            text += indented("until then " + of_others);
+        const auto before = trajectory_.events.begin() + static_cast<std::ptrdiff_t>(index);
+        const auto by_convention = std::find_if(trajectory_.events.begin(), before,
+                                                [](const Event& e) { return e.joint && e.joint->order_matters; });
+        if (by_convention != before)
+            text += indented(fmt::format("given Moreau's law at event {}, t = {:.10g}",
+                                         by_convention - trajectory_.events.begin() + 1, by_convention->t));
+        return text;
+    }
+
+    const Trajectory& trajectory_;
+    const Model& model_;
+    State scale_;
+    std::vector<std::size_t> ends_;
+};
+
+// Where the energy went.
+std::string balance(const Trajectory& trajectory) {
+    // Of angles alone it would be no unit of an energy.
+    const char* unit = unit_of_expression(trajectory.model->description(), "energy") == "J" ? " J" : "";
+    return fmt::format("work {:.9g}{} by forces and moving surfaces, loss {:.9g}{} at impacts\n", trajectory.work + 0.0,
+                       unit, trajectory.loss + 0.0, unit);
+}
+
+std::string conventions(int count) {
+    return fmt::format(
+        "{} of several contacts at once, whose order matters and cannot be told: Moreau's law decided, all at once\n"
+        "(--json has the rates that each order would give; --simultaneous stop ends the run there).\n",
+        count == 1 ? "One impact was" : fmt::format("{} impacts were", count));
 }
 
 // What certificates rest on.
@@ -111,31 +222,19 @@ std::string summary(const Trajectory& trajectory) {
         if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
     text += "\n\n";
     const State scale = scale_of(trajectory);
-    std::vector<const Event*> impacts;
-    std::size_t next = 0;
-    for (const Phase& phase : trajectory.phases) {
-        text += fmt::format("{} phase, t = {:.10g} to {:.10g} s\n", to_text(phase.kind), phase.start, phase.end);
-        // A phase's events end with the one that ends the phase.
-        for (bool open = true; open && next < trajectory.events.size(); ++next) {
-            const Event& event = trajectory.events[next];
-            open = event.kind == Event::Kind::impact;
-            if (open) {
-                impacts.push_back(&event);
-            } else {
-                text += impact_lines(impacts) + event_line(model, event, scale);
-                impacts.clear();
-            }
-        }
-    }
-    text += impact_lines(impacts);
+    text += Course(trajectory).told();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
-    text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time, to_text(trajectory.end_phase),
-                        named(model, 0, trajectory.end.q, scale.q), named(model, n, trajectory.end.v, scale.v));
+    text += fmt::format("\nend at t = {:.10g} s, {}{}: {}; {}", trajectory.end_time, to_text(trajectory.end_phase),
+                        holding(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, scale.q),
+                        named(model, n, trajectory.end.v, scale.v));
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
-    text +=
-        fmt::format("{} impacts, {} steps, {} evaluations, energy drift {:.2g}, least gap {:.2g}\n", s.impacts, s.steps,
-                    s.evaluations, without_noise(s.energy_drift, 1.0), without_noise(s.least_gap, scale.q.maxCoeff()));
+    const bool has_power = model.equations().has_power();
+    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {:.2g}, least gap {:.2g}\n", s.impacts,
+                        s.steps, s.evaluations, has_power ? " beside the work" : "", without_noise(s.energy_drift, 1.0),
+                        without_noise(s.least_gap, scale.q.maxCoeff()));
+    if (has_power || model.contacts() > 1) text += balance(trajectory);
+    if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(),
                                        [](const Event& event) { return event.kind == Event::Kind::zeno; });

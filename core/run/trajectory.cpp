@@ -1,10 +1,8 @@
-// Names of the kinds of things, and a trajectory as text for golden tests.
+// Names of the kinds of things.
 #include "run/trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace achilles {
 
@@ -93,30 +91,6 @@ std::string_view to_text(Outcome::Kind kind) {
         default:
             return "undecided";
     }
-}
-
-namespace {
-
-std::string to_text(const Vector& x) {
-    std::string text = "(";
-    // Adding 0.0 turns -0 into 0: their difference is not one that a golden should see.
-    for (Eigen::Index i = 0; i < x.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", x[i] + 0.0);
-    return text + ")";
-}
-
-}  // namespace
-
-std::string to_text(const Trajectory& trajectory) {
-    std::string text;
-    for (const Phase& phase : trajectory.phases)
-        text += fmt::format("phase {} [{:.9g}, {:.9g}] impacts {}\n", to_text(phase.kind), phase.start, phase.end,
-                            phase.impacts);
-    for (const Event& event : trajectory.events)
-        text += fmt::format("{} t {:.9g} q {} before {} after {}\n", to_text(event.kind), event.t, to_text(event.q),
-                            to_text(event.v_before), to_text(event.v_after));
-    return text + fmt::format("end t {:.9g} {} q {} v {}\noutcome {}: {}\n", trajectory.end_time,
-                              to_text(trajectory.end_phase), to_text(trajectory.end.q), to_text(trajectory.end.v),
-                              to_text(trajectory.outcome.kind), trajectory.outcome.message);
 }
 
 }  // namespace achilles

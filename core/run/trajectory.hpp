@@ -186,7 +186,4 @@ std::string_view to_text(Phase::Kind);
 std::string_view to_text(Event::Kind);
 std::string_view to_text(Outcome::Kind);
 
-// The trajectory as text, 9 significant digits: what golden tests compare first.
-std::string to_text(const Trajectory& trajectory);
-
 }  // namespace achilles

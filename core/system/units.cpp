@@ -123,11 +123,13 @@ class Names {
         add("t", has_units ? second : std::nullopt);
         for (const DerivedDescription& d : description.derived)
             add(d.name, d.unit.empty() ? of(d.definition.text) : read(d.unit));
-        const bool has_energy = names("energy") || names("lambda");
+        constexpr const char* energies[] = {"energy", "work", "loss", "power", "lambda"};
+        const bool has_energy = std::any_of(std::begin(energies), std::end(energies), names);
         const bool has_gap = has_energy || names("gap");
         MaybeUnit energy = has_energy ? of(description.kinetic.text) : std::nullopt;
         if (has_energy && !energy) energy = of(description.potential.text);
-        add("energy", energy);
+        for (const char* name : {"energy", "work", "loss"}) add(name, energy);
+        add("power", product(energy, second, -1.0));
         for (std::size_t i = 0; i < description.constraints.size(); ++i) {
             const MaybeUnit gap = has_gap ? of(description.constraints[i].gap.text) : std::nullopt;
             add(output_names(description, "gap")[i], gap);

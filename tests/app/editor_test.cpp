@@ -4,6 +4,7 @@
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "journal/journal.hpp"
+#include "output/output.hpp"
 
 namespace achilles {
 namespace {

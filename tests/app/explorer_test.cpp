@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/hands.hpp"
+#include "output/output.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "app/program.hpp"
+#include "output/output.hpp"
 
 namespace achilles {
 namespace {

@@ -237,6 +237,18 @@ TEST(Schema, HoldsForEverySystemOfTheGallery) {
         }
 }
 
+TEST(Schema, HoldsForForcesMovingAndSeveralGaps) {
+    const Folder folder;
+    int systems = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/tests/reference/gaps")) {
+        const Answer answer = folder.run("simulate " + entry.path().string() + " --json - --samples 5");
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        EXPECT_EQ(faults_of(json::parse(answer.out)), std::vector<std::string>()) << entry.path();
+        ++systems;
+    }
+    EXPECT_EQ(systems, 6);
+}
+
 TEST(Schema, NoticesWhatIsOtherwise) {
     const Folder folder;
     json run = json::parse(folder.run("simulate ball_on_sine --end 3 --json -").out);

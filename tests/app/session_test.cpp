@@ -2,6 +2,7 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
+#include "output/output.hpp"
 #include "panels/turns.hpp"
 #include "simulate/simulate.hpp"
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/hands.hpp"
+#include "output/output.hpp"
 
 namespace achilles {
 namespace {

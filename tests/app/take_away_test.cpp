@@ -11,6 +11,7 @@
 #include "app/program.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
+#include "output/output.hpp"
 #include "pictures/origin.hpp"
 #include "session/recipe.hpp"
 #include "session/worker.hpp"

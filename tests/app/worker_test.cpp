@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "app/open.hpp"
+#include "output/output.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {

@@ -11,6 +11,7 @@
 #include "figure/compose.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
+#include "output/output.hpp"
 #include "pictures/paper.hpp"
 #include "session/session.hpp"
 #include "simulate/simulate.hpp"

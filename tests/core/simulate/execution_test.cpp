@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/systems.hpp"
+#include "output/output.hpp"
 #include "simulate/event_stepper.hpp"
 #include "simulate/execution.hpp"
 

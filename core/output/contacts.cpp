@@ -1,0 +1,108 @@
+#include "output/contacts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "output/output.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+std::vector<std::string> contact_names(const Model& model, ContactSet contacts) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (contacts.contains(i)) names.push_back(model.description().constraints[i].name);
+    return names;
+}
+
+std::string joined_names(const Model& model, ContactSet contacts, std::string_view between) {
+    return fmt::format("{}", fmt::join(contact_names(model, contacts), between));
+}
+
+std::string contacts_told(const Trajectory& trajectory, const Event& event) {
+    const Model& model = *trajectory.model;
+    return model.contacts() > 1 ? joined_names(model, event.contacts) : "";
+}
+
+Impulses::Impulses(const Trajectory& trajectory)
+    : trajectory_(trajectory), surfaces_(*trajectory.model, trajectory.run) {}
+
+std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
+    const Event& impact = trajectory_.events[event];
+    if (impact.joint && !impact.joint->impulses.empty()) return impact.joint->impulses;
+    // One contact alone, while others stay held: p = (hdot+ - hdot-)/W_i^A, and kappa p of each that is held.
+    const ContactSet held = held_before(trajectory_, event), landing = impact.contacts;
+    if (landing.count() != 1 || held.count() + 1 > most_contacts) return {};
+    const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, held.with(landing));
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(held));
+    if (!block) return {};
+    Eigen::Index place = 0;
+    while (!contains(closed.places_of(landing), place)) ++place;
+    const Contact& contact = closed.contacts[static_cast<std::size_t>(place)];
+    const Transmission<double> passed = block->transmission(closed.W, place);
+    const double impulse = contact.g.dot(impact.v_after - impact.v_before) / passed.W;
+    std::vector<std::pair<std::size_t, double>> impulses;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        impulses.emplace_back(closed.which[i], k == place ? impulse : passed.kappa[k] * impulse);
+    }
+    return impulses;
+}
+
+namespace {
+
+// A lower bound to three digits, not above what it was.
+std::string rounded_down(double bound) {
+    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 2.0);
+    return fmt::format("{:.3g}", std::floor(bound / unit) * unit);
+}
+
+}  // namespace
+
+std::string others_told(const Model& model, const Certificate::Others& others) {
+    std::vector<std::string> parts;
+    for (const Certificate::Others::Held& held : others.held)
+        parts.push_back(fmt::format("{} stays held: its force is at least {}, of every impulse {} is passed on to it",
+                                    model.description().constraints[held.contact].name, rounded_down(held.least_force),
+                                    interval_text(held.transmission_low + 0.0, held.transmission_high + 0.0)));
+    if (others.least_gap) parts.push_back(fmt::format("other gaps stay above {}", rounded_down(*others.least_gap)));
+    return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
+    std::vector<std::size_t> ends;
+    std::size_t next = 0;
+    const auto& events = trajectory.events;
+    for (const Phase& phase : trajectory.phases) {
+        const bool is_last = &phase == &trajectory.phases.back();
+        for (bool open = true; open && next < events.size(); ++next)
+            open = is_last || (events[next].kind == Event::Kind::impact && events[next].held == phase.held);
+        ends.push_back(next);
+    }
+    return ends;
+}
+
+std::vector<Chatter> chatters_of(const Trajectory& trajectory) {
+    constexpr std::size_t few = 8;  // phases, which are told one by one
+    std::vector<Chatter> found;
+    if (trajectory.model->contacts() < 2) return found;
+    const std::vector<std::size_t> ends = ends_of_phases(trajectory);
+    // What a phase ends with: a contact comes to rest, or one is opened, or neither.
+    const auto end_of = [&](std::size_t phase) -> int {
+        if (ends[phase] == (phase == 0 ? 0 : ends[phase - 1])) return 0;
+        const Event& event = trajectory.events[ends[phase] - 1];
+        return event.kind == Event::Kind::zeno ? 1 : event.opened.empty() ? 0 : -1;
+    };
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+        const std::size_t first = i;
+        if (end_of(i) == 0) continue;
+        while (i + 2 < ends.size() && end_of(i + 1) == -end_of(i)) ++i;
+        if (i + 1 - first > few) found.push_back({first, i + 1, first == 0 ? 0 : ends[first - 1], ends[i]});
+    }
+    return found;
+}
+
+}  // namespace achilles

@@ -1,0 +1,49 @@
+// What is said of the contacts of a run, by name.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model/model.hpp"
+#include "run/trajectory.hpp"
+#include "simulate/surfaces.hpp"
+
+namespace achilles {
+
+// The names of these contacts, in their order.
+std::vector<std::string> contact_names(const Model& model, ContactSet contacts);
+// The same as one text, "bowl, post" or "bowl+post".
+std::string joined_names(const Model& model, ContactSet contacts, std::string_view between = ", ");
+// Of an event: the names of the contacts that land, come to rest or leave. Empty where the system has one contact, which goes
+// without saying.
+std::string contacts_told(const Trajectory& trajectory, const Event& event);
+
+// The impulses of impacts, v+ = v- + M^-1 sum p_i g_i': of the contacts that land, and of the held ones that these press
+// (theory-gaps.md 2).
+class Impulses {
+ public:
+    explicit Impulses(const Trajectory& trajectory);
+    // Contact by contact; empty where they cannot be told.
+    std::vector<std::pair<std::size_t, double>> of(std::size_t event);
+
+ private:
+    const Trajectory& trajectory_;
+    Surfaces surfaces_;
+};
+
+// What is proved of the other contacts, one part of a sentence after the other.
+std::string others_told(const Model& model, const Certificate::Others& others);
+
+// Of each phase, the event after its last one: a phase ends with that which changes what is held.
+std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory);
+
+// Phases [first, last) that end in turn with a Zeno point and with an impact that opens what was held, more than a few:
+// hundreds are possible (theory-gaps.md 2.6). They are told as one.
+struct Chatter {
+    std::size_t first = 0, last = 0;
+    std::size_t first_event = 0, last_event = 0;  // theirs, the same way
+};
+std::vector<Chatter> chatters_of(const Trajectory& trajectory);
+
+}  // namespace achilles
