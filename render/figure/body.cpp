@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "simulate/contact_forces.hpp"
+
 namespace achilles {
 
 namespace {
@@ -91,18 +93,9 @@ std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& pl
 }
 
 Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
-    const Model& model = *trajectory.model;
-    const auto n = sample.state.q.size();
-    Vector Q = Vector::Zero(n);
-    if (!sample.contact) return Q;
-    auto force = model.evaluator(model.force(), trajectory.run.parameters);
-    auto contact = model.evaluator(model.contact_terms(), trajectory.run.parameters);
-    set_state(force, sample.state);
-    set_state(contact, sample.state);
-    force.run();
-    contact.run();
-    for (Eigen::Index i = 0; i < n; ++i) Q[i] = force.output(0) * contact.gradient(static_cast<std::size_t>(i));
-    return Q;
+    ContactForces forces(*trajectory.model, trajectory.run.parameters);
+    forces.set(sample);
+    return forces.generalised();
 }
 
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples) {

@@ -50,7 +50,7 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
 void add_trail(std::vector<Shape>& shapes, const Trail& trail, std::span<const Sample> samples, double t,
                const Theme& theme);
 
-// The contact force lambda g' of a sample, as a generalised force; zero in flight.
+// The contact force of a sample, sum lambda_i g_i' over what is held, as a generalised force; zero in flight.
 Vector contact_force(const Trajectory& trajectory, const Sample& sample);
 
 }  // namespace achilles

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "figure/field.hpp"
+#include "simulate/contact_forces.hpp"
 
 namespace achilles {
 
@@ -33,26 +34,26 @@ class Place {
  public:
     Place(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
         : run_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
-          layout_(trajectory.model->layout()),
+          forces_(*trajectory.model, trajectory.run.parameters),
           quantities_(view.quantities()),
-          state_{trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size()), 0.0},
+          sample_{0.0,   0,  Phase::Kind::hybrid,
+                  false, {}, {trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size()), 0.0}},
           pair_(pair) {}
     Point operator()(const Point& q, double t = 0.0, double rate = 0.0) {
-        state_.q[static_cast<Eigen::Index>(pair_[0])] = q.x;
-        state_.q[static_cast<Eigen::Index>(pair_[1])] = q.y;
-        state_.v.setConstant(rate);
-        state_.t = t;
-        set_state(run_, state_);
-        run_.input(layout_.contact()) = 0.0;
-        run_.run();
+        State& state = sample_.state;
+        state.q[static_cast<Eigen::Index>(pair_[0])] = q.x;
+        state.q[static_cast<Eigen::Index>(pair_[1])] = q.y;
+        state.v.setConstant(rate);
+        state.t = t;
+        forces_.run_view(run_, sample_);
         return {run_.output(0) * quantities_[0].factor, run_.output(1) * quantities_[1].factor};
     }
 
  private:
     Evaluator<double> run_;
-    const Layout& layout_;
+    ContactForces forces_;
     std::span<const PreparedView::Quantity> quantities_;
-    State state_;
+    Sample sample_;
     Pair pair_;
 };
 

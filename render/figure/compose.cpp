@@ -10,6 +10,7 @@
 #include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
+#include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
 #include "system/units.hpp"
 
@@ -25,20 +26,14 @@ class Values {
     Values(const PreparedView& view, const Trajectory& trajectory)
         : evaluator_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
           quantities_(view.quantities()),
-          layout_(trajectory.model->layout()) {}
-    void set(const Sample& sample) {
-        set_state(evaluator_, sample.state);
-        evaluator_.input(layout_.work()) = sample.work;
-        evaluator_.input(layout_.loss()) = sample.loss;
-        evaluator_.input(layout_.contact()) = sample.contact ? 1.0 : 0.0;
-        evaluator_.run();
-    }
+          forces_(*trajectory.model, trajectory.run.parameters) {}
+    void set(const Sample& sample) { forces_.run_view(evaluator_, sample); }
     double operator[](std::size_t i) const { return evaluator_.output(i) * quantities_[i].factor; }
 
  private:
     Evaluator<double> evaluator_;
     std::span<const PreparedView::Quantity> quantities_;
-    const Layout& layout_;
+    ContactForces forces_;
 };
 
 // The range of all finite values; of the positive ones where the axis is logarithmic.
@@ -60,7 +55,8 @@ Sample sample_at(const Event& event) {
     sample.state = {event.q, event.v_after, event.t};
     sample.work = event.work;
     sample.loss = event.loss;
-    sample.contact = event.kind == Event::Kind::zeno;
+    sample.held = event.held;
+    sample.contact = !event.held.empty();
     return sample;
 }
 
