@@ -8,6 +8,7 @@
 #include "algebra/writer.hpp"
 #include "check/simplified.hpp"
 #include "model/derived_values.hpp"
+#include "output/contacts.hpp"
 #include "output/page.hpp"
 #include "output/wrap.hpp"
 
@@ -36,20 +37,20 @@ class Report {
         coordinates();
         page_.heading("Parameters");
         parameters();
-        page_.heading("Energies, gap, restitution");
+        const bool forces = has_forces(model_.equations());
+        page_.heading(fmt::format("Energies, {}{}, restitution{}", forces ? "forces, " : "", is_one() ? "gap" : "gaps",
+                                  is_one() ? "" : "s"));
         given();
-        page_.heading("Free motion: M q'' + bias = 0");
+        page_.heading(fmt::format("Free motion: M q'' + bias = {}", forces ? "Q" : "0"));
         matrix({"M", "M"}, simplified_.M, model_.layout().dof);
         matrix({"bias", "b"}, simplified_.bias, 1);
-        page_.heading("Contact");
-        matrix({"dh", "\\mathrm{d}h"}, simplified_.dh, model_.layout().dof);
-        formula({"hdot", "\\dot{h}"}, simplified_.hdot, {"dh q'", "\\mathrm{d}h\\,\\dot{q}"});
-        formula({"hddot", "\\ddot{h}"}, simplified_.hddot,
-                {"q'^T Hess(h) q' - dh M^-1 bias",
-                 "\\dot{q}^{\\top}\\,\\mathrm{Hess}(h)\\,\\dot{q} - \\mathrm{d}h\\,M^{-1} b"});
-        formula({"lambda", "\\lambda"}, simplified_.lambda,
-                {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
-        zeno();
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, 1);
+        for (std::size_t i = 0; i < model_.contacts(); ++i) {
+            contact(i, forces);
+            page_.heading(fmt::format("Zeno condition{}: hddot < 0 where h = 0 and hdot = 0", of(" of {}", i)));
+            zeno(simplified_.contacts[i].zeno);
+        }
+        while_held();
         page_.heading("Checks");
         checks(disagreement, deriving);
         return page_.finish();
@@ -92,6 +93,45 @@ class Report {
         page_.lines(rows);
     }
 
+    bool is_one() const { return model_.contacts() == 1; }
+    // With the name of a contact, where there are several.
+    std::string of(const char* words, std::size_t contact) const {
+        if (is_one()) return "";
+        return fmt::format(fmt::runtime(words), model_.description().constraints[contact].name);
+    }
+
+    void contact(std::size_t index, bool forces) {
+        const SimplifiedContact& c = simplified_.contacts[index];
+        const bool moves = !model_.equations().free.contacts[index].gap_t.is_zero();
+        page_.heading("Contact" + of(" {}", index));
+        matrix({"dh", "\\mathrm{d}h"}, c.dh, model_.layout().dof);
+        formula({"hdot", "\\dot{h}"}, c.hdot,
+                {moves ? "dh q' + h_t" : "dh q'", moves ? "\\mathrm{d}h\\,\\dot{q} + h_t" : "\\mathrm{d}h\\,\\dot{q}"});
+        formula({"hddot", "\\ddot{h}"}, c.hddot,
+                {fmt::format("q'^T Hess(h) q'{} {}", moves ? " + 2 dh_t q' + h_tt" : "",
+                             forces ? "+ dh M^-1 (Q - bias)" : "- dh M^-1 bias"),
+                 fmt::format("\\dot{{q}}^{{\\top}}\\,\\mathrm{{Hess}}(h)\\,\\dot{{q}}{} {}",
+                             moves ? " + 2\\,\\mathrm{d}h_t\\,\\dot{q} + h_{tt}" : "",
+                             forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
+        formula({"lambda", "\\lambda"}, c.lambda,
+                {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
+    }
+
+    void while_held() {
+        const auto& constraints = model_.description().constraints;
+        for (const HeldCondition& condition : simplified_.while_held) {
+            page_.heading(
+                fmt::format("Zeno condition of {} while {} is held: hddot < 0 where h = 0 and hdot = 0 of both",
+                            constraints[condition.contact].name, joined_names(model_, condition.held)));
+            zeno(condition.zeno);
+        }
+        if (is_one() || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
+        const std::string left_out =
+            fmt::format("The conditions while {} others are held are not written out; runs derive what they need.",
+                        simplified_.while_held.empty() ? "any" : "two or more");
+        page_.sentence({left_out, left_out});
+    }
+
     // As the file has them.
     void given() {
         const Equations& e = model_.equations();
@@ -102,11 +142,25 @@ class Report {
         };
         show({"T", "T"}, e.kinetic, system.kinetic);
         show({"V", "V"}, e.potential, system.potential);
-        show({"h", "h"}, e.gaps[0], system.constraints.front().gap);
-        // The restitution is often a parameter e, and "e = e" says nothing.
-        page_.sentence({"restitution " + system.constraints.front().restitution.text,
-                        fmt::format("Restitution ${}$.",
-                                    achilles::write(e.restitutions[0], model_.slot_names(), Notation::latex).text)});
+        Graph graph(e.energy.graph());
+        const std::vector<Expression> forces = given_forces(model_, graph);
+        if (!system.dissipation.text.empty()) show({"R", "R"}, forces.back(), system.dissipation);
+        for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+            const CoordinateDescription& coordinate = system.coordinates[i];
+            if (!coordinate.force.text.empty())
+                show({"force on " + coordinate.name, fmt::format("F_{{{}}}", name(coordinate.name))}, forces[i],
+                     coordinate.force);
+        }
+        for (std::size_t i = 0; i < system.constraints.size(); ++i) {
+            const ConstraintDescription& constraint = system.constraints[i];
+            show({"h" + of(" {}", i), is_one() ? "h" : fmt::format("h_{{{}}}", name(constraint.name))}, e.gaps[i],
+                 constraint.gap);
+            // The restitution is often a parameter e, and "e = e" says nothing.
+            page_.sentence(
+                {fmt::format("restitution{} {}", of(" {}", i), constraint.restitution.text),
+                 fmt::format("Restitution{} ${}$.", words(of(" {}", i)),
+                             achilles::write(e.restitutions[i], model_.slot_names(), Notation::latex).text)});
+        }
     }
 
     std::string written(const Fraction& fraction) const { return writer_.write(fraction, simplified_.algebra()).text; }
@@ -177,14 +231,13 @@ class Report {
         page.formula({"D", "D"}, quotient.bottom, 2);
     }
 
-    void zeno() {
-        page_.heading("Zeno condition: hddot < 0 where h = 0 and hdot = 0");
-        if (!simplified_.zeno) {
+    void zeno(const std::optional<ZenoCondition>& found) {
+        if (!found) {
             page_.sentence(
                 {"(not simplified: it takes too many operations)", "(not simplified: it takes too many operations)"});
             return;
         }
-        const ZenoCondition& zeno = *simplified_.zeno;
+        const ZenoCondition& zeno = *found;
         const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
         const auto plain = [&](Expression e) { return achilles::write(e, model_.slot_names(), page_.notation()).text; };
         std::vector<std::string> there;
@@ -246,8 +299,9 @@ class Report {
         const auto say = [&](const std::string& sentence) {
             page_.sentence({sentence, Page::escaped(sentence) + "\n"});
         };
-        say(fmt::format("derived equations against central differences of L and h, at {} random states, in 50 digits:",
-                        disagreement.states));
+        say(fmt::format(
+            "derived equations against central differences of L{} and h, at {} random states, in 50 digits:",
+            has_forces(model_.equations()) ? ", the forces" : "", disagreement.states));
         if (disagreement.states > 0) say(fmt::format("  {}", list(disagreement.derived)));
         say("what is written above against the derived equations, at the same states:");
         if (disagreement.states > 0) say(fmt::format("  {}", list(disagreement.simplified)));

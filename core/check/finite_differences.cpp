@@ -1,13 +1,16 @@
 #include "check/finite_differences.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <random>
 
 #include "check/simplified.hpp"
+#include "model/scopes.hpp"
 
 namespace achilles {
 
@@ -20,6 +23,7 @@ using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 struct Point {
     Reals q, v;
+    Real t;
 };
 
 // Expressions of one graph as functions of the state.
@@ -36,6 +40,7 @@ class Functions {
             evaluator_.input(i) = at.q[static_cast<Eigen::Index>(i)];
             evaluator_.input(dof_ + i) = at.v[static_cast<Eigen::Index>(i)];
         }
+        evaluator_.clock() = at.t;
         evaluator_.run();
         Reals values(static_cast<Eigen::Index>(program_.output_count()));
         for (std::size_t i = 0; i < program_.output_count(); ++i)
@@ -61,43 +66,64 @@ Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals
     return (up - f(at)) / (2 * step);
 }
 
-// What the equations should be, from L and h alone: d/dt dL/dv = dL/dq along the motion.
+// What the equations should be, from L, the forces and the gaps alone: d/dt dL/dv = dL/dq + force - dR/dv along the motion.
 class Differences {
  public:
     Differences(const Model& model, const Run& run)
         : dof_(model.dof()),
           lagrangian_(model, run, {model.equations().kinetic - model.equations().potential}),
-          gap_(model, run, {model.equations().gaps[0]}) {}
+          graph_(model.equations().energy.graph()),
+          forces_(model, run, given_forces(model, graph_)),
+          gaps_(model, run, model.equations().gaps) {}
 
-    // M, bias, dh, hddot, lambda, one after the other
+    // M, bias, Q, then of each contact dh, hdot, hddot, lambda, then hddot of each contact while each other is held.
     Reals operator()(const Point& at) {
         const auto L = [&](const Point& x) { return lagrangian_(x)[0]; };
-        const auto h = [&](const Point& x) { return gap_(x)[0]; };
+        const auto R = [&](const Point& x) { return forces_(x)[dof_]; };
         Matrix M(dof_, dof_);
-        Reals b(dof_), g(dof_);
+        Reals b(dof_), Q = forces_(at).head(dof_);
         for (Eigen::Index i = 0; i < dof_; ++i) {
             const auto momentum = [&](const Point& x) { return slope(L, x, &Point::v, i); };
             b[i] = -slope(L, at, &Point::q, i);
+            Q[i] -= slope(R, at, &Point::v, i);
             for (Eigen::Index j = 0; j < dof_; ++j) {
                 M(i, j) = slope(momentum, at, &Point::v, j);
                 b[i] += slope(momentum, at, &Point::q, j) * at.v[j];
             }
-            g[i] = slope(h, at, &Point::q, i);
         }
         const Eigen::PartialPivLU<Matrix> inverse(M);
-        const Reals f = inverse.solve(-b);
+        const Reals f = inverse.solve(Q - b), now = gaps_(at);
         // h along q + v t + f t^2/2
-        const auto later = [&](const Real& t) { return h({at.q + at.v * t + f * (t * t / 2), at.v}); };
-        const Real hddot = (later(step) - 2 * later(0) + later(-step)) / (step * step);
-        const Reals impulse = inverse.solve(g);
-        Reals all(dof_ * dof_ + 2 * dof_ + 2);
-        all << M.reshaped(), b, g, hddot, -hddot / g.dot(impulse);
+        const auto later = [&](const Real& t) { return gaps_({at.q + at.v * t + f * (t * t / 2), at.v, at.t + t}); };
+        const Reals up = later(step), down = later(-step);
+        const Eigen::Index m = now.size();
+        const Reals hddot = (up - 2 * now + down) / (step * step);
+        Matrix G(m, dof_);
+        for (Eigen::Index k = 0; k < m; ++k)
+            for (Eigen::Index i = 0; i < dof_; ++i)
+                G(k, i) = slope([&](const Point& x) { return gaps_(x)[k]; }, at, &Point::q, i);
+        const Matrix W = G * inverse.solve(Matrix(G.transpose()));
+        Reals all(dof_ * dof_ + 2 * dof_ + m * (dof_ + 3) + m * (m - 1));
+        all.head(dof_ * dof_ + 2 * dof_) << M.reshaped(), b, Q;
+        Eigen::Index next = dof_ * dof_ + 2 * dof_;
+        for (Eigen::Index k = 0; k < m; ++k) {
+            all.segment(next, dof_) = G.row(k).transpose();
+            next += dof_;
+            all[next++] = (up[k] - down[k]) / (2 * step);
+            all[next++] = hddot[k];
+            all[next++] = -hddot[k] / W(k, k);
+        }
+        for (Eigen::Index k = 0; k < m; ++k)
+            for (Eigen::Index j = 0; j < m; ++j)
+                if (j != k) all[next++] = hddot[k] - W(k, j) / W(j, j) * hddot[j];
         return all;
     }
 
  private:
     Eigen::Index dof_;
-    Functions lagrangian_, gap_;
+    Functions lagrangian_;
+    Graph graph_;
+    Functions forces_, gaps_;
 };
 
 // Numbers in [low, high], the same ones everywhere.
@@ -123,21 +149,65 @@ bool is_finite(const Reals& values) {
     return true;
 }
 
-// Moves a state to h = 0, hdot = 0, by Newton's method and a projection. False if it does not get there.
-bool put_in_contact(Point& at, Functions& gap_and_slope) {
-    Reals values = gap_and_slope(at);
-    for (int i = 0; i < 60 && is_finite(values); ++i, values = gap_and_slope(at)) {
-        const Reals g = values.tail(at.q.size());
-        const Real square = g.squaredNorm();
-        if (square == 0) return false;
-        if (abs(values[0]) < Real("1e-45")) {
-            at.v -= g * (g.dot(at.v) / square);
-            return true;
+// Gaps, their rates, and their slopes dh, one row after the other.
+class Surface {
+ public:
+    Surface(const Model& model, const Run& run, const std::vector<std::size_t>& contacts)
+        : count_(static_cast<Eigen::Index>(contacts.size())), functions_(model, run, outputs(model, contacts)) {}
+
+    // Moves a state to h = 0, hdot = 0, by Newton's method and a projection. False if it does not get there.
+    bool hold(Point& at) {
+        Reals values = functions_(at);
+        for (int i = 0; i < 60 && is_finite(values); ++i, values = functions_(at)) {
+            const Matrix G = values.tail(values.size() - 2 * count_).reshaped(at.q.size(), count_).transpose();
+            const Eigen::FullPivLU<Matrix> square(G * G.transpose());
+            if (!square.isInvertible()) return false;
+            if (values.head(count_).cwiseAbs().maxCoeff() < Real("1e-45")) {
+                at.v -= G.transpose() * square.solve(values.segment(count_, count_));
+                return true;
+            }
+            at.q -= G.transpose() * square.solve(values.head(count_));
         }
-        at.q -= g * (values[0] / square);
+        return false;
     }
-    return false;
-}
+
+ private:
+    static std::vector<Expression> outputs(const Model& model, const std::vector<std::size_t>& contacts) {
+        const auto& all = model.equations().free.contacts;
+        std::vector<Expression> result;
+        for (const std::size_t i : contacts) result.push_back(all[i].gap);
+        for (const std::size_t i : contacts) result.push_back(all[i].hdot);
+        for (const std::size_t i : contacts) result.insert(result.end(), all[i].g.begin(), all[i].g.end());
+        return result;
+    }
+    Eigen::Index count_;
+    Functions functions_;
+};
+
+// A Zeno condition as it is printed, and the derived hddot that it should equal on the surfaces of these contacts.
+class InContact {
+ public:
+    InContact(const Model& model, const Run& run, const ZenoCondition& zeno, Expression hddot,
+              const std::vector<std::size_t>& contacts)
+        : surface_(model, run, contacts), hddot_(model, run, {hddot}), shown_(model, run, {as_expression(zeno)}) {}
+
+    // Nothing where no state on the surfaces is found from here.
+    std::optional<double> disagreement(Point at) {
+        if (!surface_.hold(at)) return std::nullopt;
+        const Reals there = hddot_(at);
+        if (!is_finite(there)) return std::nullopt;
+        return distance(shown_(at)[0], there[0]);
+    }
+
+ private:
+    static Expression as_expression(const ZenoCondition& zeno) {
+        Algebra& algebra = *zeno.algebra;
+        algebra.work() = Work{1000000};
+        return algebra.expression(expand(zeno.positive * zeno.decisive, algebra));
+    }
+    Surface surface_;
+    Functions hddot_, shown_;
+};
 
 // What Simplified prints, as expressions, and the derived equations that they should equal.
 struct Printed {
@@ -145,26 +215,62 @@ struct Printed {
     std::vector<std::string> names;
 };
 
+// "hddot", or "hddot knee" where there are several contacts.
+std::string name_of(const Model& model, const std::string& quantity, std::size_t contact) {
+    return model.contacts() == 1 ? quantity : quantity + " " + model.description().constraints[contact].name;
+}
+
 Printed printed_equations(const Model& model, const Simplified& simplified) {
     const Equations& e = model.equations();
-    const ContactEquations& c = e.free.contacts[0];
     Printed printed;
-    const auto add = [&](const char* name, const std::optional<Fraction>& fraction, Expression derived) {
+    const auto add = [&](const std::string& name, const std::optional<Fraction>& fraction, Expression derived) {
         if (!fraction) return;
         printed.written.push_back(simplified.algebra().expression(*fraction));
         printed.derived.push_back(derived);
-        printed.names.emplace_back(name);
+        printed.names.push_back(name);
     };
     for (std::size_t i = 0; i < e.M.size(); ++i) add("M", simplified.M[i], e.M[i]);
     for (std::size_t i = 0; i < e.bias.size(); ++i) add("bias", simplified.bias[i], e.bias[i]);
-    for (std::size_t i = 0; i < c.g.size(); ++i) add("dh", simplified.dh[i], c.g[i]);
-    add("hddot", simplified.hddot, c.hddot);
-    add("lambda", simplified.lambda, c.lambda);
+    for (std::size_t i = 0; i < e.Q.size() && has_forces(e); ++i) add("Q", simplified.Q[i], e.Q[i]);
+    for (std::size_t k = 0; k < model.contacts(); ++k) {
+        const ContactEquations& c = e.free.contacts[k];
+        const SimplifiedContact& contact = simplified.contacts[k];
+        for (std::size_t i = 0; i < c.g.size(); ++i) add(name_of(model, "dh", k), contact.dh[i], c.g[i]);
+        add(name_of(model, "hddot", k), contact.hddot, c.hddot);
+        add(name_of(model, "lambda", k), contact.lambda, c.lambda);
+    }
     return printed;
+}
+
+// The derived equations in the order of Differences.
+struct Derived {
+    std::vector<Expression> all;
+    std::vector<std::string> names;
+    void add(const std::string& name, const std::vector<Expression>& some) {
+        all.insert(all.end(), some.begin(), some.end());
+        names.resize(all.size(), name);
+    }
+};
+
+Derived derived_equations(const Model& model) {
+    const Equations& e = model.equations();
+    Derived derived;
+    derived.add("M", e.M);
+    derived.add("bias", e.bias);
+    derived.add(has_forces(e) ? "Q" : "", e.Q);
+    for (std::size_t k = 0; k < model.contacts(); ++k) {
+        const ContactEquations& c = e.free.contacts[k];
+        derived.add(name_of(model, "dh", k), c.g);
+        derived.add(c.gap_t.is_zero() ? "" : name_of(model, "hdot", k), {c.hdot});
+        derived.add(name_of(model, "hddot", k), {c.hddot});
+        derived.add(name_of(model, "lambda", k), {c.lambda});
+    }
+    return derived;
 }
 
 // Keeps the largest of each name, in the order of their first appearance.
 void note(std::vector<Disagreement::Quantity>& quantities, const std::string& name, double distance) {
+    if (name.empty()) return;  // it is nothing
     for (Disagreement::Quantity& quantity : quantities)
         if (quantity.name == name) {
             quantity.largest = std::max(quantity.largest, distance);
@@ -182,56 +288,76 @@ double Disagreement::largest() const {
     return result;
 }
 
+std::vector<Expression> given_forces(const Model& model, Graph& graph) {
+    const SystemDescription& system = model.description();
+    const Scope scope = force_scope(system, model.layout(), graph);
+    std::vector<Expression> given;
+    const auto add = [&](const Text& text) {
+        given.push_back(text.text.empty() ? graph.number(0) : parse(text.text, scope, graph));
+    };
+    for (const CoordinateDescription& coordinate : system.coordinates) add(coordinate.force);
+    add(system.dissipation);
+    return given;
+}
+
+bool has_forces(const Equations& equations) {
+    return std::any_of(equations.Q.begin(), equations.Q.end(), [](Expression force) { return !force.is_zero(); });
+}
+
 Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified, int states) {
     const Equations& e = model.equations();
-    const ContactEquations& c = e.free.contacts[0];
     const auto n = static_cast<Eigen::Index>(model.dof());
-    std::vector<Expression> all = e.M;
-    std::vector<std::string> names(all.size(), "M");
-    const auto add = [&](const char* name, const std::vector<Expression>& some) {
-        all.insert(all.end(), some.begin(), some.end());
-        names.resize(all.size(), name);
-    };
-    add("bias", e.bias);
-    add("dh", c.g);
-    add("hddot", {c.hddot});
-    add("lambda", {c.lambda});
-    Functions derived(model, run, all), pivots(model, run, e.pivots), hddot(model, run, {c.hddot});
-    std::vector<Expression> gap{c.gap};
-    gap.insert(gap.end(), c.g.begin(), c.g.end());
-    Functions gap_and_slope(model, run, gap);
+    const Derived equations = derived_equations(model);
+    Functions derived(model, run, equations.all), pivots(model, run, e.pivots);
+    std::vector<Expression> while_held;
+    for (const HeldCondition& condition : simplified.while_held)
+        while_held.push_back(simplified.held_equations(condition).hddot);
+    std::optional<Functions> held;
+    if (!while_held.empty()) held.emplace(model, run, while_held);
     Differences differences(model, run);
     const Printed printed = printed_equations(model, simplified);
     Functions written(model, run, printed.written), originals(model, run, printed.derived);
-    std::optional<Functions> in_contact;
-    if (simplified.zeno) {
-        Algebra& algebra = *simplified.zeno->algebra;
-        algebra.work() = Work{1000000};
-        in_contact.emplace(model, run,
-                           std::vector<Expression>{algebra.expression(
-                               expand(simplified.zeno->positive * simplified.zeno->decisive, algebra))});
+    std::deque<InContact> in_contact;
+    std::vector<std::string> in_contact_names;
+    for (std::size_t k = 0; k < model.contacts(); ++k) {
+        if (!simplified.contacts[k].zeno) continue;
+        in_contact.emplace_back(model, run, *simplified.contacts[k].zeno, e.free.contacts[k].hddot,
+                                std::vector<std::size_t>{k});
+        in_contact_names.push_back(name_of(model, "hddot", k) + " in contact");
+    }
+    for (std::size_t i = 0; i < simplified.while_held.size(); ++i) {
+        const HeldCondition& condition = simplified.while_held[i];
+        if (!condition.zeno) continue;
+        std::vector<std::size_t> contacts{condition.contact};
+        for (std::size_t k = 0; k < model.contacts(); ++k)
+            if (condition.held.contains(k)) contacts.push_back(k);
+        in_contact.emplace_back(model, run, *condition.zeno, while_held[i], contacts);
+        in_contact_names.emplace_back("hddot in contact while others are held");
     }
 
     Disagreement result;
     Random random;
     for (int tried = 0; tried < 10 * states && result.states < states; ++tried) {
-        Point at{Reals(n), Reals(n)};
+        Point at{Reals(n), Reals(n), run.options.start_time};
         for (Eigen::Index i = 0; i < n; ++i) {
             const auto& coordinate = model.description().coordinates[static_cast<std::size_t>(i)];
             at.q[i] = random.between(coordinate.range);
             at.v[i] = random.between(coordinate.rate_range);
         }
-        const Reals found = derived(at), wanted = differences(at);
-        if (!is_finite(found) || !is_finite(wanted) || !(pivots(at).minCoeff() > 0)) continue;
+        if (!e.autonomous) at.t = random.between({run.options.start_time, run.options.end_time});
+        const Reals found = derived(at), found_held = held ? (*held)(at) : Reals(), wanted = differences(at);
+        if (!is_finite(found) || !is_finite(found_held) || !is_finite(wanted) || !(pivots(at).minCoeff() > 0)) continue;
         ++result.states;
         for (Eigen::Index i = 0; i < found.size(); ++i)
-            note(result.derived, names[static_cast<std::size_t>(i)], distance(found[i], wanted[i]));
+            note(result.derived, equations.names[static_cast<std::size_t>(i)], distance(found[i], wanted[i]));
+        for (Eigen::Index i = 0; i < found_held.size(); ++i)
+            note(result.derived, "hddot while others are held", distance(found_held[i], wanted[found.size() + i]));
         const Reals text = written(at), meant = originals(at);
         for (Eigen::Index i = 0; i < text.size(); ++i)
             note(result.simplified, printed.names[static_cast<std::size_t>(i)], distance(text[i], meant[i]));
-        if (!in_contact || !put_in_contact(at, gap_and_slope)) continue;
-        const Reals there = hddot(at), shown = (*in_contact)(at);
-        if (is_finite(there)) note(result.simplified, "hddot in contact", distance(shown[0], there[0]));
+        for (std::size_t i = 0; i < in_contact.size(); ++i)
+            if (const auto disagreement = in_contact[i].disagreement(at))
+                note(result.simplified, in_contact_names[i], *disagreement);
     }
     return result;
 }

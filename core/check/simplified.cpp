@@ -10,6 +10,20 @@ namespace {
 // one more.
 constexpr long work_of_a_formula = 400000;
 
+bool holds_some(const Model& model) { return model.contacts() > 1 && model.contacts() <= Simplified::few_contacts; }
+
+// That hold one contact, where these are looked at and are not too large; else null.
+std::unique_ptr<HeldMotions> derived_motions(const Model& model) {
+    if (!holds_some(model)) return nullptr;
+    try {
+        auto motions = std::make_unique<HeldMotions>(model.equations(), model.layout());
+        for (std::size_t j = 0; j < model.contacts(); ++j) motions->of(ContactSet::of(j));
+        return motions;
+    } catch (const TooLarge&) {
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 std::optional<Fraction> Simplified::simplify(Expression expression) {
@@ -22,10 +36,30 @@ std::optional<Fraction> Simplified::simplify(Expression expression) {
     return std::nullopt;
 }
 
+SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::size_t contact) {
+    const ContactEquations& c = model.equations().free.contacts[contact];
+    SimplifiedContact result;
+    for (const Expression entry : c.g) result.dh.push_back(simplify(entry));
+    result.hdot = simplify(c.hdot);
+    result.W = simplify(c.W);
+    result.hddot = simplify(c.hddot);
+    // lambda = -hddot/W: its own divisions, done before, would be done again.
+    if (result.hddot && result.W) {
+        algebra_->work() = Work{work_of_a_formula};
+        try {
+            result.lambda = algebra_->divide({-result.hddot->numerator, result.hddot->denominator}, *result.W);
+        } catch (const TooLong&) {
+        }
+    }
+    result.zeno = zeno_condition(model, run, {&c}, graph_);
+    return result;
+}
+
 Simplified::Simplified(const Model& model, const Run& run)
-    : graph_(model.equations().energy.graph()), algebra_(std::make_unique<Algebra>(graph_, Work{})) {
+    : motions_(derived_motions(model)),
+      graph_(motions_ ? motions_->graph() : model.equations().energy.graph()),
+      algebra_(std::make_unique<Algebra>(graph_, Work{})) {
     const Equations& e = model.equations();
-    const ContactEquations& c = e.free.contacts[0];
     const Layout& layout = model.layout();
     ranks_.assign(layout.count(), 0);
     for (std::size_t i = 0; i < layout.dof; ++i) {
@@ -34,19 +68,16 @@ Simplified::Simplified(const Model& model, const Run& run)
     }
     for (const Expression entry : e.M) M.push_back(simplify(entry));
     for (const Expression entry : e.bias) bias.push_back(simplify(entry));
-    for (const Expression entry : c.g) dh.push_back(simplify(entry));
-    hdot = simplify(c.hdot);
-    W = simplify(c.W);
-    hddot = simplify(c.hddot);
-    // lambda = -hddot/W: its own divisions, done before, would be done again.
-    if (hddot && W) {
-        algebra_->work() = Work{work_of_a_formula};
-        try {
-            lambda = algebra_->divide({-hddot->numerator, hddot->denominator}, *W);
-        } catch (const TooLong&) {
+    for (const Expression entry : e.Q) Q.push_back(simplify(entry));
+    for (std::size_t i = 0; i < model.contacts(); ++i) contacts.push_back(simplify(model, run, i));
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        for (std::size_t j = 0; j < model.contacts() && motions_; ++j) {
+            if (i == j) continue;
+            HeldCondition& condition = while_held.emplace_back();
+            condition.contact = i;
+            condition.held = ContactSet::of(j);
+            condition.zeno = zeno_condition(model, run, {&held_equations(condition), &e.free.contacts[j]}, graph_);
         }
-    }
-    zeno = zeno_condition(model, run, graph_);
 }
 
 }  // namespace achilles

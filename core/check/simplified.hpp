@@ -14,10 +14,11 @@
 
 namespace achilles {
 
-// hddot where the contact is kept, and what its sign depends on.
+// hddot of a contact where it is kept, and what its sign depends on.
 struct ZenoCondition {
     std::unique_ptr<Algebra> algebra;
-    std::vector<std::pair<Expression, Expression>> solved;  // symbols that h = 0 and hdot = 0 were solved for
+    // Symbols that h = 0 and hdot = 0, of what is held, too, were solved for, one after the other.
+    std::vector<std::pair<Expression, Expression>> solved;
     Fraction hddot;
     // hddot = positive * decisive. `positive` was proved to be: see `assumed`, and, where `definite`, M is positive
     // definite.
@@ -27,15 +28,36 @@ struct ZenoCondition {
     enum class Verdict { depends, always, never } verdict = Verdict::depends;
 };
 
+// A contact while none is held. Nothing stands where simplifying took too long.
+struct SimplifiedContact {
+    std::vector<std::optional<Fraction>> dh;
+    std::optional<Fraction> hdot, W, hddot, lambda;
+    std::optional<ZenoCondition> zeno;
+};
+
+// The same of a contact while others are held: hddot is that of their motion (theory-gaps.md 2), on their surfaces.
+struct HeldCondition {
+    std::size_t contact = 0;
+    ContactSet held;
+    std::optional<ZenoCondition> zeno;
+};
+
 // Nothing stands where simplifying took too long.
 class Simplified {
  public:
     Simplified(const Model& model, const Run& run);
     Simplified(const Simplified&) = delete;
 
-    std::vector<std::optional<Fraction>> M, bias, dh;  // as Equations has them
-    std::optional<Fraction> hdot, W, hddot, lambda;
-    std::optional<ZenoCondition> zeno;
+    std::vector<std::optional<Fraction>> M, bias, Q;  // as Equations has them
+    std::vector<SimplifiedContact> contacts;
+    // Of each contact while one other is held, where there are few contacts.
+    std::vector<HeldCondition> while_held;
+    static constexpr std::size_t few_contacts = 4;
+
+    // The equations of such a contact, in a graph of their own.
+    const ContactEquations& held_equations(const HeldCondition& condition) const {
+        return motions_->of(condition.held).contacts[condition.contact];
+    }
 
     Algebra& algebra() const { return *algebra_; }
     // The order in which names stand in a product: parameters, coordinates, rates (Writer).
@@ -43,7 +65,9 @@ class Simplified {
 
  private:
     std::optional<Fraction> simplify(Expression expression);
+    SimplifiedContact simplify(const Model& model, const Run& run, std::size_t contact);
 
+    std::unique_ptr<HeldMotions> motions_;  // those of while_held, derived before their graph is copied
     Graph graph_;
     std::unique_ptr<Algebra> algebra_;
     std::vector<int> ranks_;

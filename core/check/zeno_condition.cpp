@@ -19,8 +19,11 @@ class ParameterSigns {
     ParameterSigns(const Model& model, const Run& run) : model_(model), run_(run) {
         const Layout& layout = model.layout();
         for (std::uint32_t slot = 0; slot < layout.count(); ++slot)
-            if (slot < 2 * layout.dof || slot >= 2 * layout.dof + layout.p) others_.push_back(slot);
+            (slot < 2 * layout.dof || slot >= 2 * layout.dof + layout.p ? others_ : parameters_).push_back(slot);
     }
+
+    // Whether the sign is known and is not that of a number.
+    bool of_parameters(Expression e) const { return depends_on(e, parameters_) && (*this)(e) != Sign::unknown; }
 
     Sign operator()(Expression e) const {
         if (depends_on(e, others_)) return Sign::unknown;
@@ -41,21 +44,28 @@ class ParameterSigns {
  private:
     const Model& model_;
     const Run& run_;
-    std::vector<std::uint32_t> others_;
+    std::vector<std::uint32_t> parameters_, others_;
 };
 
 class Search {
  public:
-    Search(const Model& model, const Run& run, Graph& graph)
-        : layout_(model.layout()), e_(model.equations()), c_(e_.free.contacts[0]), graph_(graph), signs_(model, run) {}
+    Search(const Model& model, const Run& run, const std::vector<const ContactEquations*>& contacts, Graph& graph)
+        : layout_(model.layout()),
+          e_(model.equations()),
+          contacts_(contacts),
+          c_(*contacts.front()),
+          graph_(graph),
+          signs_(model, run) {}
 
     // Tries what can be solved for, with and without the addition theorems; the shortest hddot wins.
-    std::optional<ZenoCondition> best() {
-        for (const Solution& coordinate : coordinates())
+    std::optional<ZenoCondition> best() try {
+        for (const Solution& coordinate : coordinates(on_held_surfaces()))
             for (const Solution& solution : with_rates(coordinate))
                 for (const bool expand_angles : {false, true}) consider(solution, expand_angles);
         if (best_) decide(*best_);
         return std::move(best_);
+    } catch (const TooLarge&) {
+        return std::nullopt;
     }
 
  private:
@@ -89,16 +99,31 @@ class Search {
                 positivity.is_positive(-fraction.denominator, true));
     }
 
-    // What h = 0 says, each way; first not to use it.
-    std::vector<Solution> coordinates() const {
-        std::vector<Solution> result{{}};
+    // What h = 0 and hdot = 0 of the held contacts say, each in the first way that is found.
+    Solution on_held_surfaces() const {
+        Solution solution;
+        const auto use = [&](Expression zero, std::uint32_t first_slot) {
+            for (std::uint32_t slot = first_slot; slot < first_slot + layout_.dof; ++slot)
+                if (const auto value = solve(zero, slot)) return solution.emplace_back(slot, *value), void();
+        };
+        for (std::size_t i = 1; i < contacts_.size(); ++i) use(on(contacts_[i]->gap, solution), layout_.q(0));
+        for (std::size_t i = 1; i < contacts_.size(); ++i) use(on(contacts_[i]->hdot, solution), layout_.v(0));
+        return solution;
+    }
+
+    // The same with what h = 0 says, each way; first not to use it.
+    std::vector<Solution> coordinates(const Solution& held) const {
+        std::vector<Solution> result{held};
+        const Expression gap = on(c_.gap, held), hddot = on(c_.hddot, held);
         std::vector<std::uint32_t> all;
         for (std::size_t i = 0; i < layout_.dof; ++i) all.push_back(layout_.q(i));
         for (const std::uint32_t slot : all) {
-            const auto value = solve(graph_.adopt(c_.gap), slot);
+            const auto value = solve(gap, slot);
             if (!value) continue;
-            if (!depends_on(*value, all)) return {{{slot, *value}}};  // a constant: nothing can be shorter
-            if (depends_on(c_.hddot, std::span(&slot, 1))) result.push_back({{slot, *value}});
+            Solution solution = held;
+            solution.emplace_back(slot, *value);
+            if (!depends_on(*value, all)) return {solution};  // a constant: nothing can be shorter
+            if (depends_on(hddot, std::span(&slot, 1))) result.push_back(solution);
         }
         return result;
     }
@@ -106,7 +131,7 @@ class Search {
     // The same with what hdot = 0 says.
     std::vector<Solution> with_rates(const Solution& coordinate) const {
         std::vector<Solution> result{coordinate};
-        const Expression hdot = on(c_.hdot, coordinate);
+        const Expression hdot = on(c_.hdot, coordinate), hddot = on(c_.hddot, coordinate);
         for (std::size_t i = 0; i < layout_.dof; ++i) {
             const std::uint32_t slot = layout_.v(i);
             const auto value = solve(hdot, slot);
@@ -114,7 +139,7 @@ class Search {
             Solution solution = coordinate;
             solution.emplace_back(slot, *value);
             if (value->is_zero()) return {solution};
-            if (depends_on(c_.hddot, std::span(&slot, 1))) result.push_back(solution);
+            if (depends_on(hddot, std::span(&slot, 1))) result.push_back(solution);
         }
         return result;
     }
@@ -126,11 +151,16 @@ class Search {
     // What could not be solved for is used as it stands: multiples of h, hdot and hdot^2 are added to the numerator as
     // long as that makes the whole shorter.
     Fraction in_contact(Fraction hddot, const Solution& solution, Algebra& algebra) const {
-        const Multinomial h = algebra.simplify(on(c_.gap, solution)).numerator;
-        const Multinomial hdot = algebra.simplify(on(c_.hdot, solution)).numerator;
+        std::vector<Multinomial> zeros;
+        for (const ContactEquations* contact : contacts_) {
+            const Multinomial hdot = algebra.simplify(on(contact->hdot, solution)).numerator;
+            zeros.push_back(algebra.simplify(on(contact->gap, solution)).numerator);
+            zeros.push_back(hdot);
+            zeros.push_back(algebra.reduced(power(hdot, 2, algebra.work())));
+        }
         for (bool shorter = true; shorter;) {
             shorter = false;
-            for (const Multinomial& zero : {h, hdot, algebra.reduced(power(hdot, 2, algebra.work()))}) {
+            for (const Multinomial& zero : zeros) {
                 const Fraction now = hddot;
                 for (const Multinomial::Term& of_zero : zero.terms()) {
                     for (const Multinomial::Term& term : now.numerator.terms()) {
@@ -236,13 +266,14 @@ class Search {
         }
         if (!unknown) dropped_for.merge(known_for);
         for (const std::size_t atom : dropped_for)
-            if (signs_(algebra.atom(atom)) != Sign::unknown) zeno.assumed.push_back(algebra.atom(atom));
+            if (signs_.of_parameters(algebra.atom(atom))) zeno.assumed.push_back(algebra.atom(atom));
         if (!unknown)
             zeno.verdict = zeno.decisive.number < 0 ? ZenoCondition::Verdict::always : ZenoCondition::Verdict::never;
     }
 
     const Layout& layout_;
     const Equations& e_;
+    std::vector<const ContactEquations*> contacts_;  // the one in question, then those that are held
     const ContactEquations& c_;
     Graph& graph_;
     ParameterSigns signs_;
@@ -253,9 +284,10 @@ class Search {
 
 }  // namespace
 
-std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run, Graph& graph) {
+std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
+                                            const std::vector<const ContactEquations*>& contacts, Graph& graph) {
     const Ground ground;
-    return Search(model, run, graph).best();
+    return Search(model, run, contacts, graph).best();
 }
 
 }  // namespace achilles

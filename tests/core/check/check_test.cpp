@@ -8,7 +8,7 @@
 
 #include "algebra/writer.hpp"
 #include "check/simplified.hpp"
-#include "core/systems.hpp"
+#include "core/several.hpp"
 #include "model/read_system.hpp"
 
 namespace achilles {
@@ -22,9 +22,9 @@ struct Condition {
 
 Condition condition(const Model& model, const Run& run) {
     const Simplified simplified(model, run);
-    EXPECT_TRUE(simplified.zeno);
-    if (!simplified.zeno) return {};
-    const ZenoCondition& zeno = *simplified.zeno;
+    EXPECT_TRUE(simplified.contacts[0].zeno);
+    if (!simplified.contacts[0].zeno) return {};
+    const ZenoCondition& zeno = *simplified.contacts[0].zeno;
     const Writer writer(*zeno.algebra, model.slot_names(), simplified.ranks(), Notation::text);
     std::string solved;
     for (const auto& [symbol, value] : zeno.solved)
@@ -224,6 +224,58 @@ TEST(CheckReport, HoldsForEverySystem) {
     }
 }
 
+// Forces, time and several gaps: equal to differences, with a Zeno condition for each contact, free and while another is
+// held.
+TEST(CheckReport, HoldsForForcesMovingAndSeveralGaps) {
+    for (const char* name : test::gap_systems) {
+        SCOPED_TRACE(name);
+        const auto model = test::load_gaps(name);
+        double disagreement = 1.0;
+        const std::string report = check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
+        EXPECT_LT(disagreement, 1e-15) << report;
+        EXPECT_NE(report.find("20 random states"), std::string::npos) << report;
+        EXPECT_NE(check_report(*model, model->default_run(), 0.001, Notation::latex, disagreement).find("\\ddot{h}"),
+                  std::string::npos);
+    }
+}
+
+std::string text_report(const std::string& name) {
+    const auto model = test::load_gaps(name);
+    double disagreement = 1.0;
+    return check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
+}
+
+TEST(CheckReport, TellsForcesAndEveryContact) {
+    const std::string stops = text_report("pendulum_two_stops");
+    for (const char* words :
+         {"Energies, forces, gaps, restitutions\n", "force on th1 = tau*cos(om*t)", "R = d/2*(th1'^2 + th2'^2)",
+          "h knee = th2", "h wall = 0.35 - th1", "restitution wall 0.4", "Free motion: M q'' + bias = Q\n",
+          "tau*cos(om*t) - d*th1'", "\nContact knee\n", "\nContact wall\n",
+          "Zeno condition of knee: hddot < 0 where h = 0 and hdot = 0",
+          "Zeno condition of wall while knee is held: hddot < 0 where h = 0 and hdot = 0 of both",
+          "hddot while others are held"})
+        EXPECT_NE(stops.find(words), std::string::npos) << words << "\n" << stops;
+    const std::string table = text_report("vibrating_table");
+    EXPECT_NE(table.find("a*om^2*sin(om*t) - 1 < 0"), std::string::npos) << table;
+    EXPECT_NE(table.find("there y = a*sin(om*t)"), std::string::npos) << table;
+    EXPECT_NE(text_report("ball_in_box").find("while two or more others are held are not written out"),
+              std::string::npos);
+}
+
+// A lie: forces that are not those of the file must show, and so must a wrong condition while another is held.
+TEST(CheckReport, SeesWrongForces) {
+    const auto model = test::load_gaps("pendulum_two_stops");
+    const auto run = model->default_run();
+    Simplified force(*model, run);
+    force.Q[0]->numerator = force.Q[0]->numerator + Multinomial(1);
+    EXPECT_GT(compare_with_differences(*model, run, force).largest(), 0.1);
+    Simplified held(*model, run);
+    ASSERT_FALSE(held.while_held.empty());
+    ASSERT_TRUE(held.while_held[0].zeno);
+    held.while_held[0].zeno->positive.number *= 2;
+    EXPECT_GT(compare_with_differences(*model, run, held).largest(), 1e-3);
+}
+
 // A lie: a mass matrix that is not that of L must show.
 TEST(CheckReport, SeesWrongEquations) {
     const auto model = test::load("ball_on_sine");
@@ -231,10 +283,11 @@ TEST(CheckReport, SeesWrongEquations) {
     const Simplified right(*model, run);
     EXPECT_LT(compare_with_differences(*model, run, right).largest(), 1e-15);
     Simplified wrong(*model, run);
-    wrong.hddot->numerator = wrong.hddot->numerator + Multinomial(1);
+    auto& hddot = wrong.contacts[0].hddot;
+    hddot->numerator = hddot->numerator + Multinomial(1);
     EXPECT_GT(compare_with_differences(*model, run, wrong).largest(), 0.1);
     Simplified in_contact(*model, run);
-    in_contact.zeno->positive.number *= 2;
+    in_contact.contacts[0].zeno->positive.number *= 2;
     EXPECT_GT(compare_with_differences(*model, run, in_contact).largest(), 1e-3);
 }
 
