@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -114,8 +116,10 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
     const bool is_plastic = is_plastic_landing(event);
+    const std::string contacts = contacts_told(session.trajectory(), event);
     const bool close =
-        show_card_title(fmt::format("{}, event {}: {}", is_plastic ? "Plastic landing" : "Zeno point", index + 1,
+        show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Plastic landing" : "Zeno point",
+                                    contacts.empty() ? "" : " of ", contacts, index + 1,
                                     is_plastic              ? "exact"
                                     : certificate.certified ? "certified"
                                                             : "not certified"),
@@ -125,6 +129,9 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     if (close) commands.emplace_back(command::Select{0});
     lens_button(session, state, commands);
     show_certificate(event);
+    const auto& others = certificate.others;
+    const std::string told = others ? others_told(*session.model(), *others) : "";
+    if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }
 
 void show_certificate(const Event& event) {

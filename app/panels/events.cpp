@@ -7,10 +7,11 @@
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
+#include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
-#include "panels/turns.hpp"
+#include "panels/event_rows.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 
@@ -20,71 +21,8 @@ namespace {
 
 // Where the columns of the list are, at scale 1, from its left edge: signs and words begin there, numbers end there.
 constexpr float sign_at = 14.0F, number_at = 62.0F, kind_at = 76.0F, time_at = 274.0F, proof_at = 366.0F,
-                speed_at = 462.0F, state_width = 112.0F, list_padding = 4.0F;
+                speed_at = 462.0F, kind_width = 104.0F, state_width = 112.0F, list_padding = 4.0F;
 constexpr float list_beside_card = 300.0F, least_card = 540.0F;
-
-// The lines of the list: each event, but impacts one after the other as one line, until it is opened. A run may have a
-// hundred thousand impacts: only what is seen is made.
-class Rows {
- public:
-    struct Row {
-        std::size_t event;      // the first, of impacts in one line
-        std::size_t count = 0;  // of these impacts; 0: the line is an event
-        bool is_open = false;   // they follow, line by line
-    };
-    Rows(const Session& session, const PanelState& state) {
-        const Trajectory& trajectory = session.trajectory();
-        const std::vector<std::size_t> all_turns = turns(trajectory);
-        folds_ = !state.show_impacts && !all_turns.empty();  // where there are only impacts each is seen
-        std::size_t next = 0;
-        for (const std::size_t turn : all_turns) {
-            add_impacts(session, state, next, turn - next);
-            add({turn, 1, false, false, 0});
-            next = turn + 1;
-        }
-        add_impacts(session, state, next, trajectory.events.size() - next);
-    }
-    std::size_t size() const { return count_; }
-    Row at(std::size_t index) const {
-        const auto after = std::upper_bound(parts_.begin(), parts_.end(), index,
-                                            [](std::size_t i, const Part& part) { return i < part.row; });
-        const Part& part = *std::prev(after);
-        const std::size_t within = index - part.row;
-        if (part.is_folded && within == 0) return {part.first, part.count, part.is_open};
-        return {part.first + within - (part.is_folded ? 1 : 0)};
-    }
-    // The line of this event, or that which it is folded into.
-    std::size_t row_of(std::size_t event) const {
-        const auto after = std::upper_bound(parts_.begin(), parts_.end(), event,
-                                            [](std::size_t e, const Part& part) { return e < part.first; });
-        if (after == parts_.begin()) return 0;
-        const Part& part = *std::prev(after);
-        if (part.is_folded && !part.is_open) return part.row;
-        return part.row + (part.is_folded ? 1 : 0) + event - part.first;
-    }
-
- private:
-    struct Part {
-        std::size_t first, count;
-        bool is_folded, is_open;
-        std::size_t row;
-    };
-    void add(Part part) {
-        part.row = count_;
-        count_ += (part.is_folded ? 1 : 0) + (part.is_folded && !part.is_open ? 0 : part.count);
-        parts_.push_back(part);
-    }
-    void add_impacts(const Session& session, const PanelState& state, std::size_t first, std::size_t count) {
-        if (count == 0) return;
-        const auto chosen = static_cast<std::size_t>(std::max(session.selected() - 1, 0));
-        const bool has_chosen = session.selected() > 0 && chosen >= first && chosen < first + count;
-        add({first, count, count > 1 && folds_, has_chosen || state.unfolded.contains(first), 0});
-    }
-
-    std::vector<Part> parts_;
-    std::size_t count_ = 0;
-    bool folds_ = true;
-};
 
 // The index of the event that the user chose, which is shown with its reasons; or none.
 std::optional<std::size_t> chosen(const Session& session) {
@@ -142,18 +80,32 @@ std::vector<StateColumn> state_columns(const Session& session) {
     return columns;
 }
 
+bool is_of_several(const Session& session) { return session.model()->contacts() > 1; }
+
+// "Zeno point", and where there are several contacts "Zeno knee", "wall opens knee".
+std::string event_name(const Session& session, const Event& event) {
+    const std::string contacts = contacts_told(session.trajectory(), event);
+    if (!event.opened.empty()) return contacts + " opens " + joined_names(*session.model(), event.opened);
+    if (is_plastic_landing(event)) return contacts.empty() ? "landing" : "landing " + contacts;
+    if (contacts.empty()) return event_name(event);
+    return fmt::format("{} {}", event.kind == Event::Kind::zeno ? "Zeno" : to_text(event.kind), contacts);
+}
+
 // The events for a spreadsheet, every digit: the chosen one, or all. In the units of the list.
 std::string table(const Session& session) {
     const std::vector<StateColumn> columns = state_columns(session);
-    std::string text = "#\tevent\tt\timpact speed";
+    const bool several = is_of_several(session);
+    std::string text = several ? "#\tevent\tcontacts\topened\theld\tt\timpact speed" : "#\tevent\tt\timpact speed";
     for (const StateColumn& column : columns) text += "\t" + column.name;
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (chosen(session).value_or(i) != i) continue;
         const Event& event = events[i];
         const bool is_impact = event.kind == Event::Kind::impact;
-        text += fmt::format("\n{}\t{}\t{}\t{}", i + 1, event_name(event), event.t,
-                            is_impact ? fmt::format("{}", event.impact_speed) : "");
+        text += fmt::format("\n{}\t{}", i + 1, event_name(event));
+        for (const ContactSet& set : {event.contacts, event.opened, event.held})
+            if (several) text += "\t" + joined_names(*session.model(), set, "+");
+        text += fmt::format("\t{}\t{}", event.t, is_impact ? fmt::format("{}", event.impact_speed) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
     }
     return text + "\n";
@@ -193,9 +145,12 @@ void number_cell(ImVec2 at, float x, const std::string& text, const Color& color
     paint_label(ImGui::GetWindowDrawList(), std::floor(left), at.y, text, color, ImGui::GetFontSize());
 }
 
+// Where the first column of the state ends: before it stands what is held, where there are several contacts.
+float first_column(const Session& session) { return speed_at + state_width * (is_of_several(session) ? 2.0F : 1.0F); }
+
 // How many columns of the state have room.
 std::size_t columns_shown(const Session& session, float width) {
-    const float room = width - units(speed_at + 12.0F);
+    const float room = width - units(first_column(session) - state_width + 12.0F);
     const auto fitting = static_cast<std::size_t>(std::max(0.0F, room / units(state_width)));
     return has_card(session) ? 0 : std::min(fitting, 2 * session.description().coordinates.size());
 }
@@ -211,9 +166,11 @@ void paint_titles(const Session& session, ImVec2 at, float width) {
     if (!alone) return;
     title(proof_at, "\u00b1");
     title(speed_at, "gap speed");
+    const float first = first_column(session);
+    if (is_of_several(session)) title(first - state_width, "held");
     const std::vector<StateColumn> columns = state_columns(session);
     for (std::size_t i = 0; i < columns_shown(session, width); ++i)
-        title(speed_at + state_width * static_cast<float>(i + 1), columns[i].title);
+        title(first + state_width * static_cast<float>(i), columns[i].title);
 }
 
 void show_header(const Session& session, PanelState& state, Commands& commands) {
@@ -243,7 +200,11 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()), event_name(event).c_str());
+    std::string name = event_name(session, event);
+    if (!event.opened.empty() && ImGui::CalcTextSize(name.c_str()).x > units(kind_width))
+        name = "opens " + joined_names(*session.model(), event.opened);
+    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
+                  fitted(name, units(kind_width)).c_str());
     number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
     const std::string proof = event.kind == Event::Kind::zeno ? time_text(event) : "";
@@ -251,14 +212,18 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
         number_cell(at, proof_at, proof.substr(sign + 3), text_color());
     if (event.kind == Event::Kind::impact)
         number_cell(at, speed_at, number(event.impact_speed, "{:.6f}"), text_color());
+    const float first = first_column(session);
+    if (is_of_several(session))
+        number_cell(at, first - state_width,
+                    fitted(joined_names(*session.model(), event.held), units(state_width - 8.0F)), text_color());
     const std::vector<StateColumn> columns = state_columns(session);
     for (std::size_t i = 0; i < columns_shown(session, width); ++i)
-        number_cell(at, speed_at + state_width * static_cast<float>(i + 1),
+        number_cell(at, first + state_width * static_cast<float>(i),
                     number(columns[i].shown(event, session.scale()), "{:.5f}"), text_color());
 }
 
 // "10 impacts", and when the first and the last of them were.
-void paint_impacts(const Session& session, const Rows::Row& row, ImVec2 at) {
+void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at) {
     const auto& events = session.trajectory().events;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 c{at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()};
@@ -269,12 +234,16 @@ void paint_impacts(const Session& session, const Rows::Row& row, ImVec2 at) {
     else
         list->AddTriangleFilled({c.x - 0.6F * r, c.y - r}, {c.x - 0.6F * r, c.y + r}, {c.x + r, c.y},
                                 packed(faint_color()));
+    const auto end = events.begin() + static_cast<std::ptrdiff_t>(row.event + row.count);
+    const bool any_turn = std::any_of(events.begin() + static_cast<std::ptrdiff_t>(row.event), end,
+                                      [](const Event& event) { return event.kind != Event::Kind::impact; });
     list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
-                  fmt::format("{} impacts", row.count).c_str());
+                  fmt::format("{} {}", row.count, any_turn ? "events" : "impacts").c_str());
     number_cell(at, time_at, number(events[row.event].t, "{:.9f}"), faint_color());
 }
 
-void show_impacts(const Session& session, const Rows::Row& row, int present, PanelState& state, Commands& commands) {
+void show_impacts(const Session& session, const EventRows::Row& row, int present, PanelState& state,
+                  Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const auto& events = session.trajectory().events;
     const std::size_t last = row.event + row.count - 1;
@@ -308,7 +277,7 @@ void show_event(const Session& session, std::size_t event, int present, PanelSta
 }
 
 // Scrolls so that the row is seen, once whenever another row is the one to see.
-void follow(const Rows& all, int event, PanelState& state) {
+void follow(const EventRows& all, int event, PanelState& state) {
     if (event == state.followed) return;
     state.followed = event;
     const float y =
@@ -330,7 +299,7 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
     const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::BeginChild("rows", {0.0F, room}, false);
-    const Rows all(session, state);
+    const EventRows all(session, state);
     const int present = reached(session);
     ImGui::SetCursorPosY(
         std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));  // the first line is marked as high as the others
@@ -340,7 +309,7 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
     clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const Rows::Row row = all.at(static_cast<std::size_t>(i));
+            const EventRows::Row row = all.at(static_cast<std::size_t>(i));
             ImGui::PushID(i);  // not its address, which another frame gives to another row
             if (row.count > 0)
                 show_impacts(session, row, present, state, commands);

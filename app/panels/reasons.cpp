@@ -8,6 +8,7 @@
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
+#include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"
@@ -53,15 +54,18 @@ std::optional<Inequality> failed(const Certificate& certificate) {
     return std::nullopt;
 }
 
-std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt) {
+std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several) {
     if (reason.cut)
         return "Cut here: what follows is proved to stay within the tolerances of what is drawn. The next event, the "
                "Zeno point, tells by how much.";
+    if (!reason.contact) return "Not cut: more than one contact moves here, all at once by Moreau's law.";
     if (!(reason.normal_acceleration < 0.0))
         return fmt::format("Not cut: the surface falls away here, the gap would accelerate by {}.",
                            number(reason.normal_acceleration));
     if (attempt == nullptr)
-        return "Not cut: nothing can be proved yet, the gap's acceleration may change its sign on the way.";
+        return fmt::format(
+            "Not cut: nothing can be proved yet, the gap's acceleration may change its sign{} on the way.",
+            several ? " or another contact open or close" : "");
     const std::optional<Inequality> inequality = failed(*attempt);
     if (!inequality) return "Not cut: an impact before the conditions were asked.";
     if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} is not proved.", inequality->name);
@@ -95,11 +99,30 @@ Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& r
     return panel;
 }
 
+// "Impact of wall, event 7"; without the contact where there is one.
+std::string title(const char* kind, const Session& session, const Event& event, std::size_t index) {
+    const std::string contacts = contacts_told(session.trajectory(), event);
+    return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
+}
+
+// Where there are several contacts.
+std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
+    const Model& model = *session.model();
+    std::string text =
+        reason.held.empty() ? "None is held. " : fmt::format("Held: {}. ", joined_names(model, reason.held));
+    if (!event.opened.empty())
+        text += fmt::format("It opens {}: the impulse would have to pull there. ", joined_names(model, event.opened));
+    if (event.joint && event.joint->order_matters)
+        text += "Which is first matters and cannot be told: this is what follows from all at once. ";
+    if (event.joint && event.joint->not_unique) text += "The impulses are one choice of several. ";
+    return text;
+}
+
 }  // namespace
 
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(fmt::format("Impact, event {}", index + 1), fmt::format("t = {:.10g} s", event.t), state))
+    if (show_card_title(title("Impact", session, event, index), fmt::format("t = {:.10g} s", event.t), state))
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
@@ -107,12 +130,19 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     row("energy", number(reason.energy_before), number(reason.energy_after));
     row("energy lost",
         number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))));
-    paragraph(why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr), remaining().width, text_color());
+    const bool several = session.model()->contacts() > 1;
+    std::string words = why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several);
+    if (several) {
+        for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
+            row("impulse on " + session.description().constraints[contact].name, number(impulse));
+        words = what_is_held(session, event, reason) + words;
+    }
+    paragraph(words, remaining().width, text_color());
 }
 
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(fmt::format("Release, event {}", index + 1), fmt::format("t = {:.10g} s", event.t), state))
+    if (show_card_title(title("Release", session, event, index), fmt::format("t = {:.10g} s", event.t), state))
         commands.emplace_back(command::Select{0});
     const ReleaseReason reason = explain_release(session.trajectory(), index);
     const Rectangle room = remaining();

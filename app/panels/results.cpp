@@ -1,10 +1,12 @@
-// Under the mechanism: what came out of the run, in a line or two. Every Zeno point and release is pressed to go there.
+// Under the mechanism: what came out of the run, in a line or two. Every Zeno point, release and opening impact is pressed to go
+// there.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
+#include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
@@ -37,11 +39,23 @@ std::string typeset_sentence(const Certificate& certificate) {
     return text;
 }
 
-std::string explanation(const Event& event) {
+std::string explanation(const Trajectory& trajectory, const Event& event) {
+    const std::string contacts = contacts_told(trajectory, event), of = contacts.empty() ? "" : " of " + contacts;
     if (event.kind == Event::Kind::release)
-        return fmt::format("release at t = {:.10g} s: the contact force falls through zero. Click: why", event.t);
+        return fmt::format("release{} at t = {:.10g} s: the contact force falls through zero. Click: why", of, event.t);
+    if (event.kind == Event::Kind::impact)
+        return fmt::format("impact{} at t = {:.10g} s opens {}. Click: why", of, event.t,
+                           joined_names(*trajectory.model, event.opened));
     const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
-    return fmt::format("{} at t = {:.10g} s after {} impacts\n{}", event_name(event), event.t, event.impacts, proof);
+    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}", event_name(event), of, event.t, event.impacts, proof);
+}
+
+// "Zeno 2", "knee released", "wall opens knee".
+std::string name_of(const Trajectory& trajectory, const Event& event, int& zeno) {
+    const std::string contacts = contacts_told(trajectory, event), space = contacts.empty() ? "" : " ";
+    if (event.kind == Event::Kind::zeno) return fmt::format("Zeno {}{}{}", ++zeno, space, contacts);
+    if (event.kind == Event::Kind::release) return "release" + space + contacts;
+    return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
 }
 
 // In lines as wide as there is room, each with the gap before it.
@@ -50,11 +64,10 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
     std::vector<Result> results;
     int zeno = 0, line = 0;
     float x = 0.0F;
-    for (const std::size_t turn : turns(trajectory)) {
+    for (const std::size_t turn : turns(trajectory, true)) {
         if (results.size() == most) break;
         const Event& event = trajectory.events[turn];
-        const std::string name = event.kind == Event::Kind::zeno ? fmt::format("Zeno {}", ++zeno) : "release";
-        Result result{turn, name + "  " + time_text(event)};
+        Result result{turn, name_of(trajectory, event, zeno) + "  " + time_text(event)};
         result.width = units(sign_width) + ImGui::CalcTextSize(result.text.c_str()).x;
         if (x > 0.0F && x + result.width > width) x = 0.0F, ++line;
         result.x = x;
@@ -96,7 +109,8 @@ void show_result(const Session& session, const Result& result, ImVec2 at, const 
     paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), top + 0.5F * line},
                  units(1.0F));
     list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()), result.text.c_str());
-    tooltip(explanation(event), {at.x, strip.y, result.width, strip.height});  // the other results stay in sight
+    tooltip(explanation(session.trajectory(), event),
+            {at.x, strip.y, result.width, strip.height});  // the other results stay in sight
     if (pressed) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
 
@@ -150,7 +164,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     if (lines_shown < 1) return;
     const int first = first_line(session, results, lines_shown);
     // Results that are not shown: the last line has a word of them where it has room.
-    std::size_t hidden = turns(session.trajectory()).size() - results.size();
+    std::size_t hidden = turns(session.trajectory(), true).size() - results.size();
     float end = left;
     for (const Result& result : results) {
         if (result.line < first || result.line >= first + lines_shown) {

@@ -104,6 +104,42 @@ TEST(EventList, is_copied_as_a_table) {
     }
 }
 
+constexpr const char* gaps = "../../tests/reference/gaps/";
+
+// Every event of every contact: in the list, in the strip where it changes what is held, with its reasons.
+TEST(SeveralContacts, are_named_wherever_events_are) {
+    for (const char* system : {"driven_damped_pendulum", "travelling_wave", "vibrating_table", "bowl_and_post",
+                               "pendulum_two_stops", "ball_in_box"}) {
+        SCOPED_TRACE(system);
+        Hands hands(std::string(gaps) + system);
+        const auto& events = hands.session.trajectory().events;
+        for (std::size_t i = 0; i < events.size(); ++i) {
+            const std::string number = std::to_string(i + 1);
+            EXPECT_EQ(hands.state.places.contains("result " + number),
+                      events[i].kind != Event::Kind::impact || !events[i].opened.empty())
+                << i;
+            hands.session.apply(command::Select{static_cast<int>(i) + 1});
+            hands.rest(1);
+            EXPECT_TRUE(hands.state.places.contains("event " + number)) << i;
+            EXPECT_TRUE(hands.state.places.contains("close card")) << i;
+        }
+    }
+}
+
+TEST(SeveralContacts, are_copied_with_the_list) {
+    Hands hands(std::string(gaps) + "pendulum_two_stops");
+    hands.click("copy events");
+    std::string text;
+    hands.surface.step([&] {
+        text = ImGui::GetClipboardText();
+        explorer(hands.session, hands.state);
+    });
+    EXPECT_EQ(text.substr(0, text.find('\n')),
+              "#\tevent\tcontacts\topened\theld\tt\timpact speed\tth1\tth2\tth1'\tth2'");
+    EXPECT_NE(text.find("\timpact\twall\tknee\t\t6.6486360"), std::string::npos) << text;
+    EXPECT_NE(text.find("\tZeno point\tknee\t\tknee\t10.47660"), std::string::npos) << text;
+}
+
 TEST(Accuracy, is_one_line_until_it_is_opened) {
     Hands hands("ball_on_sine");
     for (const char* place : {"eps", "tolerance", "conditions paper"}) EXPECT_FALSE(hands.state.places.contains(place));
