@@ -135,8 +135,8 @@ void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& 
 void add_ghost(const Session& session, Drawing& drawing) {
     const auto then = session.pinned_now();
     if (!then) return;
-    const Drawing ghost =
-        session.mechanism().draw(then->t, then->state, session.pinned()->run.parameters, drawing, session.theme());
+    const Drawing ghost = session.mechanism().draw(then->t, then->state, session.pinned()->run.parameters, drawing,
+                                                   session.theme(), then->held);
     for (std::size_t i = ghost.shapes.size(); i-- > 0;) {
         Shape shape = ghost.shapes[i];
         if (shape.kind == Shape::Kind::text) continue;
@@ -166,7 +166,9 @@ Picture paint_picture(const Session& session, const Rectangle& area, const HeldM
     const auto& parameters = session.run().parameters;
     Drawing seen = world(session, area);
     if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
-    Drawing drawing = session.mechanism().draw(t, state, parameters, seen, session.theme());
+    // While the hand moves the start, nothing is known to be held.
+    const ContactSet touched = holds_start(held) ? ContactSet() : session.now().held;
+    Drawing drawing = session.mechanism().draw(t, state, parameters, seen, session.theme(), touched);
     if (session.scene().shows("trail"))
         add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
     add_ghost(session, drawing);

@@ -164,6 +164,7 @@ std::vector<Text> texts_of(const DrawingDescription& drawing) {
     std::vector<Text> texts;
     for (const auto& point : drawing.points) texts.insert(texts.end(), point.begin(), point.end());
     if (is_round(drawing.shape)) texts.push_back(drawing.radius);
+    texts.insert(texts.end(), drawing.sizes.begin(), drawing.sizes.end());
     if (drawing.shape == Shape::curve)
         texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
     if (!drawing.width.text.empty()) texts.push_back(drawing.width);

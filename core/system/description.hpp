@@ -77,16 +77,18 @@ struct DerivedDescription {
 };
 
 struct DrawingDescription {
-    enum class Shape { disc, circle, segment, curve, polyline, text };
+    enum class Shape { disc, circle, box, segment, spring, damper, ground, curve, polyline, text };
     Shape shape = Shape::disc;
     std::vector<std::array<Text, 2>> points;  // at, or from and to, or points
     Text radius;                              // disc, circle
+    std::vector<Text> sizes;                  // box: width, height, angle; spring: coils, across; damper: across
     std::string over;                         // curve: its own parameter, and the limits
     std::array<Text, 2> over_limits;
     std::string text;   // text
     std::string color;  // "#rrggbb" or ""
     Text width;         // stroke width; empty: default
     bool fill = false;
+    std::optional<std::size_t> contact;  // that is touched there: it stands in this constraint
     Location at;
 };
 
@@ -95,8 +97,13 @@ inline bool is_round(DrawingDescription::Shape shape) {
     return shape == DrawingDescription::Shape::disc || shape == DrawingDescription::Shape::circle;
 }
 
-// Every expression of a drawing: x and y of its points, then a disc's or circle's radius or a curve's limits, then the width if
-// given.
+// A thing with a middle, by which a hand takes it.
+inline bool is_body(DrawingDescription::Shape shape) {
+    return is_round(shape) || shape == DrawingDescription::Shape::box;
+}
+
+// Every expression of a drawing: x and y of its points, then a disc's or circle's radius, the sizes or a curve's limits, then
+// the width if given.
 std::vector<Text> texts_of(const DrawingDescription& drawing);
 
 struct ConstraintDescription {

@@ -22,9 +22,15 @@ struct NamedShape {
 
 const std::vector<NamedShape>& shapes() {
     static const std::vector<NamedShape> list{{"disc", Shape::disc},         {"circle", Shape::circle},
-                                              {"segment", Shape::segment},   {"curve", Shape::curve},
+                                              {"box", Shape::box},           {"segment", Shape::segment},
+                                              {"spring", Shape::spring},     {"damper", Shape::damper},
+                                              {"ground", Shape::ground},     {"curve", Shape::curve},
                                               {"polyline", Shape::polyline}, {"text", Shape::text}};
     return list;
+}
+
+bool is_between_two(Shape shape) {
+    return shape == Shape::segment || shape == Shape::spring || shape == Shape::damper || shape == Shape::ground;
 }
 
 const NamedShape& shape_of(const Fields& fields) {
@@ -65,6 +71,19 @@ void read_points(const Fields& fields, DrawingDescription& drawing) {
     for (const TomlValue& item : points.items) drawing.points.push_back(fields.point("points", item));
 }
 
+// The numbers of a shape's own, besides its points. 0 is as large as fits: what has a size of its own need not say it.
+void read_sizes(const Fields& fields, DrawingDescription& drawing) {
+    const auto size = [&](const char* key) {
+        drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}});
+    };
+    if (drawing.shape == Shape::box) {
+        for (const Text& text : fields.point("size")) drawing.sizes.push_back(text);
+        size("angle");
+    }
+    if (drawing.shape == Shape::spring) size("coils");
+    if (drawing.shape == Shape::spring || drawing.shape == Shape::damper) size("across");
+}
+
 std::string read_color(const Fields& fields) {
     if (!fields.find("color")) return "";
     const Text color = fields.string("color");
@@ -85,19 +104,20 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
     DrawingDescription drawing;
     drawing.shape = shape.shape;
     drawing.at = fields.table().at;
-    drawing.fill = shape.shape == Shape::disc;
+    drawing.fill = shape.shape == Shape::disc || shape.shape == Shape::box;
     const auto point = [&](const char* key) {
         mistakes.attempt([&] { drawing.points.push_back(of_shape.point(key)); });
     };
     if (shape.shape == Shape::polyline) {
         mistakes.attempt([&] { read_points(of_shape, drawing); });
-    } else if (shape.shape == Shape::segment) {
+    } else if (is_between_two(shape.shape)) {
         point("from");
         point("to");
     } else {
         point("at");
     }
     if (is_round(shape.shape)) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
+    mistakes.attempt([&] { read_sizes(of_shape, drawing); });
     if (shape.shape == Shape::curve) mistakes.attempt([&] { read_over(system, of_shape, drawing); });
     if (shape.shape == Shape::text) mistakes.attempt([&] { drawing.text = of_shape.string("text").text; });
     mistakes.attempt([&] { drawing.color = read_color(of_shape); });

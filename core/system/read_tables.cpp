@@ -257,8 +257,11 @@ void read_pictures(Reading& reading) {
             mistakes.attempt([&] { drawings.push_back(read_drawing(system, fields, mistakes)); });
     };
     read_drawings(reading.root, system.drawings);
-    for (std::size_t i = 0; i < reading.constraints.size(); ++i)
-        read_drawings(reading.constraints[i].table(), system.constraints[i].drawings);
+    for (std::size_t i = 0; i < reading.constraints.size(); ++i) {
+        std::vector<DrawingDescription>& touched = system.constraints[i].drawings;
+        read_drawings(reading.constraints[i].table(), touched);
+        for (DrawingDescription& drawing : touched) drawing.contact = i;
+    }
     std::set<std::string> names;
     for (Fields& fields : tables(reading.root, "view", mistakes)) {
         mistakes.attempt([&] {

@@ -24,6 +24,7 @@ struct Shape {
 struct Drawing {
     std::vector<Shape> shapes;                                      // painted in this order
     double x_low = -1.0, x_high = 1.0, y_low = -1.0, y_high = 1.0;  // the world that must be visible
+    double size = 2.0;  // of the world that the run needs, however it is looked at: what signs in it are measured by
 };
 
 }  // namespace achilles

@@ -8,6 +8,7 @@
 
 #include "expression/parse.hpp"
 #include "figure/field.hpp"
+#include "figure/parts.hpp"
 
 namespace achilles {
 
@@ -67,6 +68,15 @@ void include_under(Box& all, const Box& motion, const std::vector<Point>& curve)
             all.include(p);
 }
 
+// Of a wall with hatching, or a block, that is not much larger than the motion all is shown.
+bool is_shown_whole(Kind shape, const Box& motion, const std::vector<Point>& points) {
+    Box whole;
+    for (const Point& p : points) whole.include(p);
+    const auto is_near = [&](const Point& p) { return motion.distance(p) <= motion.size(); };
+    return (shape == Kind::ground || shape == Kind::box) && whole.size() <= 2.0 * motion.size() &&
+           std::any_of(points.begin(), points.end(), is_near);
+}
+
 // Of a floor, a wall or a pivot the place nearest to the motion is shown, unless it is far away.
 template <class Placed>
 void include_nearest(Box& all, const Box& motion, const Placed& placed) {
@@ -87,6 +97,19 @@ void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
 }
 
+// What is touched, while a contact is held there: in the colour of constrained phases, a little bolder.
+void light(Shape& shape, const Theme& theme) {
+    const Color accent = phase_color(theme, Phase::Kind::constrained);
+    shape.stroke.color = accent;
+    if (shape.stroke.width > 0.0) shape.stroke.width += 0.75;
+    constexpr double share = 0.5;
+    const auto mixed = [](std::uint8_t own, std::uint8_t other) {
+        return static_cast<std::uint8_t>(std::lround((1.0 - share) * own + share * other));
+    };
+    Color& fill = shape.fill_color;
+    fill = {mixed(fill.r, accent.r), mixed(fill.g, accent.g), mixed(fill.b, accent.b), fill.a};
+}
+
 // Whether an expression names one of the coordinates, or t.
 bool names_what_moves(const SystemDescription& description, std::string_view text) {
     const std::vector<std::string> names = names_in(text);
@@ -98,7 +121,7 @@ bool names_what_moves(const SystemDescription& description, std::string_view tex
 
 }  // namespace
 
-Mechanism::Mechanism(const Model& model) : model_(model) {
+Mechanism::Mechanism(const Model& model) : model_(model), start_(model.default_run()) {
     const SystemDescription& description = model.description();
     for (const DrawingDescription& drawing : drawings_of(description)) {
         Item item;
@@ -123,6 +146,11 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
     Placed placed;
     if (is_round(d.shape)) placed.radius = run.output(2);
     if (!d.width.text.empty()) placed.width = run.output(run.output_count() - 1);
+    for (std::size_t i = 0; i < d.sizes.size(); ++i) placed.sizes.push_back(run.output(2 * d.points.size() + i));
+    if (d.shape == Kind::box) {
+        placed.points = box_corners({run.output(0), run.output(1)}, placed.sizes[0], placed.sizes[1], placed.sizes[2]);
+        return placed;
+    }
     if (d.shape != Kind::curve) {
         for (std::size_t i = 0; i < d.points.size(); ++i)
             placed.points.push_back({run.output(2 * i), run.output(2 * i + 1)});
@@ -137,23 +165,43 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
     return placed;
 }
 
+// A spring, a damper, or the hatching of a ground, in a world of this size. What has no size of its own gets one that looks
+// right at the file's start, so that it stays the same while the part moves.
+std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& run, const Placed& placed,
+                                           double world) const {
+    const Point &from = placed.points.front(), &to = placed.points.back();
+    const Kind shape = item.description.shape;
+    constexpr double hatch_of_world = 0.018;
+    if (shape == Kind::ground) return hatching(from, to, hatch_of_world * world);
+    const Placed at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
+    const Point &a = at_rest.points.front(), &b = at_rest.points.back();
+    PartSize size{std::hypot(b.x - a.x, b.y - a.y), placed.sizes.back()};
+    if (!(size.across > 0.0)) size.across = fitting_across(size.rest, world);
+    if (shape == Kind::damper) return damper_line(from, to, size);
+    constexpr double most_coils = 1000.0;
+    const double coils = std::min(std::round(placed.sizes.front()), most_coils);
+    return spring_line(from, to, coils >= 1.0 ? static_cast<int>(coils) : fitting_coils(size), size);
+}
+
 Grip::Hold Grip::at(double t, const State& state) {
     if (!run_) return {{state.q[0], state.q[1]}, 0.0};
     set_state(*run_, state);
     run_->input(t_) = t;
     run_->run();
-    return {{run_->output(first_), run_->output(first_ + 1)}, disc_ ? run_->output(2) : 0.0};
+    double radius = sizes_ > 0 ? run_->output(2) : 0.0;
+    if (sizes_ > 1) radius = 0.5 * std::min(radius, run_->output(3));
+    return {{run_->output(first_), run_->output(first_ + 1)}, radius};
 }
 
 std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
     if (plane_) return Grip();
-    const Item *disc = nullptr, *line = nullptr;
+    const Item *body = nullptr, *line = nullptr;
     for (const Item& item : items_) {
         if (!item.moves) continue;
-        if (is_round(item.description.shape)) disc = &item;
+        if (is_body(item.description.shape)) body = &item;
         if (item.description.shape == Kind::segment || item.description.shape == Kind::polyline) line = &item;
     }
-    const Item* held = disc != nullptr ? disc : line;
+    const Item* held = body != nullptr ? body : line;
     if (held == nullptr) return std::nullopt;
     return grip_of(*held, held->description.points.size() - 1, parameters);
 }
@@ -161,7 +209,8 @@ std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
 Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
     Grip grip;
     grip.run_ = model_.evaluator(item.program, parameters);
-    grip.disc_ = is_round(item.description.shape);
+    const Kind shape = item.description.shape;
+    grip.sizes_ = is_round(shape) ? 1 : is_body(shape) ? 2 : 0;
     grip.t_ = model_.layout().t();
     grip.first_ = 2 * point;
     return grip;
@@ -172,7 +221,7 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
     if (auto first = grip(parameters)) all.push_back(std::move(*first));
     for (const Item& item : items_) {
         const Kind shape = item.description.shape;
-        if (!item.moves || shape == Kind::text || shape == Kind::curve) continue;
+        if (!item.moves || (!is_body(shape) && shape != Kind::segment && shape != Kind::polyline)) continue;
         const std::size_t last = item.description.points.size() - 1;
         all.push_back(grip_of(item, last, parameters));
         if (last > 0) all.push_back(grip_of(item, 0, parameters));
@@ -181,7 +230,7 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
 }
 
 Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                        const Theme& theme) const {
+                        const Theme& theme, ContactSet held) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
     const auto add = [&](Shape::Kind kind, const Color& color, double width) -> Shape& {
@@ -193,18 +242,28 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
     };
     for (const Item& item : items_) {
         const DrawingDescription& d = item.description;
-        const Color own = item.moves ? theme.body : theme.surface;
+        const Color own = item.moves && d.shape != Kind::ground ? theme.body : theme.surface;
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
         Placed placed = place(item, run, t, state);
         const Shape::Kind kind = is_round(d.shape)       ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
+        const bool is_part = d.shape == Kind::spring || d.shape == Kind::damper;
+        const bool is_lit = d.contact && held.contains(*d.contact);
+        if (d.shape == Kind::ground) {
+            Shape& hatches = add(kind, color, 0.5 * placed.width);
+            hatches.points = line_between(item, run, placed, limits.size);
+            hatches.moves = item.moves;
+            if (is_lit) light(hatches, theme);
+        }
+        if (is_part) placed.points = line_between(item, run, placed, limits.size);
         Shape& shape = add(kind, color, placed.width);
         shape.moves = item.moves;
         shape.points = std::move(placed.points);
         shape.fill = d.fill;
-        shape.closed = d.fill && d.shape == Kind::polyline;
+        shape.closed = d.shape == Kind::box || (d.fill && d.shape == Kind::polyline);
+        if (is_lit) light(shape, theme);
         shape.text = d.text;
         shape.radius = placed.radius;
     }
@@ -253,6 +312,8 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
             all.include(placed);
         else if (item.description.shape == Kind::curve)
             include_under(all, box, placed.points);
+        else if (is_shown_whole(item.description.shape, box, placed.points))
+            all.include(placed);
         else
             include_nearest(all, box, placed);
     }
@@ -260,6 +321,7 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
     const double size = all.size();
     const double room = size > 0.0 ? 0.06 * size : 1.0;
     Drawing drawing;
+    drawing.size = 0.5 * (all.x_high - all.x_low + all.y_high - all.y_low);
     drawing.x_low = all.x_low - room;
     drawing.x_high = all.x_high + room;
     drawing.y_low = all.y_low - room;

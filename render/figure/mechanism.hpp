@@ -11,13 +11,13 @@
 
 namespace achilles {
 
-// The point by which a mechanism is held: the centre of the last disc that moves, else the end of the last line that
-// does. Evaluates its program, so one per thread.
+// The point by which a mechanism is held: the centre of the last disc or box that moves, else the end of the last line
+// that does. Evaluates its program, so one per thread.
 class Grip {
  public:
     struct Hold {
         Point at;
-        double radius = 0.0;  // of the disc; 0 without one
+        double radius = 0.0;  // of the disc, or the largest in the box; 0 without one
     };
     Hold at(double t, const State& state);
 
@@ -26,7 +26,7 @@ class Grip {
     std::optional<Evaluator<double>> run_;  // none: the coordinates are the place
     std::size_t t_ = 0;                     // input
     std::size_t first_ = 0;                 // output
-    bool disc_ = false;
+    std::size_t sizes_ = 0;                 // so many outputs after it are sizes: a radius, or width and height
 };
 
 class Mechanism {
@@ -35,14 +35,14 @@ class Mechanism {
     // else a note. Throws InputError for an expression that is none. Refers to the model.
     explicit Mechanism(const Model& model);
 
-    // The shapes at a time and a state, within given limits (see limits()).
+    // The shapes at a time and a state, within given limits (see limits()). What belongs to a contact that is held is lit.
     Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                 const Theme& theme) const;
+                 const Theme& theme, ContactSet held = {}) const;
 
     // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
 
-    // Nothing where no shape but texts and curves moves.
+    // Nothing where no shape moves but texts, curves and what lies between others.
     std::optional<Grip> grip(std::span<const double> parameters) const;
     // That one, then every other point by which a hand can take hold: centres, and both ends of lines. Some may stand
     // still.
@@ -53,17 +53,20 @@ class Mechanism {
  private:
     struct Item {
         DrawingDescription description;
-        Program program;     // its points' x and y, then radius or limits of the curve's parameter, then width
+        Program program;     // its points' x and y, then radius, sizes or limits of the curve's parameter, then width
         bool moves = false;  // it names a coordinate, or t
     };
     struct Placed {
-        std::vector<Point> points;
+        std::vector<Point> points;  // of a box its corners
         double radius = 0.0, width = 2.0;
+        std::vector<double> sizes{};
     };
     Placed place(const Item& item, Evaluator<double>& run, double t, const State& state) const;
+    std::vector<Point> line_between(const Item& item, Evaluator<double>& run, const Placed& placed, double world) const;
     Grip grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
 
     const Model& model_;
+    Run start_;  // as the file has it: parts are at rest there
     std::vector<Item> items_;
     bool plane_ = false;  // no drawing, but coordinates x and y
 };

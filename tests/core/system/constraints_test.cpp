@@ -61,6 +61,8 @@ TEST(Constraints, have_drawings_of_their_own) {
     ASSERT_EQ(all.size(), 3u);  // as they stand in the file
     EXPECT_EQ(all[0].shape, DrawingDescription::Shape::segment);
     EXPECT_EQ(all[2].shape, DrawingDescription::Shape::curve);
+    EXPECT_EQ(all[0].contact, std::size_t{0});  // who is held lights it
+    EXPECT_FALSE(all[2].contact);
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(drawn, {{"\"x\"", "\"z\""}}) + wall)),
               "f.toml:24:8: unknown name 'z'\n    to = [\"z\", 1]\n           ^");
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(drawn, {{"radius", "raduis"}}) + wall)),

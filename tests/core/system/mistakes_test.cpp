@@ -131,7 +131,7 @@ const Change in_types[] = {
      "   ^"},
     {"shape = \"curve\"", "shape = \"curv\"",
      "f.toml:25:10: unknown shape 'curv'; did you mean 'curve'?\n    shape = \"curv\"\n             ^\nshapes are: "
-     "disc, circle, segment, curve, polyline, text"},
+     "disc, circle, box, segment, spring, damper, ground, curve, polyline, text"},
     {"shape = \"curve\"", "shape = \"curve\"\ncolor = \"red\"",
      "f.toml:26:10: 'red' is not a colour\n    color = \"red\"\n             ^\na colour is \"#rrggbb\""},
     {"shape = \"curve\"", "shape = \"curve\"\nfill = 1",

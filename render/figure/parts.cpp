@@ -1,0 +1,106 @@
+#include "figure/parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace achilles {
+
+namespace {
+
+// Along a part, and to its left.
+struct Way {
+    Point from, along;
+    double length = 0.0;
+    // So far along, so far to the left.
+    Point operator()(double forward, double left) const {
+        return {from.x + forward * along.x - left * along.y, from.y + forward * along.y + left * along.x};
+    }
+};
+
+// Nothing where the ends are one point, or none: there is no direction.
+std::optional<Way> way(const Point& from, const Point& to) {
+    const double length = std::hypot(to.x - from.x, to.y - from.y);
+    if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
+    return Way{from, {(to.x - from.x) / length, (to.y - from.y) / length}, length};
+}
+
+Point line_break() { return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()}; }
+
+}  // namespace
+
+std::vector<Point> box_corners(const Point& middle, double width, double height, double angle) {
+    const Way along{middle, {std::cos(angle), std::sin(angle)}, 0.0};
+    const double w = 0.5 * width, h = 0.5 * height;
+    return {along(-w, -h), along(w, -h), along(w, h), along(-w, h)};
+}
+
+double fitting_across(double rest, double world) {
+    constexpr double of_world = 0.045, of_rest = 0.4;
+    return std::min(of_world * world, rest > 0.0 && std::isfinite(rest) ? of_rest * rest : world);
+}
+
+int fitting_coils(const PartSize& size) {
+    constexpr int least = 4, most = 16;
+    constexpr double apart = 0.55;  // of a coil's breadth
+    const double coils = std::round(size.rest / (apart * size.across));
+    return std::isfinite(coils) ? static_cast<int>(std::clamp<double>(coils, least, most)) : least;
+}
+
+std::vector<Point> spring_line(const Point& from, const Point& to, int coils, const PartSize& size) {
+    const auto at = way(from, to);
+    if (!at) return {from, to};
+    constexpr double end_of_across = 0.5, most_of_length = 0.15;
+    const double end = std::min(end_of_across * size.across, most_of_length * at->length);
+    const int turns = 2 * coils;
+    std::vector<Point> points{from, (*at)(end, 0.0)};
+    for (int i = 0; i < turns; ++i)
+        points.push_back(
+            (*at)(end + (at->length - 2.0 * end) * (i + 0.5) / turns, (i % 2 == 0 ? 0.5 : -0.5) * size.across));
+    points.push_back((*at)(at->length - end, 0.0));
+    points.push_back(to);
+    return points;
+}
+
+std::vector<Point> damper_line(const Point& from, const Point& to, const PartSize& size) {
+    const auto at = way(from, to);
+    if (!at) return {from, to};
+    const double length = at->length, rest = size.rest > 0.0 && std::isfinite(size.rest) ? size.rest : length;
+    // The cup keeps its size while there is room for it. The piston is in its middle at rest, near the bottom where all is
+    // pressed together, near the mouth where it is drawn far out.
+    const double bottom = 0.25 * std::min(length, rest), cup = std::min(0.4 * rest, 0.5 * length);
+    const double piston = bottom + cup * (0.1 + 0.8 * length / (length + rest));
+    const double wall = 0.5 * size.across, plate = 0.7 * wall;
+    const auto& p = *at;
+    return {from,
+            p(bottom, 0.0),
+            line_break(),
+            p(bottom + cup, wall),
+            p(bottom, wall),
+            p(bottom, -wall),
+            p(bottom + cup, -wall),
+            line_break(),
+            p(piston, plate),
+            p(piston, -plate),
+            line_break(),
+            p(piston, 0.0),
+            to};
+}
+
+std::vector<Point> hatching(const Point& from, const Point& to, double apart) {
+    constexpr double most = 1000.0;
+    const auto at = way(from, to);
+    if (!at || !(apart > 0.0)) return {};
+    const int strokes = static_cast<int>(std::clamp(std::round(at->length / apart), 1.0, most));
+    const double every = at->length / strokes, deep = 0.8 * std::min(apart, every);
+    std::vector<Point> points;
+    for (int i = 1; i <= strokes; ++i) {
+        points.push_back((*at)(i * every, 0.0));
+        points.push_back((*at)(i * every - deep, -deep));
+        points.push_back(line_break());
+    }
+    return points;
+}
+
+}  // namespace achilles
