@@ -104,7 +104,9 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
         commands.emplace_back(command::Show{"lens", false});
     const auto lens = Lens::at(session.trajectory(), index);
     if (!lens) {
-        paragraph("One impact and no bouncing: there is no row to look at.", width, faint_color());
+        paragraph(zeno.contacts.count() > 1 ? "Several contacts come to rest together: there is no row of equal arcs."
+                                            : "One impact and no bouncing: there is no row to look at.",
+                  width, faint_color());
     } else {
         paragraph(explanation(*lens), width, faint_color());
         ImGui::Dummy({0.0F, units(2.0F)});

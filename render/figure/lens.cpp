@@ -37,19 +37,43 @@ void set_time_left(Axis& axis, double low, double high) {
     }
 }
 
+// Of a Zeno event: what bounces, and what was held all the while.
+std::size_t the_contact(const Event& zeno) {
+    std::size_t contact = 0;
+    while (!zeno.contacts.contains(contact)) ++contact;
+    return contact;
+}
+
+ContactSet held_while_bouncing(const Event& zeno) { return zeno.held.without(zeno.contacts); }
+
+// Where the row begins: the impacts of that contact alone that nothing else interrupts, while the same others are held.
+std::size_t first_impact(const Trajectory& trajectory, std::size_t zeno) {
+    const ContactSet contact = trajectory.events[zeno].contacts, held = held_while_bouncing(trajectory.events[zeno]);
+    std::size_t first = zeno;
+    while (first > 0) {
+        const Event& before = trajectory.events[first - 1];
+        if (before.kind != Event::Kind::impact || !(before.contacts == contact) || !(before.held == held)) break;
+        --first;
+    }
+    return first;
+}
+
 }  // namespace
 
 std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     if (event >= trajectory.events.size()) return std::nullopt;
     const Event& zeno = trajectory.events[event];
-    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.impacts < 2) return std::nullopt;
+    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.contacts.count() != 1) return std::nullopt;
+    const std::size_t first = first_impact(trajectory, event);
+    if (event - first < 2) return std::nullopt;
     const Model& model = *trajectory.model;
+    const std::size_t contact = the_contact(zeno);
     Lens lens;
-    lens.e_ = model.evaluator(model.restitution(), trajectory.run.parameters).output(0);
-    auto flight = model.evaluator(model.motion({}).program, trajectory.run.parameters);
+    lens.e_ = model.evaluator(model.restitution(contact), trajectory.run.parameters).output(0);
+    auto flight = model.evaluator(model.motion(held_while_bouncing(zeno)).program, trajectory.run.parameters);
     set_state(flight, State{zeno.q, zeno.v_after, zeno.t});
     flight.run();
-    const double a = -flight.hddot(0);
+    const double a = -flight.hddot(contact);
     if (!(lens.e_ > 0.0) || !(lens.e_ < 1.0) || !(a > 0.0)) return std::nullopt;
     lens.spacing_ = -std::log10(lens.e_);
     lens.height_ = lens.e_ * lens.e_ / (2.0 * a);
@@ -58,9 +82,8 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     if (zeno.certificate && zeno.certificate->certified && zeno.certificate->zeno_low < zeno.t)
         lens.interval_ = std::max(lens.cut_, x(zeno.certificate->zeno_low));
 
-    auto gap = model.evaluator(model.gap(), trajectory.run.parameters);
+    auto gap = model.evaluator(model.gap(contact), trajectory.run.parameters);
     Sampler sampler(trajectory);
-    const auto first = event - static_cast<std::size_t>(zeno.impacts);
     for (std::size_t i = first; i + 1 < event; ++i) {  // to the impact at which the bouncing is cut
         const Event &impact = trajectory.events[i], &next = trajectory.events[i + 1];
         const double w = impact.impact_speed, down = next.impact_speed, length = next.t - impact.t;

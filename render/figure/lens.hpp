@@ -11,11 +11,11 @@
 
 namespace achilles {
 
-// What the lens looks at: the hybrid phase that ends with one Zeno event.
+// What the lens looks at: the impacts of one contact that lead to a Zeno event, while the same others are held.
 class Lens {
  public:
     // Of the trajectory's event number `event` (from 0). Nothing where it is no Zeno event, where no impact leads to
-    // it, or where e = 0, which takes one impact and leaves no row.
+    // it, where several contacts come to rest together, or where e = 0, which takes one impact and leaves no row.
     static std::optional<Lens> at(const Trajectory& trajectory, std::size_t event);
 
     // x = -log10(tau_inf - t), t in seconds. The first impact; where the run was cut (tau_k); where the certified
@@ -35,7 +35,7 @@ class Lens {
     // The row from x = low to high, and as a band the certified interval of tau_inf: it begins at zeno_low, and as
     // tau_inf is infinitely far to the right, it has no end. Up to the cut it is the run's own: gap over the square of
     // the impact speed. From there on it is drawn as the limit it approaches, arcs of height e^2/(2 a), a = -hddot at
-    // the Zeno point, for as long as anyone scrolls.
+    // the Zeno point (while the others are held), for as long as anyone scrolls.
     Panel panel(double low, double high, const Theme& theme) const;
 
  private:
