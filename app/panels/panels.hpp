@@ -111,9 +111,10 @@ struct PlaneView {
     std::optional<Run> run;  // of that
     double end = 0.0;
     bool dark = false;
-    Framing framing, framed;  // as it is to be; as it was made
-    std::shared_ptr<const Field> gap;
-    std::vector<double> gap_key;  // what that depends on
+    Framing framing, framed;           // as it is to be; as it was made
+    std::shared_ptr<const Field> gap;  // the least of all
+    std::vector<Point> border;         // where one is zero, and none negative
+    std::vector<double> gap_key;       // what these depend on
     const PreparedView* gap_of = nullptr;
 };
 

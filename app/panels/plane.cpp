@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "figure/axes.hpp"
+#include "figure/boundary.hpp"
 #include "figure/field.hpp"
 #include "figure/label.hpp"
 #include "paint/label.hpp"
@@ -64,32 +65,41 @@ State slice_of(const Session& session, const PlaneView& plane) {
     return plane.is_held ? State{session.run().q, session.run().v} : session.now().state;
 }
 
-// The gap over the part of the plane that is seen, in the units that are shown.
+// The least gap over the part of the plane that is seen, in the units that are shown, and the border of what is open.
 const Field& gap_of(const Session& session, const Panel& panel, const Axes& axes, PlaneView& plane) {
     State state = slice_of(session, plane);
     std::vector<double> key{panel.x.low, panel.x.high, panel.y.low, panel.y.high};
     const double t = plane.is_held ? session.run().options.start_time : session.now().t;
-    const std::uint32_t slot = session.model()->layout().t();
-    if (depends_on(session.model()->equations().gaps[0], {&slot, 1})) key.push_back(t);
+    const Model& model = *session.model();
+    if (has_moving_gap(model)) key.push_back(t);
     const auto& parameters = session.run().parameters;
     key.insert(key.end(), parameters.begin(), parameters.end());
     for (Eigen::Index i = 0; i < state.q.size(); ++i)
         if (i != axes.first.coordinate && i != axes.second.coordinate) key.push_back(state.q[i]);
     if (plane.gap && plane.gap_key == key && plane.gap_of == plane.view.get()) return *plane.gap;
-    auto gap = session.model()->evaluator(session.model()->gap(), parameters);
-    gap.input(slot) = t;
     const auto& quantities = plane.view->quantities();
     Drawing limits;
     limits.x_low = panel.x.low, limits.x_high = panel.x.high;
     limits.y_low = panel.y.low, limits.y_high = panel.y.high;
     plane.gap_key = key;
     plane.gap_of = plane.view.get();
+    std::vector<PlaneFunction> gaps;
+    for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
+        auto gap = model.evaluator(model.gap(contact), parameters);
+        gap.input(model.layout().t()) = t;
+        gaps.emplace_back([&state, &axes, &quantities, gap](const Point& p) mutable {
+            axes.first.of(state) = p.x / quantities[0].factor;
+            axes.second.of(state) = p.y / quantities[1].factor;
+            for (Eigen::Index i = 0; i < state.q.size(); ++i) gap.input(static_cast<std::size_t>(i)) = state.q[i];
+            gap.run();
+            return gap.output(0);
+        });
+    }
+    plane.border = border(limits, gaps);
     plane.gap = std::make_shared<const Field>(limits, [&](const Point& p) {
-        axes.first.of(state) = p.x / quantities[0].factor;
-        axes.second.of(state) = p.y / quantities[1].factor;
-        for (Eigen::Index i = 0; i < state.q.size(); ++i) gap.input(static_cast<std::size_t>(i)) = state.q[i];
-        gap.run();
-        return gap.output(0);
+        double least = gaps.front()(p);
+        for (std::size_t i = 1; i < gaps.size(); ++i) least = std::min(least, gaps[i](p));
+        return least;
     });
     return *plane.gap;
 }
@@ -207,10 +217,10 @@ void show_plane(const Session& session, const Rectangle& area, PanelState& state
     if (inner.width < units(80.0F) || inner.height < units(60.0F)) return;
     Panel panel = panel_of(session, axes, plane);
     const Field& gap = gap_of(session, panel, axes, plane);
-    Stroke border;
-    border.color = session.theme().surface;
-    border.width = 2.0;
-    panel.curves.insert(panel.curves.begin(), Curve{"", border, gap.zero_line()});
+    Stroke line_of_border;
+    line_of_border.color = session.theme().surface;
+    line_of_border.width = 2.0;
+    panel.curves.insert(panel.curves.begin(), Curve{"", line_of_border, plane.border});
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Rectangle plot = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
     if (plot.width < 2.0F || plot.height < 2.0F) return;

@@ -21,12 +21,20 @@ struct Part {
     Drawing box;
 };
 
-// The gap depends on no other coordinates than these, and not on time.
-bool is_of(const Model& model, const Pair& pair) {
-    std::vector<std::uint32_t> others{model.layout().t()};
+bool moves(const Model& model, std::size_t contact) {
+    const std::uint32_t t = model.layout().t();
+    return depends_on(model.equations().gaps[contact], {&t, 1});
+}
+
+// Those whose gaps depend on no other coordinates than these, and not on time unless moving ones are asked for.
+std::vector<std::size_t> contacts_of(const Model& model, const Pair& pair, bool also_moving) {
+    std::vector<std::uint32_t> others;
     for (std::size_t i = 0; i < model.layout().dof; ++i)
         if (i != pair[0] && i != pair[1]) others.push_back(static_cast<std::uint32_t>(model.layout().q(i)));
-    return !depends_on(model.equations().gaps[0], others);
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (!depends_on(model.equations().gaps[i], others) && (also_moving || !moves(model, i))) found.push_back(i);
+    return found;
 }
 
 // The values of a view's first two quantities at a state of rest with these two coordinates.
@@ -81,7 +89,7 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
         part.pair = {*x, *y};
         part.box.x_low = panel.x.low / quantities[0].factor, part.box.x_high = panel.x.high / quantities[0].factor;
         part.box.y_low = panel.y.low / quantities[1].factor, part.box.y_high = panel.y.high / quantities[1].factor;
-        return is_of(model, part.pair) ? std::optional(part) : std::nullopt;
+        return part;
     }
     if (model.dof() != 2) return std::nullopt;
     part.pair = {0, 1};
@@ -99,19 +107,31 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
 
 }  // namespace
 
+bool has_moving_gap(const Model& model) {
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (moves(model, i)) return true;
+    return false;
+}
+
 std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-                            const Panel& panel) {
+                            const Panel& panel, std::optional<double> t) {
     const auto part = part_of(trajectory, samples, view, panel);
     if (!part) return {};
-    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
-    for (std::size_t i = 0; i < trajectory.model->layout().dof; ++i)
-        gap.input(i) = trajectory.run.q[static_cast<Eigen::Index>(i)];
-    std::vector<Point> line = Field(part->box, [&](const Point& p) {
-                                  gap.input(part->pair[0]) = p.x;
-                                  gap.input(part->pair[1]) = p.y;
-                                  gap.run();
-                                  return gap.output(0);
-                              }).zero_line();
+    const Model& model = *trajectory.model;
+    const std::vector<std::size_t> contacts = contacts_of(model, part->pair, t.has_value());
+    const State here{trajectory.run.q, trajectory.run.v, t.value_or(trajectory.run.options.start_time)};
+    std::vector<PlaneFunction> gaps;
+    for (const std::size_t contact : contacts) {
+        auto gap = model.evaluator(model.gap(contact), trajectory.run.parameters);
+        set_state(gap, here);
+        gaps.emplace_back([gap, pair = part->pair](const Point& p) mutable {
+            gap.input(pair[0]) = p.x;
+            gap.input(pair[1]) = p.y;
+            gap.run();
+            return gap.output(0);
+        });
+    }
+    std::vector<Point> line = border(part->box, gaps);
     Place place(trajectory, view, part->pair);
     for (Point& point : line)
         if (std::isfinite(point.x)) point = place(point);

@@ -1,6 +1,7 @@
-// The boundary h = 0 in the picture of a path.
+// The boundaries h = 0 in the picture of a path.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,11 +9,15 @@
 
 namespace achilles {
 
-// The line h = 0 as a view shows it, in the units that are shown; segments, separated by NaN points. The view's axes are
-// two coordinates on which alone the gap depends, seen between the limits of `panel`; or, in a system of two
-// coordinates, any functions of them (a point of a mechanism), seen where the run goes and half as far again. Empty for
-// every other view.
+// The line h = 0 of every gap as a view shows it, less where another gap is negative, in the units that are shown;
+// segments, separated by NaN points. The view's axes are two coordinates, of the gaps that depend on them alone, seen
+// between the limits of `panel`; or, in a system of two coordinates, any functions of them (a point of a mechanism), seen
+// where the run goes and half as far again. Empty for every other view. A gap that depends on time is drawn as it is at t:
+// of a whole run, where there is no such time, it is left out, since any line of it would be one that the path may cross.
 std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-                            const Panel& panel);
+                            const Panel& panel, std::optional<double> t = {});
+
+// Whether a gap of the model depends on time.
+bool has_moving_gap(const Model& model);
 
 }  // namespace achilles

@@ -1,5 +1,6 @@
 #include "figure/field.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -22,7 +23,7 @@ bool crosses(const Corner& a, const Corner& b) {
 
 }  // namespace
 
-Field::Field(const Drawing& limits, const std::function<double(const Point&)>& value) : limits_(limits) {
+Field::Field(const Drawing& limits, const PlaneFunction& value) : limits_(limits) {
     limits_.shapes.clear();
     values_.resize(static_cast<std::size_t>((columns + 1) * (rows + 1)));
     for (int j = 0; j <= rows; ++j)
@@ -79,6 +80,37 @@ std::vector<std::vector<Point>> Field::not_negative() const {
         close(columns);
     }
     return parts;
+}
+
+double Field::largest() const {
+    double size = 0.0;
+    for (const double value : values_)
+        if (std::isfinite(value)) size = std::max(size, std::abs(value));
+    return size;
+}
+
+std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions) {
+    constexpr double rounding = 1e-3;  // of a line made of chords: where functions touch, or are the same, both count
+    std::vector<Field> fields;
+    std::vector<double> below;
+    for (const PlaneFunction& function : functions) {
+        fields.emplace_back(limits, function);
+        below.push_back(-rounding * fields.back().largest());
+    }
+    std::vector<Point> all;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        const std::vector<Point> line = fields[i].zero_line();
+        for (std::size_t k = 0; k + 2 < line.size(); k += 3) {
+            const Point middle{0.5 * (line[k].x + line[k + 1].x), 0.5 * (line[k].y + line[k + 1].y)};
+            bool seen = true;
+            for (std::size_t j = 0; j < functions.size() && seen; ++j)
+                seen = j == i || !(functions[j](middle) < below[j]);
+            if (seen)
+                all.insert(all.end(), line.begin() + static_cast<std::ptrdiff_t>(k),
+                           line.begin() + static_cast<std::ptrdiff_t>(k + 3));
+        }
+    }
+    return all;
 }
 
 }  // namespace achilles

@@ -2,21 +2,25 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "figure/drawing.hpp"
 
 namespace achilles {
 
+using PlaneFunction = std::function<double(const Point&)>;
+
 class Field {
  public:
     // Samples over the limits.
-    Field(const Drawing& limits, const std::function<double(const Point&)>& value);
+    Field(const Drawing& limits, const PlaneFunction& value);
 
     // By marching squares: segments, separated by NaN points.
     std::vector<Point> zero_line() const;
     // Convex polygons that fill the part where the function is zero or above; none covers another.
     std::vector<std::vector<Point>> not_negative() const;
+    double largest() const;  // size of a value
 
  private:
     static constexpr int columns = 160, rows = 120;
@@ -29,5 +33,8 @@ class Field {
     Drawing limits_;
     std::vector<double> values_;  // row by row
 };
+
+// The border of where none of several functions is negative: the zero line of each, less where another is negative.
+std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions);
 
 }  // namespace achilles

@@ -97,17 +97,11 @@ void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
 }
 
-// What is touched, while a contact is held there: in the colour of constrained phases, a little bolder.
+// What is touched, while a contact is held there: its lines have the colour of constrained phases and are a little bolder;
+// what is filled keeps its own colour, with such a rim.
 void light(Shape& shape, const Theme& theme) {
-    const Color accent = phase_color(theme, Phase::Kind::constrained);
-    shape.stroke.color = accent;
-    if (shape.stroke.width > 0.0) shape.stroke.width += 0.75;
-    constexpr double share = 0.5;
-    const auto mixed = [](std::uint8_t own, std::uint8_t other) {
-        return static_cast<std::uint8_t>(std::lround((1.0 - share) * own + share * other));
-    };
-    Color& fill = shape.fill_color;
-    fill = {mixed(fill.r, accent.r), mixed(fill.g, accent.g), mixed(fill.b, accent.b), fill.a};
+    shape.stroke.color = phase_color(theme, Phase::Kind::constrained);
+    if (shape.stroke.width > 0.0) shape.stroke.width += shape.fill ? 1.5 : 0.75;
 }
 
 // Whether an expression names one of the coordinates, or t.
@@ -171,7 +165,7 @@ std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& 
                                            double world) const {
     const Point &from = placed.points.front(), &to = placed.points.back();
     const Kind shape = item.description.shape;
-    constexpr double hatch_of_world = 0.018;
+    constexpr double hatch_of_world = 0.022;
     if (shape == Kind::ground) return hatching(from, to, hatch_of_world * world);
     const Placed at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
     const Point &a = at_rest.points.front(), &b = at_rest.points.back();
@@ -268,15 +262,18 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         shape.radius = placed.radius;
     }
     if (plane_) {
-        Evaluator<double> gap = model_.evaluator(model_.gap(), parameters);
-        gap.input(model_.layout().t()) = t;
-        const Field h(limits, [&](const Point& p) {
-            gap.input(0) = p.x;
-            gap.input(1) = p.y;
-            gap.run();
-            return gap.output(0);
-        });
-        add(Shape::Kind::polyline, theme.surface, 2.0).points = h.zero_line();
+        std::vector<PlaneFunction> gaps;
+        for (std::size_t i = 0; i < model_.contacts(); ++i) {
+            Evaluator<double> gap = model_.evaluator(model_.gap(i), parameters);
+            gap.input(model_.layout().t()) = t;
+            gaps.emplace_back([gap](const Point& p) mutable {
+                gap.input(0) = p.x;
+                gap.input(1) = p.y;
+                gap.run();
+                return gap.output(0);
+            });
+        }
+        add(Shape::Kind::polyline, theme.surface, 2.0).points = border(limits, gaps);
         Shape& disc = add(Shape::Kind::disc, theme.body, 0.0);
         disc.moves = true;
         disc.points = {{state.q[0], state.q[1]}};

@@ -43,7 +43,7 @@ double fitting_across(double rest, double world) {
 
 int fitting_coils(const PartSize& size) {
     constexpr int least = 4, most = 16;
-    constexpr double apart = 0.55;  // of a coil's breadth
+    constexpr double apart = 0.85;  // of a coil's breadth
     const double coils = std::round(size.rest / (apart * size.across));
     return std::isfinite(coils) ? static_cast<int>(std::clamp<double>(coils, least, most)) : least;
 }
