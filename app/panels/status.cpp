@@ -26,14 +26,16 @@ void legend_entry(const std::string& text, const std::function<void(ImDrawList*,
 }
 
 void show_legend(const Session& session) {
-    const Event::Kind events[] = {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
+    std::vector<Markers> events;
+    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
+        events.push_back(event_markers(session.theme(), kind));
+    if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
     const Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
     const float gap = units(12.0F);
     float width = 0.0F;
     for (const Phase::Kind kind : phases)
         width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
-    for (const Event::Kind kind : events)
-        width += ImGui::CalcTextSize(event_markers(session.theme(), kind).label.c_str()).x + units(18.0F) + gap;
+    for (const Markers& markers : events) width += ImGui::CalcTextSize(markers.label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - units(edge) - width + gap);
@@ -44,12 +46,11 @@ void show_legend(const Session& session) {
         });
         ImGui::SameLine(0.0F, gap);
     }
-    for (const Event::Kind kind : events) {
-        const Markers markers = event_markers(session.theme(), kind);
+    for (const Markers& markers : events) {
         legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
             paint_marker(list, markers, {c.x, c.y}, units(1.0F));
         });
-        if (kind != Event::Kind::release) ImGui::SameLine(0.0F, gap);
+        if (&markers != &events.back()) ImGui::SameLine(0.0F, gap);
     }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "figure/boundary.hpp"
 #include "figure/label.hpp"
 #include "figure/publication.hpp"
 #include "simulate/sampler.hpp"
@@ -30,7 +31,8 @@ bool has_units(const SystemDescription& description) {
                        [](const CoordinateDescription& c) { return !c.unit.empty(); });
 }
 
-void append(std::vector<Point>& all, const std::vector<Point>& more) {
+template <class Thing>
+void append(std::vector<Thing>& all, const std::vector<Thing>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
@@ -40,6 +42,8 @@ Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription
     for (Panel& panel : figure.panels) {
         for (Markers& markers : panel.markers) markers.points.clear();
         for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
+        for (TimeBar& one : panel.time_bars)
+            for (TimeBar::Mark& mark : one.marks) mark.color.a = pale;
     }
     return figure;
 }
@@ -129,6 +133,10 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
 void Animation::add_present(Panel& panel, const PreparedView& view, const Sample& now) const {
     const auto end = std::upper_bound(samples_.begin(), samples_.end(), now.t,
                                       [](double t, const Sample& sample) { return t < sample.t; });
+    if (!view.quantities()[0].is_time && has_moving_gap(*trajectory_.model)) {
+        panel.boundary.stroke = {light_theme().surface, 1.0, {}};
+        panel.boundary.points = boundary(trajectory_, samples_, view, panel, now.t);
+    }
     std::vector<Sample> past(samples_.begin(), end);
     past.push_back(now);
     const Theme theme = light_theme();
@@ -144,6 +152,8 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
         panel.curves[i].label.clear();
     }
     for (std::size_t i = 0; i < panel.markers.size(); ++i) append(panel.markers[i].points, present.markers[i].points);
+    for (std::size_t i = 0; i < panel.time_bars.size(); ++i)
+        append(panel.time_bars[i].marks, present.time_bars[i].marks);
 
     const std::vector<double> values = values_at(trajectory_, now, view);
     if (view.quantities()[0].is_time) {
@@ -170,7 +180,7 @@ Still Animation::at(double t) {
     Still still;
     still.areas = areas_;
     const double scale = still.scale = still_scale(size_);
-    still.world = mechanism_.draw(now.t, now.state, trajectory_.run.parameters, limits_, theme);
+    still.world = mechanism_.draw(now.t, now.state, trajectory_.run.parameters, limits_, theme, now.held);
     add_trail(still.world.shapes, trail_, samples_, now.t, theme);
     still.plane = plane_;
     for (Panel& panel : still.plane.panels) add_present(panel, *plane_view_, now);

@@ -90,6 +90,15 @@ std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m
                   m.text * closest_ticks);
 }
 
+// Of the names of time bars: smaller than what is on the axes.
+float name_size(const Metrics& m) { return std::max(std::round(0.9F * m.text), m.smallest_text); }
+
+float widest_name(const Panel& panel, const Metrics& m) {
+    float width = 0.0F;
+    for (const TimeBar& one : panel.time_bars) width = std::max(width, m.width(one.label, name_size(m)));
+    return width;
+}
+
 // A label that is at most `room` long.
 struct Fitted {
     std::string label;
@@ -113,9 +122,9 @@ Fitted fitting(const std::string& label, const Metrics& m, float room) {
     return {shorter, size};
 }
 
-void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float strip,
            const Metrics& m) {
-    const float bottom = plot.y + plot.height + m.line;
+    const float bottom = plot.y + plot.height + strip + m.line;
     const float below = bottom + m.tick + m.gap;
     for (const Placed& p : ticks_x(panel, plot, m)) {
         bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
@@ -128,7 +137,8 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     // Centred below the plot, but never beyond the panel.
     const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
     const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
-    sheet.emplace_back(TextRun{at, plot.y + plot.height + room.bottom - m.text * 1.1F, 0.5F, label, style.ink, size});
+    sheet.emplace_back(
+        TextRun{at, plot.y + plot.height + strip + room.bottom - m.text * 1.1F, 0.5F, label, style.ink, size});
 }
 
 void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
@@ -167,7 +177,8 @@ Metrics::Metrics(const Figure& style, const Measure& measure, double scale_)
 Margins margins(const Panel& panel, const Metrics& m) {
     Margins room;
     room.left = m.line + m.tick;
-    if (has_tick_labels(panel.y)) room.left += m.gap + widest_label(panel.y, m);
+    const float widest = std::max(has_tick_labels(panel.y) ? widest_label(panel.y, m) : 0.0F, widest_name(panel, m));
+    if (has_tick_labels(panel.y) || !panel.time_bars.empty()) room.left += m.gap + widest;
     if (!panel.y.label.empty() && panel.y.labelled) room.left += m.text * 1.1F + 2.0F * m.gap;
     room.bottom = m.line + m.tick;
     if (has_tick_labels(panel.x)) room.bottom += m.gap + m.text;
@@ -212,14 +223,54 @@ void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
             bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
 }
 
+float strip_height(const Panel& panel, Rectangle area, const Metrics& m) {
+    if (panel.time_bars.empty()) return 0.0F;
+    constexpr float most = 0.4F;  // of the area
+    const auto count = static_cast<float>(panel.time_bars.size());
+    const float row = std::min(std::round(1.1F * name_size(m)), std::floor(most * area.height / count));
+    return row < 2.0F * m.line ? 0.0F : count * row + 3.0F * m.line;
+}
+
+void lay_time_bars(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, float strip,
+                   const Metrics& m) {
+    if (!(strip > 0.0F)) return;
+    const AxisMap map = PanelMap(panel, plot).x;
+    const float left = plot.x, right = plot.x + plot.width, size = name_size(m);
+    const float row = (strip - 3.0F * m.line) / static_cast<float>(panel.time_bars.size());
+    const float thick = std::max(std::round(0.55F * row), m.line);
+    const auto place = [&](double value) {  // what has no place on a logarithmic axis is left of it
+        const double at = map(value);
+        return std::round(at >= left ? static_cast<float>(std::min(at, double{right})) : left);
+    };
+    float y = plot.y + plot.height + 2.0F * m.line;
+    if (style.background.a > 0) bar(sheet, left, y - m.line, plot.width, strip - m.line, style.background);
+    for (const TimeBar& one : panel.time_bars) {
+        const float top = std::round(y + 0.5F * (row - thick));
+        for (const TimeBar::Mark& mark : one.marks) {
+            if (mark.high < panel.x.low || mark.low > panel.x.high) continue;
+            const float from = place(mark.low), to = place(mark.high);
+            if (mark.high > mark.low)
+                bar(sheet, from, top, std::max(to - from, m.line), thick, mark.color);
+            else
+                bar(sheet, std::clamp(std::round(from - 0.5F * m.line), left, right - m.line), top, m.line, thick,
+                    mark.color);
+        }
+        if (row >= 0.75F * size)
+            sheet.emplace_back(
+                TextRun{left - m.line - m.tick - m.gap, y + 0.5F * (row - size), 1.0F, one.label, style.ink, size});
+        y += row;
+    }
+}
+
 void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float lift,
-              const Metrics& m) {
+              float strip, const Metrics& m) {
     const float width = plot.width + 2.0F * m.line;
     bar(sheet, plot.x - m.line, plot.y - m.line, width, m.line, style.ink);
     bar(sheet, plot.x - m.line, plot.y + plot.height, width, m.line, style.ink);
-    bar(sheet, plot.x - m.line, plot.y, m.line, plot.height, style.ink);
-    bar(sheet, plot.x + plot.width, plot.y, m.line, plot.height, style.ink);
-    lay_x(panel, style, sheet, plot, room, m);
+    if (strip > 0.0F) bar(sheet, plot.x - m.line, plot.y + plot.height + strip, width, m.line, style.ink);
+    bar(sheet, plot.x - m.line, plot.y, m.line, plot.height + strip, style.ink);
+    bar(sheet, plot.x + plot.width, plot.y, m.line, plot.height + strip, style.ink);
+    lay_x(panel, style, sheet, plot, room, strip, m);
     lay_y(panel, style, sheet, plot, room, m);
     if (panel.title.empty()) return;
     const auto [title, size] = fitting(panel.title, m, plot.width + room.right);

@@ -48,8 +48,15 @@ struct PanelMap {
 };
 
 void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& metrics);
-// Box, ticks, all labels and, lifted by so much, the title, in the room of the margins.
+// Box, ticks, all labels and, lifted by so much, the title, in the room of the margins; the box is higher than the plot area
+// by the strip of the time bars below it.
 void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& margins,
-              float title_lift, const Metrics& metrics);
+              float title_lift, float strip, const Metrics& metrics);
+
+// What the time bars take from the bottom of an area: a row each, less where there are many; 0 without any.
+float strip_height(const Panel& panel, Rectangle area, const Metrics& metrics);
+// The time bars in the strip under the plot area, their names where the y axis has its numbers.
+void lay_time_bars(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, float strip,
+                   const Metrics& metrics);
 
 }  // namespace achilles

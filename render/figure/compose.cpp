@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "figure/boundary.hpp"
+#include "figure/contact_bars.hpp"
 #include "figure/label.hpp"
 #include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
@@ -202,6 +203,20 @@ void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values&
     }
 }
 
+// Where a held contact was opened, above the impact that did it.
+void add_opened(Panel& panel, const Trajectory& trajectory, double end, Values& values, const Framing& framing,
+                const Theme& theme) {
+    Markers& markers = panel.markers.emplace_back(opened_markers(theme));
+    for (const Event& event : trajectory.events) {
+        if (event.opened.empty() || event.t > end) continue;
+        values.set(sample_at(event));
+        for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
+            const Point point = point_of(values[0], values[i + 1]);
+            if (!framing.hidden.contains(i) && !std::isnan(point.x)) markers.points.push_back(point);
+        }
+    }
+}
+
 // What lies in one of `columns` columns of the panel shows as a vertical line there: the first point, the lowest, the
 // highest and the last draw the same.
 std::vector<Point> thinned(const std::vector<Point>& points, const Axis& x, double columns) {
@@ -309,12 +324,15 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     y_range.positive = framing.log_y;
     add_curves(panel, view, theme);
     trace(panel, samples, values, framing, x_range, y_range);
+    const bool several = trajectory.model->contacts() > 1 && !samples.empty();
     if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
+    if (several) add_opened(panel, trajectory, samples.back().t, values, framing, theme);
     const bool whole_run = over_time && !framing.log_x;
     if (whole_run) x_range.low = 0.0, x_range.high = trajectory.end_time;
     set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
     set_limits(panel.y, framing.y, y_range, 0.07);
     thin(panel);
+    if (several && over_time) panel.time_bars = contact_bars(trajectory, samples.back().t, panel.x, theme);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
     panel.y.label = view.label().empty() ? view.unit() : with_unit(view.label(), view.unit());
     if (framing.for_print && !over_time) make_picture(panel, trajectory, samples, view, framing, theme);

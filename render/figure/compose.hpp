@@ -63,7 +63,7 @@ struct Framing {
 };
 
 // The panel of one view until the last of the samples: hybrid phases dashed, constrained ones solid, squares at
-// impacts, markers at Zeno points and releases.
+// impacts, markers at Zeno points and releases. Over time a run of several contacts has a bar for each (contact_bars.hpp).
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme, const Framing& framing = {});
 

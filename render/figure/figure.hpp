@@ -40,6 +40,17 @@ struct Markers {
     double size = 6.0;  // across
     std::vector<Point> points;
     double apart = 0.05;  // one that is nearer than this to another is not drawn
+    double lift = 0.0;    // drawn so much above its point
+};
+
+// What lasts and what happens along the x axis, as a thin bar under the plot area.
+struct TimeBar {
+    struct Mark {
+        double low = 0.0, high = 0.0;  // equal: an instant, drawn as a tick
+        Color color;
+    };
+    std::string label;
+    std::vector<Mark> marks;  // painted in this order
 };
 
 // A stretch of the x axis, over the whole height and behind everything; it may go on beyond the limits.
@@ -71,6 +82,7 @@ struct Panel {
     Curve boundary;  // behind the curves: what the path cannot cross
     std::vector<Curve> curves;
     std::vector<Markers> markers;
+    std::vector<TimeBar> time_bars;  // from top to bottom
     bool legend = false;
     bool legend_above = false;  // in a line above the plot area, where it covers nothing; else in a corner of it:
     std::array<double, 2> legend_at{1.0, 1.0};  // corner of the plot area: (0,0) bottom left, (1,1) top right

@@ -73,6 +73,16 @@ std::string to_text(const Figure& figure) {
                 fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label,
                             color_text(curve.stroke.color), curve.stroke.width,
                             curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(), points_text(curve.points));
+        for (const TimeBar& one : panel.time_bars) {
+            constexpr std::size_t most = 40;
+            text += fmt::format("  bar \"{}\" of {}:", one.label, one.marks.size());
+            for (std::size_t i = 0; i < std::min(most, one.marks.size()); ++i) {
+                const TimeBar::Mark& mark = one.marks[i];
+                text += mark.high > mark.low ? fmt::format(" {:.9g} to {:.9g}", mark.low, mark.high)
+                                             : fmt::format(" {:.9g}", mark.low);
+            }
+            text += "\n";
+        }
         for (const Markers& markers : panel.markers)
             text += fmt::format("  markers \"{}\" {} {} size {:.9g} points {}:{}\n", markers.label,
                                 shape_text(markers.shape), color_text(markers.fill), markers.size,

@@ -60,7 +60,8 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
     constexpr std::size_t remembered = 32;
     std::vector<Point> laid;
     for (const Point& point : markers.points) {
-        const Point at = map(point);
+        Point at = map(point);
+        at.y -= markers.lift * m.scale;
         if (!is_inside(at)) continue;
         const auto recent = laid.end() - static_cast<std::ptrdiff_t>(std::min(laid.size(), remembered));
         if (std::any_of(recent, laid.end(), [&](const Point& other) {
@@ -229,7 +230,9 @@ float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
 // The panel with its plot area given.
 Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
                  const Metrics& m) {
-    const Rectangle inner = with_equal_units(panel, plot);
+    Rectangle inner = with_equal_units(panel, plot);
+    const float strip = strip_height(panel, inner, m);
+    inner.height -= strip;
     if (style.background.a > 0) sheet.emplace_back(Fill{inner, style.background});
     lay_bands(panel, sheet, inner);
     lay_grid(panel, style, sheet, inner, m);
@@ -240,7 +243,12 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
         keys.lay(sheet, inner.x + inner.width, inner.y - m.gap - keys.height(m), 1.0F, style, m);
         if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }
-    lay_axes(panel, style, sheet, inner, room, lift, m);
+    lay_time_bars(panel, style, sheet, inner, strip, m);
+    for (const Markers& markers : panel.markers)  // an instant is one on these bars, too
+        if (strip > 0.0F && markers.shape == Markers::Shape::bar)
+            lay_bars(markers, sheet, {inner.x, inner.y + inner.height + m.line, inner.width, strip - m.line},
+                     PanelMap(panel, inner), m);
+    lay_axes(panel, style, sheet, inner, room, lift, strip, m);
     lay_events(panel, sheet, inner, m);
     if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
     return inner;

@@ -137,6 +137,15 @@ Markers event_markers(const Theme& theme, Event::Kind kind) {
     return markers;
 }
 
+Markers opened_markers(const Theme& theme) {
+    Markers markers = event_markers(theme, Event::Kind::release);
+    markers.label = "opened by an impact";
+    markers.edge = markers.fill;
+    markers.fill = theme.background;
+    markers.lift = markers.size;
+    return markers;
+}
+
 std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 
 std::string event_name(const Event& event) {

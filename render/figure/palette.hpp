@@ -40,6 +40,8 @@ Color phase_color(const Theme& theme, Phase::Kind kind);
 Stroke pinned_stroke(const Theme& theme, const Stroke& stroke);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
+// Hollow triangles above the squares of impacts that open a held contact; no points yet.
+Markers opened_markers(const Theme& theme);
 // What a legend calls them.
 std::string legend_text(Phase::Kind kind);
 // What a reader calls an event: "impact", "release", "Zeno point", and "landing" where restitution 0 ends the fall at once.

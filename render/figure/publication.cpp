@@ -1,7 +1,6 @@
 #include "figure/publication.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -33,9 +32,11 @@ std::string lettered(std::size_t i, const std::string& name) {
 }
 
 // Smaller than on a screen. Impacts crowd: rims would leave odd shapes of those that others cover.
-Markers for_print(Markers markers, Event::Kind kind) {
-    markers.size = kind == Event::Kind::impact ? 5.5 : 9.0;
-    if (kind == Event::Kind::impact) markers.edge.a = 0, markers.apart = 1.3 * markers.size;
+Markers for_print(Markers markers) {
+    const bool is_impact = markers.shape == Markers::Shape::square;
+    markers.size = is_impact ? 5.5 : 9.0;
+    if (is_impact) markers.edge.a = 0, markers.apart = 1.3 * markers.size;
+    if (markers.lift > 0.0) markers.lift = markers.size;
     return markers;
 }
 
@@ -49,6 +50,17 @@ bool any_of(std::span<const Trajectory* const> runs, std::vector<Thing> Trajecto
     });
 }
 
+// Of several contacts: what a phase says of them. Which ones are held is told under what is plotted over time.
+std::string about_contacts(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
+                           Phase::Kind kind) {
+    if (std::none_of(runs.begin(), runs.end(), [](const Trajectory* run) { return run->model->contacts() > 1; }))
+        return "";
+    if (kind == Phase::Kind::hybrid) return ": no contact held";
+    const bool has_bars =
+        std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.time_bars.empty(); });
+    return has_bars ? ": the bars name the contacts held" : ": some are held";
+}
+
 // Markers and dashes mean the same in every panel, so one legend tells them all; what does not occur is not in it.
 std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
                          const Theme& theme) {
@@ -59,7 +71,7 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         if (!any_of(runs, &Trajectory::phases, kind)) continue;
         Stroke stroke = phase_stroke(theme, kind, 0, 1);
         if (hues) stroke.color = theme.ink;
-        keys.push_back({legend_text(kind), stroke});
+        keys.push_back({legend_text(kind) + about_contacts(runs, panels, kind), stroke});
     }
     const auto bounded = [](const Panel& panel) { return !panel.boundary.points.empty(); };
     if (const auto one = std::find_if(panels.begin(), panels.end(), bounded); one != panels.end())
@@ -70,7 +82,14 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         const std::string zeno = event_markers(theme, Event::Kind::zeno).label;
         if (const std::size_t at = name.find(zeno); at != std::string::npos)
             name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");
-        keys.push_back({name, for_print(event_markers(theme, kind), kind)});
+        keys.push_back({name, for_print(event_markers(theme, kind))});
+    }
+    const auto opens = [](const Event& event) { return !event.opened.empty(); };
+    if (std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
+            return std::any_of(run->events.begin(), run->events.end(), opens);
+        })) {
+        const Markers markers = for_print(opened_markers(theme));
+        keys.push_back({markers.label, markers});
     }
     return keys;
 }
@@ -146,10 +165,9 @@ void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
     figure.keys = keys_of(runs, figure.panels, light_theme());
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;
-        constexpr std::array kinds{Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
-        for (std::size_t i = 0; i < panel.markers.size(); ++i) {
-            panel.markers[i] = for_print(panel.markers[i], kinds[i]);
-            panel.markers[i].label.clear();
+        for (Markers& markers : panel.markers) {
+            markers = for_print(markers);
+            markers.label.clear();
         }
     }
 }

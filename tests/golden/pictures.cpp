@@ -8,6 +8,7 @@
 #include "app/program.hpp"
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "figure/animation.hpp"
 #include "figure/compose.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
@@ -102,11 +103,24 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
             {image_name, image_of(explorer_command(journal))}};
 }
 
-void add_journals(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder) {
+// The fourth frame of four seconds each, of a system that stands here: it shows more than those of the gallery need.
+std::vector<Layer> frame_layers(const fs::path& system) {
+    constexpr double step = 4.0;
+    const auto model = std::make_shared<const Model>(read_system(system));
+    const Trajectory trajectory = simulate(model, model->default_run());
+    Animation animation(trajectory, model->description().views, {frame_width, frame_height}, step);
+    const Made frames(fmt::format("frames '{}' --fps {} --size {}x{} --jobs 1 --out .", system.string(), 1.0 / step,
+                                  frame_width, frame_height));
+    return {{"figure.txt", to_text(animation.at(3.0 * step))}, {image_name, frames.image("frame_00003.png")}};
+}
+
+template <class Make>
+void add_files(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder, const char* extension,
+               Make make) {
     if (!fs::is_directory(folder)) return;
     for (const auto& entry : fs::directory_iterator(folder))
-        if (const fs::path journal = entry.path(); journal.extension() == ".journal")
-            pictures.push_back({kind + "/" + journal.stem().string(), [journal] { return explorer_layers(journal); }});
+        if (const fs::path file = entry.path(); file.extension() == extension)
+            pictures.push_back({kind + "/" + file.stem().string(), [file, make] { return make(file); }});
 }
 
 }  // namespace
@@ -116,8 +130,9 @@ std::vector<Picture> pictures() {
     for (const std::string& system : system_names())
         all.push_back({"figure/" + system, [system] { return figure_layers(system); }});
     all.push_back({"paper", paper_layers});
-    add_journals(all, "explorer", place().goldens / "explorer");
-    add_journals(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals");
+    add_files(all, "frame", place().goldens / "frame", ".toml", frame_layers);
+    add_files(all, "explorer", place().goldens / "explorer", ".journal", explorer_layers);
+    add_files(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals", ".journal", explorer_layers);
     std::sort(all.begin(), all.end(), [](const Picture& a, const Picture& b) { return a.name < b.name; });
     return all;
 }

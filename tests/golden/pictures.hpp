@@ -8,10 +8,11 @@
 
 namespace achilles::golden {
 
-// A figure of every system in assets/systems, the paper's pictures, and the explorer after every journal in
-// tests/golden/explorer and assets/journals. What a new file shows has no golden files yet: that is a failure.
+// A figure of every system in assets/systems, the paper's pictures, a frame of every system in tests/golden/frame, and the
+// explorer after every journal in tests/golden/explorer and assets/journals. What a new file shows has no golden files yet: that is a failure.
 std::vector<Picture> pictures();
 
+constexpr int frame_width = 1000, frame_height = 625;  // pixels
 // The golden figures' size: small, with the proportions of `achilles figure`.
 constexpr int figure_width = 840, figure_height = 560;  // pixels
 constexpr double figure_size = 0.7;                     // --scale
