@@ -19,6 +19,7 @@ double size(const Reals& x) {
 
 Point sum(const std::vector<Point>& coefficients, const Real& t) {
     Point result = coefficients.back();
+    result.t = coefficients.front().t + t;
     for (std::size_t k = coefficients.size() - 1; k-- > 0;) {
         for (std::size_t i = 0; i < result.q.size(); ++i) {
             result.q[i] = coefficients[k].q[i] + t * result.q[i];
@@ -52,27 +53,68 @@ Real distance(const Reals& a, const Reals& b) {
     return sqrt(total);
 }
 
-TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step)
+TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step, std::size_t contact, ContactSet held)
     : dof_(static_cast<std::size_t>(model.dof())),
+      clock_(model.layout().t()),
       longest_step_(longest_step),
-      e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)),
-      flight_(model.motion({}).program, model.layout(), run.parameters),
-      contact_motion_(model.motion(ContactSet::of(0)).program, model.layout(), run.parameters),
-      gap_(model.gap(), model.layout(), run.parameters),
-      release_(model.release_terms(), model.layout(), run.parameters),
-      surface_(model.evaluator<Real>(model.contact_terms(), run.parameters)),
-      acceleration_(model.evaluator<Real>(model.motion(ContactSet::of(0)).program, run.parameters)) {}
+      e_(model.evaluator<Real>(model.restitution(contact), run.parameters).output(0)),
+      flight_(model.motion(held).program, model.layout(), run.parameters),
+      contact_motion_(model.motion(held.with(contact)).program, model.layout(), run.parameters),
+      gap_(model.gap(contact), model.layout(), run.parameters),
+      release_(model.programs_of(contact, held).release_terms, model.layout(), run.parameters),
+      surface_(model.evaluator<Real>(model.programs_of(contact, held).contact_terms, run.parameters)),
+      free_surface_(model.evaluator<Real>(model.programs_of(contact).contact_terms, run.parameters)),
+      normal_(model.evaluator<Real>(model.programs_of(contact, held).release_terms, run.parameters)),
+      acceleration_(model.evaluator<Real>(model.motion(held.with(contact)).program, run.parameters)) {
+    for (std::size_t j = 0; j < model.contacts(); ++j) {
+        if (j == contact) continue;
+        if (held.contains(j)) {
+            const auto terms = [&](ContactSet others) {
+                return model.evaluator<Real>(model.programs_of(j, others).contact_terms, run.parameters);
+            };
+            held_.push_back({terms(held.without(j).with(contact)), terms(held.without(j)),
+                             model.evaluator<Real>(model.programs_of(j, held.without(j)).force, run.parameters)});
+        } else {
+            open_.push_back(model.evaluator<Real>(model.gap(j), run.parameters));
+        }
+    }
+}
+
+template <class Terms>
+void TrueMotion::set(Terms& terms, const Point& point) const {
+    for (std::size_t i = 0; i < dof_; ++i) {
+        terms.input(i) = point.q[i];
+        terms.input(dof_ + i) = point.v[i];
+    }
+    terms.clock() = point.t;
+    terms.run();
+}
 
 TrueMotion::Contact TrueMotion::contact(const Point& point) {
-    for (std::size_t i = 0; i < dof_; ++i) {
-        surface_.input(i) = point.q[i];
-        surface_.input(dof_ + i) = point.v[i];
-    }
-    surface_.run();
+    set(surface_, point);
     Contact result{surface_.h(), surface_.hdot(), {}, {}};
     for (std::size_t i = 0; i < dof_; ++i) {
         result.n.push_back(surface_.impulse_direction(i));
         result.g.push_back(surface_.gradient(i));
+    }
+    return result;
+}
+
+// kappa = -g_i n_j, with the direction of j while the rest is held.
+TrueMotion::Others TrueMotion::others(const Point& point) {
+    Others result;
+    set(free_surface_, point);
+    for (Held& other : held_) {
+        set(other.force, point);
+        result.forces.push_back(other.force.output(0));
+        set(other.without, point);
+        Real kappa = 0;
+        for (std::size_t i = 0; i < dof_; ++i) kappa -= free_surface_.gradient(i) * other.without.impulse_direction(i);
+        result.transmissions.push_back(kappa);
+    }
+    for (Evaluator<Real>& gap : open_) {
+        set(gap, point);
+        result.gaps.push_back(gap.output(0));
     }
     return result;
 }
@@ -83,9 +125,19 @@ Point TrueMotion::collision(const State& before) {
         point.q.emplace_back(before.q[static_cast<Eigen::Index>(i)]);
         point.v.emplace_back(before.v[static_cast<Eigen::Index>(i)]);
     }
+    point.t = before.t;
     for (int round = 0; round < 4; ++round) {  // Newton from 1e-16: two rounds would do
         const Contact c = contact(point);
-        for (std::size_t i = 0; i < dof_; ++i) point.q[i] -= c.h * c.n[i];
+        Point next = point;
+        for (std::size_t i = 0; i < dof_; ++i) next.q[i] -= c.h * c.n[i];
+        for (Held& other : held_) {  // each along what the others' gaps do not feel
+            set(other.with, point);
+            for (std::size_t i = 0; i < dof_; ++i) {
+                next.q[i] -= other.with.h() * other.with.impulse_direction(i);
+                next.v[i] -= other.with.hdot() * other.with.impulse_direction(i);
+            }
+        }
+        point = next;
     }
     return point;
 }
@@ -111,6 +163,7 @@ TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Poi
             motion.set(i, k, path[k].q[i]);
             motion.set(dof_ + i, k, path[k].v[i]);
         }
+        motion.set(clock_, k, k == 0 ? from.t : Real(k == 1));
         motion.run(k);
         Point next;
         for (std::size_t i = 0; i < dof_; ++i) {
@@ -136,6 +189,7 @@ Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, st
             program.set(i, k, k < path.size() ? path[k].q[i] : Real(0));
             program.set(dof_ + i, k, k < path.size() ? path[k].v[i] : Real(0));
         }
+        program.set(clock_, k, k == 0 ? path[0].t : Real(k == 1));
         program.run(k);
         result.push_back(program.output(output, k));
         negligible = std::abs(static_cast<double>(result.back())) * power < tolerance ? negligible + 1 : 0;
@@ -191,26 +245,23 @@ bool TrueMotion::stay_to_dip(Flight& contact, const Real& longest, double tolera
 }
 
 Real TrueMotion::normal_acceleration(const Point& point) {
-    for (std::size_t i = 0; i < dof_; ++i) {
-        acceleration_.input(i) = point.q[i];
-        acceleration_.input(dof_ + i) = point.v[i];
-    }
-    acceleration_.run();
-    return acceleration_.hddot(0);
+    set(normal_, point);
+    return normal_.hddot();
 }
 
 Real TrueMotion::jerk(const Point& point) {
-    normal_acceleration(point);
-    return acceleration_.jerk(0);
+    set(normal_, point);
+    return normal_.jerk();
 }
 
 Point TrueMotion::drift(const Point& slid, const Real& time) {
-    normal_acceleration(slid);
+    set(acceleration_, slid);
     Point result = slid;
     for (std::size_t i = 0; i < dof_; ++i) {
         result.q[i] += slid.v[i] * time;
         result.v[i] += acceleration_.acceleration(i) * time;
     }
+    result.t += time;
     return result;
 }
 
@@ -225,7 +276,7 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
         if (!(w > 0) || !(a > 0)) return std::nullopt;
         if (e_ == 0 || w < until * first) {
             const Real rest = 2 * e_ * w / (a * (1 - e_));
-            point = drift(slid, rest);
+            point = constrained(slid, rest, 1e-32);
             result.time += rest;
             return result;
         }

@@ -1,5 +1,5 @@
-// What really happens after a collision, in 34 digits: the bouncing to its Zeno point, impact by impact, and the
-// constrained motion from a restart. Certificates (core/certify) are judged by it.
+// What really happens after a collision, in 34 digits: the bouncing of a contact to its Zeno point, impact by impact, while
+// others are held, and the constrained motion from a restart. Certificates (core/certify) are judged by it.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@ namespace achilles::test {
 
 struct Point {
     Reals q, v;
+    Real t = 0;
 };
 
 struct ZenoPoint {
@@ -48,9 +49,11 @@ struct Flight {
 class TrueMotion {
  public:
     // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that long.
-    TrueMotion(const Model& model, const Run& run, double longest_step = 1e300);
+    TrueMotion(const Model& model, const Run& run, double longest_step = 1e300, std::size_t contact = 0,
+               ContactSet held = {});
 
-    // The collision that a computed state stands for: q moved along n until h = 0 to working precision, v as it is.
+    // The collision that a computed state stands for: q moved along n until h = 0 to working precision, of what is held as
+    // well, whose hdot becomes 0; else v as it is.
     Point collision(const State& before);
     // Where Def. 7 (Euclidean) or the plastic impact (kinetic) restarts from it.
     Point restart(const Point& collision, Reinitialization kind);
@@ -83,6 +86,12 @@ class TrueMotion {
     // hddot of the free motion, and its rate h''' along the constrained one.
     Real normal_acceleration(const Point& point);
     Real jerk(const Point& point);
+    // What a certificate says of the other contacts while this one is in the air: the forces that hold what is held, the
+    // gaps of what is open, and what an impulse is passed on by, all in ascending order of the contacts.
+    struct Others {
+        Reals forces, gaps, transmissions;
+    };
+    Others others(const Point& point);
     // A state in contact after a short time, to first order.
     Point drift(const Point& slid, const Real& time);
 
@@ -95,12 +104,23 @@ class TrueMotion {
     bool move(Flight& flight, Until until, const Real& longest, double expected, double tolerance);
     std::vector<Point> follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance);
 
-    std::size_t dof_;
+    template <class Terms>
+    void set(Terms& terms, const Point& point) const;
+
+    std::size_t dof_, clock_;
     double longest_step_;
     Real e_;
     Evaluator<Series> flight_, contact_motion_, gap_, release_;
-    ContactTerms<Evaluator<Real>> surface_;
+    ContactTerms<Evaluator<Real>> surface_, free_surface_;  // while the others are held, and while none is
+    ReleaseTerms<Evaluator<Real>> normal_;
     MotionTerms<Evaluator<Real>> acceleration_;
+    // Of every other contact that is held: with this one and the rest held, and with the rest alone.
+    struct Held {
+        ContactTerms<Evaluator<Real>> with, without;
+        Evaluator<Real> force;
+    };
+    std::vector<Held> held_;
+    std::vector<Evaluator<Real>> open_;  // the gaps
 };
 
 Real distance(const Reals& a, const Reals& b);

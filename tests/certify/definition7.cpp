@@ -25,15 +25,16 @@ std::pair<double, double> eta_and_zeta(const Terms& terms, std::size_t n) {
 
 }  // namespace
 
-Definition7::Definition7(const Model& model, const Run& run)
+Definition7::Definition7(const Model& model, const Run& run, std::size_t contact, ContactSet held)
     : dof_(static_cast<std::size_t>(model.dof())),
       kinetic_(run.options.truncation.reinitialization == Reinitialization::kinetic),
-      e_(model.evaluator(model.restitution(), run.parameters).output(0)),
-      hddot_(model.evaluator<Interval>(model.bouncing().hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing().gradient, run.parameters), model.bouncing().variables),
-      box_(model.evaluator<Interval>(model.definition7_terms(), run.parameters)),
-      point_(model.evaluator(model.definition7_terms(), run.parameters)),
-      surface_(model.evaluator(model.contact_terms(), run.parameters)) {}
+      e_(model.evaluator(model.restitution(contact), run.parameters).output(0)),
+      hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing(contact, held).gradient, run.parameters),
+             model.bouncing(contact, held).variables),
+      box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
+      point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
+      surface_(model.evaluator(model.programs_of(contact, held).contact_terms, run.parameters)) {}
 
 Definition7::Factors Definition7::factors(const Collision& collision, const Maxima& m) {
     set_state(surface_, collision.before);
@@ -64,7 +65,7 @@ std::optional<Definition7::Factors> Definition7::over(const Collision& collision
 }
 
 Definition7::Factors Definition7::at(const Collision& collision) {
-    set_state(point_, State{collision.before.q, collision.restart});
+    set_state(point_, collision.with(collision.restart));
     point_.run();
     const double a = -point_.hddot();
     const auto [eta, zeta] = eta_and_zeta(point_, dof_);

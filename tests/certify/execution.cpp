@@ -12,6 +12,7 @@ Point point_of(const State& state) {
         point.q.emplace_back(state.q[i]);
         point.v.emplace_back(state.v[i]);
     }
+    point.t = state.t;
     return point;
 }
 

@@ -30,7 +30,7 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
     const double half_width = 0.5 * (certified.certificate.zeno_high - certified.certificate.zeno_low);
     if (certified.best && half_width > 0.0) {
         ++estimates;
-        const double error = std::abs(static_cast<double>(trial.zeno->time - *certified.best));
+        const double error = std::abs(static_cast<double>(trial.zeno->point.t - *certified.best));
         worst_estimate = std::max(worst_estimate, error / half_width);
     }
     if (certified.asked.conditions == Conditions::paper) {
@@ -41,7 +41,8 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
         Run run = trial.run;
         run.options.truncation = certified.asked;
         const Collision& collision = trial.restarted(certified.asked.reinitialization).collision;
-        const double least = Definition7(model, run).at(collision).velocity * collision.speed;
+        const double least =
+            Definition7(model, run, trial.contact, trial.held).at(collision).velocity * collision.speed;
         ratios[formula].push_back(added / least);
     }
     if (violated) ++violations;
@@ -67,7 +68,7 @@ void add(Tallies& tallies, const Trial& trial, const Model& model) {
 }
 
 std::string table_head() {
-    return fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>9}{:>9}{:>10}{:>9}\n",
+    return fmt::format("{:<24}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>9}{:>9}{:>10}{:>9}\n",
                        "system", "", "restart", "", "proved", "false", "n/a", "time", "position", "velocity",
                        "farthest", "formula", "shadowing", "uniform", "least", "estimates", "worst");
 }
@@ -76,7 +77,7 @@ std::string table_rows(const std::string& system, const Tallies& tallies) {
     std::string rows;
     for (const auto& [key, tally] : tallies) {
         const auto [conditions, kind, held] = key;
-        rows += fmt::format("{:<16}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8.4f}", system,
+        rows += fmt::format("{:<24}{:<6}{:<10}{:<7}{:>7}{:>6}{:>5}{:>8.4f}", system,
                             conditions == Conditions::paper ? "paper" : "sharp",
                             kind == Reinitialization::kinetic ? "kinetic" : "euclidean", held ? "holds" : "widest",
                             tally.certificates, tally.violations, tally.unknown, tally.median(Tally::latest));

@@ -6,10 +6,16 @@
 
 #include "simulate/impact.hpp"
 #include "simulate/simulate.hpp"
+#include "simulate/surfaces.hpp"
 
 namespace achilles::test {
 
 namespace {
+
+void set_tolerances(Run& run, double eps) {
+    auto& truncation = run.options.truncation;
+    truncation.eps_q = truncation.eps_v = truncation.eps_t = eps;
+}
 
 std::size_t index_of_restitution(const Model& model) {
     const auto& parameters = model.description().parameters;
@@ -28,12 +34,18 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
     const Certificate& c = certified.certificate;
     const Trial::Restarted& own = trial.restarted(certified.asked.reinitialization);
     const ZenoPoint& truth = *trial.zeno;
+    const Real tau_k = own.collision.before.t;
+    const auto since = [&](double t) { return actual(t - tau_k); };
     const double t = actual(truth.time), q = actual(distance(truth.point.q, own.restart.q)),
                  v = actual(distance(truth.point.v, own.restart.v));
-    const double shadow_q = actual(distance(truth.point.q, own.at_zeno.q)),
-                 shadow_v = actual(distance(truth.point.v, own.at_zeno.v));
-    std::vector<Claim> result{{About::earliest, t, c.zeno_low},
-                              {About::latest, c.zeno_high, t},
+    // Where impacts change nothing but hdot the shadowing error is 0, and so is its bound: the truth is known to this.
+    const Real known = 1e-18 * own.collision.speed;
+    const auto shadow = [&](const Reals& a, const Reals& b) {
+        return actual(std::max(distance(a, b) - known, Real(0)));
+    };
+    const double shadow_q = shadow(truth.point.q, own.at_zeno.q), shadow_v = shadow(truth.point.v, own.at_zeno.v);
+    std::vector<Claim> result{{About::earliest, t, since(c.zeno_low)},
+                              {About::latest, since(c.zeno_high), t},
                               {About::position, c.position_bound, q},
                               {About::velocity, c.velocity_bound, v}};
     if (c.shadowing_position) result.push_back({About::shadowing_position, *c.shadowing_position, shadow_q});
@@ -42,6 +54,15 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
     if (certified.best) {
         result.push_back({About::best_estimate, *certified.best, c.zeno_low});
         result.push_back({About::best_estimate, c.zeno_high, *certified.best});
+    }
+    if (c.others) {
+        for (std::size_t i = 0; i < c.others->held.size(); ++i) {
+            const Certificate::Others::Held& held = c.others->held[i];
+            result.push_back({About::others, actual(trial.least->forces[i]), held.least_force});
+            result.push_back({About::others, actual(trial.least->transmissions[i]), held.transmission_low});
+            result.push_back({About::others, held.transmission_high, actual(trial.most->transmissions[i])});
+        }
+        for (const Real& gap : trial.least->gaps) result.push_back({About::others, actual(gap), *c.others->least_gap});
     }
     if (!certified.held) return result;
     // What was asked for: Def. 7 limits how far the Zeno point is, the sharp conditions how well it is known.
@@ -60,40 +81,65 @@ double largest_excursion(const Trial& trial, Reinitialization kind) {
     return actual(most);
 }
 
-Trials::Trials(std::shared_ptr<const Model> model, unsigned seed) : model_(std::move(model)), random_(seed) {}
+Trials::Trials(std::shared_ptr<const Model> model, unsigned seed, Vary vary)
+    : model_(std::move(model)), random_(seed), vary_(vary) {}
 
 // Written out, since the standard's distributions differ between libraries.
 double Trials::uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
 }
 
-std::optional<State> Trials::zeno_equilibrium(const Run& run) {
-    ContactKinematics surface(*model_, run);
-    State state{run.q, run.v};
+std::size_t Trials::any_of(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
+
+// A place where the contact rests, and what is held: pressed, with the other gaps open.
+std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
+    State state = trial.run.start();
     const auto& coordinates = model_->description().coordinates;
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        state.q[k] = uniform(coordinates[i].range[0], coordinates[i].range[1]);
-        state.v[k] = uniform(coordinates[i].rate_range[0], coordinates[i].rate_range[1]);
+    const std::size_t contacts = model_->contacts();
+    if (vary_ == Vary::everything) {
+        state.t = uniform(0.0, trial.run.options.end_time);
+        for (double& x : state.q) x += uniform(-1.5, 1.5);
+        for (double& x : state.v) x += uniform(-1.0, 1.0);
+        trial.contact = any_of(contacts);
+        trial.held = {};
+        const std::size_t other = any_of(contacts);
+        if (other != trial.contact && any_of(2) == 1) trial.held = ContactSet::of(other);
+    } else {
+        for (std::size_t i = 0; i < coordinates.size(); ++i) {
+            const auto k = static_cast<Eigen::Index>(i);
+            state.q[k] = uniform(coordinates[i].range[0], coordinates[i].range[1]);
+            state.v[k] = uniform(coordinates[i].rate_range[0], coordinates[i].rate_range[1]);
+        }
     }
-    if (!surface.project(state, false) || !(surface.normal_acceleration(state) < 0.0)) return std::nullopt;
+    Surfaces surfaces(*model_, trial.run);
+    const ContactSet closed = trial.held.with(trial.contact);
+    if (!surfaces.project(state, closed, closed)) return std::nullopt;
+    if (!(surfaces.of(trial.contact, trial.held).normal_acceleration(state) < 0.0)) return std::nullopt;
+    for (std::size_t j = 0; j < contacts; ++j) {
+        const bool fits = closed.contains(j) ? surfaces.of(j, trial.held.without(j)).normal_acceleration(state) < 0.0
+                                             : surfaces.of(j).at(state).h > 0.0;
+        if (!fits) return std::nullopt;
+    }
     return state;
 }
 
-void Trials::certify(Trial& trial, const State& before) {
-    const Contact contact = ContactKinematics(*model_, trial.run).at(before);
+void Trials::collide(Trial& trial, const State& before) const {
+    const Contact contact = ContactKinematics(*model_, trial.run, trial.contact, trial.held).at(before);
     const auto collision = [&](Reinitialization kind) {
         return Collision{before, std::abs(contact.hdot), reinitialize(contact, before.v, Reinitialization::kinetic),
                          reinitialize(contact, before.v, kind)};
     };
     trial.kinetic.collision = collision(Reinitialization::kinetic);
     trial.euclidean.collision = collision(Reinitialization::euclidean);
+}
+
+void Trials::certify(Trial& trial, const State& before) {
     Run run = trial.run;
     for (const auto conditions : {Conditions::paper, Conditions::sharp}) {
         for (const auto kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
             run.options.truncation.conditions = conditions;
             run.options.truncation.reinitialization = kind;
-            const auto prover = truncation_conditions(*model_, run);
+            const auto prover = truncation_conditions(*model_, run, trial.contact, trial.held);
             const Collision& own = trial.restarted(kind).collision;
             if (auto c = prover->certify(own))
                 trial.certified.push_back({run.options.truncation, true, *c, best_estimate(run, before, *c)});
@@ -107,46 +153,99 @@ void Trials::certify(Trial& trial, const State& before) {
 std::optional<double> Trials::best_estimate(Run run, const State& before, const Certificate& certificate) const {
     run.q = before.q;
     run.v = before.v;
-    run.options.end_time = 2.0 * certificate.zeno_high + 1e-9;
+    run.options.start_time = before.t;
+    run.options.end_time = 2.0 * certificate.zeno_high - before.t + 1e-9;
     run.options.max_impacts = 1;
     try {
         for (const Event& event : simulate(model_, run).events)
-            if (event.kind == Event::Kind::zeno && event.truncation->t == 0.0) return event.t;
+            if (event.kind == Event::Kind::zeno && event.truncation->t == before.t) return event.t;
     } catch (const InputError&) {
     }
     return std::nullopt;
 }
 
+Run Trials::any_run() {
+    Run run = model_->default_run();
+    if (vary_ == Vary::everything)
+        for (double& parameter : run.parameters) parameter *= uniform(0.5, 1.5);
+    run.parameters[index_of_restitution(*model_)] = uniform(0.0, 0.95);
+    return run;
+}
+
 Trial Trials::next() {
     Trial trial;
-    trial.run = model_->default_run();
-    trial.run.parameters[index_of_restitution(*model_)] = uniform(0.0, 0.95);
+    trial.run = any_run();
     std::optional<State> state;
-    while (!state) state = zeno_equilibrium(trial.run);
-    const double w = std::pow(10.0, uniform(-5.0, 0.0)), eps = std::pow(10.0, uniform(-6.0, -1.0));
-    auto& truncation = trial.run.options.truncation;
-    truncation.eps_q = truncation.eps_v = truncation.eps_t = eps;
-    state->v -= w * ContactKinematics(*model_, trial.run).at(*state).impulse_direction;
+    while (!state) state = zeno_equilibrium(trial);
+    const double w = std::pow(10.0, uniform(-5.0, 0.0));
+    set_tolerances(trial.run, std::pow(10.0, uniform(-6.0, -1.0)));
+    ContactKinematics surface(*model_, trial.run, trial.contact, trial.held);
+    state->v -= w * surface.at(*state).impulse_direction;
+    collide(trial, *state);
     certify(trial, *state);
-    if (trial.certified.empty()) return trial;
+    if (!trial.certified.empty()) find_truth(trial, *state);
+    return trial;
+}
 
-    TrueMotion motion(*model_, trial.run);
-    const Point collision = motion.collision(*state);
+std::vector<Trial> Trials::next_run() {
+    Run run = any_run();
+    for (double& x : run.q) x += uniform(-0.3, 0.3);
+    for (double& x : run.v) x += uniform(-0.5, 0.5);
+    set_tolerances(run, std::pow(10.0, uniform(-6.0, -1.0)));
+    run.options.max_impacts = 2000;
+    std::vector<Trial> trials;
+    try {
+        for (const Event& event : simulate(model_, run).events) {
+            if (event.kind != Event::Kind::zeno || is_plastic_landing(event)) continue;
+            Trial& trial = trials.emplace_back();
+            trial.run = run;
+            while (!event.contacts.contains(trial.contact)) ++trial.contact;
+            trial.held = event.held.without(event.contacts);
+            const State before{event.truncation->q, event.truncation->v_before, event.truncation->t};
+            collide(trial, before);
+            trial.certified.push_back(
+                {run.options.truncation, !event.certificate->below_rounding, *event.certificate, event.t});
+            find_truth(trial, before);
+        }
+    } catch (const InputError&) {  // inside a wall
+    }
+    return trials;
+}
+
+void Trials::find_truth(Trial& trial, const State& before) const {
+    TrueMotion motion(*model_, trial.run, 1e300, trial.contact, trial.held);
+    const Point collision = motion.collision(before);
+    const double tolerance = 1e-20 * trial.kinetic.collision.speed;
     trial.zeno = motion.zeno(collision);
-    if (!trial.zeno) return trial;
-    const auto inside = motion.inside(*trial.zeno, 1e-20 * w);
+    if (!trial.zeno) return;
+    const auto inside = motion.inside(*trial.zeno, tolerance);
     Reals times;
     for (const Instant& instant : inside) times.push_back(instant.time);
     for (const auto kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
         auto& restarted = kind == Reinitialization::kinetic ? trial.kinetic : trial.euclidean;
         restarted.restart = motion.restart(collision, kind);
-        restarted.at_zeno = motion.constrained(restarted.restart, trial.zeno->time, 1e-20 * w);
+        restarted.at_zeno = motion.constrained(restarted.restart, trial.zeno->time, tolerance);
         restarted.farthest = actual(distance(trial.zeno->point.q, restarted.at_zeno.q));
-        const auto drawn = motion.contact_at(restarted.restart, times, 1e-20 * w);
+        const auto drawn = motion.contact_at(restarted.restart, times, tolerance);
         for (std::size_t i = 0; i < inside.size(); ++i)
             restarted.farthest = std::max(restarted.farthest, actual(distance(inside[i].point.q, drawn[i].q)));
     }
-    return trial;
+    if (model_->contacts() == 1) return;
+    const auto look = [&](const Point& point) {
+        const TrueMotion::Others now = motion.others(point);
+        if (!trial.least) trial.least = trial.most = now;
+        for (const auto part :
+             {&TrueMotion::Others::forces, &TrueMotion::Others::gaps, &TrueMotion::Others::transmissions})
+            for (std::size_t i = 0; i < (now.*part).size(); ++i) {
+                const Real& x = (now.*part)[i];
+                Real &low = ((*trial.least).*part)[i], &high = ((*trial.most).*part)[i];
+                if (x < low) low = x;
+                if (x > high) high = x;
+            }
+    };
+    look(collision);
+    for (const Instant& instant : inside) look(instant.point);
+    look(trial.zeno->point);
 }
 
 }  // namespace achilles::test

@@ -23,6 +23,8 @@ struct Certified {
 // One collision with every certificate that it gets. The truth is known unless `zeno` is empty.
 struct Trial {
     Run run;
+    std::size_t contact = 0;  // that lands
+    ContactSet held;          // the others' that are held meanwhile
     std::vector<Certified> certified;
     std::optional<ZenoPoint> zeno;
     struct Restarted {
@@ -31,6 +33,8 @@ struct Trial {
         double farthest = 0.0;   // the largest |q(t) - q~(t)| of the instants looked at, q~ being that motion
     };
     Restarted kinetic, euclidean;
+    // Of the other contacts at the instants looked at: the least, and the extremes of what an impulse is passed on by.
+    std::optional<TrueMotion::Others> least, most;
     const Restarted& restarted(Reinitialization kind) const {
         return kind == Reinitialization::kinetic ? kinetic : euclidean;
     }
@@ -47,6 +51,7 @@ struct Claim {
         shadowing_velocity,
         uniform_position,
         best_estimate,  // of the Zeno time: inside the interval
+        others,         // what is said of the other contacts
         tolerance
     };
     About about;
@@ -61,21 +66,32 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified);
 double largest_excursion(const Trial& trial, Reinitialization kind);
 
 // Reproducible trials of one system: states over the ranges that its description shows, impact speeds 1e-5 .. 1 and
-// tolerances 1e-6 .. 1e-1 (both log-uniform), restitution 0 .. 0.95, always hddot < 0.
+// tolerances 1e-6 .. 1e-1 (both log-uniform), restitution 0 .. 0.95, always hddot < 0. With `everything` the other
+// parameters as well (0.5 .. 1.5 times theirs), the time, the contact that lands and one that may be held, and states
+// around the file's start.
 class Trials {
  public:
-    Trials(std::shared_ptr<const Model> model, unsigned seed);
+    enum class Vary { restitution, everything };
+    Trials(std::shared_ptr<const Model> model, unsigned seed, Vary vary = Vary::restitution);
     const Model& model() const { return *model_; }
     Trial next();
+    // What the run from a random start near the file's certifies: a trial for each of its Zeno points that ends a
+    // bouncing. Nothing where the start is not allowed.
+    std::vector<Trial> next_run();
 
  private:
     double uniform(double low, double high);
-    std::optional<State> zeno_equilibrium(const Run& run);
+    std::size_t any_of(std::size_t count);
+    Run any_run();
+    std::optional<State> zeno_equilibrium(Trial& trial);
+    void collide(Trial& trial, const State& before) const;
     void certify(Trial& trial, const State& before);
+    void find_truth(Trial& trial, const State& before) const;
     std::optional<double> best_estimate(Run run, const State& before, const Certificate& certificate) const;
 
     std::shared_ptr<const Model> model_;
     std::mt19937_64 random_;
+    Vary vary_;
 };
 
 }  // namespace achilles::test

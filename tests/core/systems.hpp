@@ -30,8 +30,26 @@ inline std::vector<std::string> all_systems() {
     return names;
 }
 
+// The reference systems with forces, moving and several gaps (theory-gaps.md 7); one of those with one gap and time.
+inline const char* const reference_systems[] = {"driven_damped_pendulum", "travelling_wave",    "vibrating_table",
+                                                "bowl_and_post",          "pendulum_two_stops", "ball_in_box"};
+inline const char* const timed_systems[] = {"driven_damped_pendulum", "travelling_wave", "vibrating_table"};
+
+// Of the gallery, or a reference system.
 inline std::shared_ptr<const Model> load(const std::string& name) {
-    return std::make_shared<const Model>(read_system(source_file("assets/systems/" + name + ".toml")));
+    std::filesystem::path path = source_file("assets/systems/" + name + ".toml");
+    if (!std::filesystem::exists(path)) path = source_file("tests/reference/gaps/" + name + ".toml");
+    return std::make_shared<const Model>(read_system(path));
+}
+
+// A system whose restitutions all are a parameter, e.
+inline std::shared_ptr<const Model> with_one_restitution(const Model& model) {
+    SystemDescription system = model.description();
+    for (ConstraintDescription& constraint : system.constraints) constraint.restitution.text = "e";
+    ParameterDescription& e = system.parameters.emplace_back();
+    e.name = "e";
+    e.value = 0.5;
+    return std::make_shared<const Model>(std::move(system));
 }
 
 inline std::shared_ptr<const Model> typed(const std::string& text) {
@@ -71,15 +89,17 @@ inline std::shared_ptr<const Model> drop() {
 struct Plane {
     std::string kinetic = "1/2*(a'^2 + b'^2)", potential = "b", gap = "b", e = "0.5";
     double a = 0.0, b = 0.0, a_rate = 0.0, b_rate = 0.0, end = 10.0;
+    std::string a_force = "0", b_force = "0";
 };
 
 inline std::shared_ptr<const Model> model_of(const Plane& plane) {
-    return typed(fmt::format(
-        "title = \"two coordinates\"\n[[coordinate]]\nname = \"a\"\nstart = {}\nrate = {}\n[[coordinate]]\nname = "
-        "\"b\"\n"
-        "start = {}\nrate = {}\n[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n[[constraint]]\ngap = \"{}\"\n"
-        "restitution = \"{}\"\n[run]\nend_time = {}\n",
-        plane.a, plane.a_rate, plane.b, plane.b_rate, plane.kinetic, plane.potential, plane.gap, plane.e, plane.end));
+    return typed(
+        fmt::format("title = \"two coordinates\"\n[[coordinate]]\nname = \"a\"\nstart = {}\nrate = {}\nforce = \"{}\"\n"
+                    "[[coordinate]]\nname = \"b\"\nstart = {}\nrate = {}\nforce = \"{}\"\n[lagrangian]\nkinetic = "
+                    "\"{}\"\npotential = \"{}\"\n[[constraint]]\ngap = \"{}\"\n"
+                    "restitution = \"{}\"\n[run]\nend_time = {}\n",
+                    plane.a, plane.a_rate, plane.a_force, plane.b, plane.b_rate, plane.b_force, plane.kinetic,
+                    plane.potential, plane.gap, plane.e, plane.end));
 }
 
 inline nlohmann::json reference(const std::string& name) {

@@ -199,6 +199,13 @@ TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
 
 // ---- the same bits as the loops, in all systems; runs side by side: side_by_side_test ----
 
+// The gallery, and what has time in its forces and gaps.
+std::vector<std::string> systems_with_time() {
+    std::vector<std::string> names = test::all_systems();
+    names.insert(names.end(), std::begin(test::timed_systems), std::end(test::timed_systems));
+    return names;
+}
+
 // How many are numbers.
 int expect_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
     EXPECT_EQ(a.size(), b.size());
@@ -226,12 +233,13 @@ TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
     const auto outputs = [](const Model& model, const Program& program, const std::vector<double>& state) {
         Evaluator<double> evaluator = model.evaluator(program, model.default_run().parameters);
         for (std::size_t i = 0; i < state.size(); ++i) evaluator.input(i) = state[i];
+        evaluator.clock() = 10.0 * state[0];
         evaluator.run();
         std::vector<double> values;
         for (std::size_t i = 0; i < evaluator.output_count(); ++i) values.push_back(evaluator.output(i));
         return values;
     };
-    for (const std::string& system : test::all_systems()) {
+    for (const std::string& system : systems_with_time()) {
         const auto with = test::load(system), without = load_without(system);
         std::mt19937_64 random(8);
         const auto programs = [](const Model& model) {
@@ -258,14 +266,14 @@ TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
     }
 }
 
-// All orders of a motion from this state, the second order by itself, and order 0.
+// All orders of a motion from this state at a time of its own, the second order by itself, and order 0.
 std::vector<double> orders_of(const Model& model, const SeriesProgram& program, const std::vector<double>& state) {
     const std::size_t n = state.size() / 2, width = 2 * n + 1;
     SeriesEvaluator<double> series(program, model.default_run().parameters);
     std::vector<double> rows(width * (SeriesEvaluator<double>::highest_order + 1));
     std::copy(state.begin(), state.end(), rows.begin());
     const auto begin = [&] {
-        series.begin(rows.data());
+        series.begin(rows.data(), 10.0 * state[0], 0.7);
         rows[2 * n] = series.start(n);
         for (std::size_t i = 0; i < n; ++i) {
             rows[width + i] = rows[n + i];
@@ -290,7 +298,7 @@ std::vector<double> orders_of(const Model& model, const SeriesProgram& program, 
 }
 
 TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
-    for (const std::string& system : test::all_systems()) {
+    for (const std::string& system : systems_with_time()) {
         const auto with = test::load(system), without = load_without(system);
         std::mt19937_64 random(9);
         for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) {
@@ -308,7 +316,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
 // A motion with two event functions, the gap and hddot: both are followed, by one run's code and by that of eight.
 TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
     constexpr int last = 12;
-    for (const std::string& system : test::all_systems()) {
+    for (const std::string& system : systems_with_time()) {
         const auto model = test::load(system);
         const Equations& e = model->equations();
         const Program program(joined({e.free.f, {e.gaps[0], e.free.contacts[0].hddot}, e.pivots}),
@@ -323,7 +331,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
             using Number = std::remove_cvref_t<decltype(evaluator.start(0))>;
             std::vector<Number> rows(width * (last + 2), Number(0.0));
             std::copy(state.begin(), state.end(), rows.begin());
-            evaluator.begin(rows.data());
+            evaluator.begin(rows.data(), Number(10.0 * state[0]));
             for (std::size_t i = 0; i < 2; ++i) rows[2 * dof + i] = evaluator.start(dof + i);
             for (std::size_t i = 0; i < dof; ++i) {
                 rows[width + i] = rows[dof + i];
@@ -364,7 +372,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
 }
 
 TEST_F(MachineCodes, GiveTheRunsOfTheLoops) {
-    for (const std::string& system : test::all_systems())
+    for (const std::string& system : systems_with_time())
         EXPECT_TRUE(run_of(test::load(system)) == run_of(load_without(system))) << system;
 }
 

@@ -58,10 +58,21 @@ end_time = 12.0
 )toml");
 }
 
+// The same with the time wherever it may stand.
+std::shared_ptr<const Model> many_functions_of_time() {
+    SystemDescription system = many_functions()->description();
+    system.coordinates[0].force.text = "cos(2*t)/5 - tanh(x')*exp(-t)/9 + sqrt(2 + sin(t))/9";
+    system.potential.text += " + y*sin(3*t)/20";
+    system.constraints[0].gap.text += " - log(2 + cos(t))/20 - t/50 - atan(t)/60";
+    return std::make_shared<const Model>(std::move(system));
+}
+
 std::vector<std::pair<std::string, std::shared_ptr<const Model>>> models() {
     std::vector<std::pair<std::string, std::shared_ptr<const Model>>> all;
     for (const std::string& name : test::all_systems()) all.emplace_back(name, test::load(name));
+    for (const std::string name : test::timed_systems) all.emplace_back(name, test::load(name));
     all.emplace_back("many functions", many_functions());
+    all.emplace_back("many functions of time", many_functions_of_time());
     return all;
 }
 
@@ -110,7 +121,8 @@ LaneStep any_step(const Model& model, Uniform& uniform) {
         step.known[lane] = lane % 2 == 0 ? 1.0 : 0.0;
         step.h[lane] = lane % 2 == 0 ? 0.0 : std::abs(uniform(0.5));
         step.hdot[lane] = 0.6 + uniform(0.5);
-        step.until[lane] = 5.0;
+        step.t[lane] = static_cast<double>(lane) / 3.0;  // of a force, say; the motion takes 5 s from there
+        step.until[lane] = 5.0 + step.t[lane];
     }
     return step;
 }
@@ -131,7 +143,7 @@ std::string bytes_of(const LaneStep& step) {
     for (const Eight& x : step.impulse_direction) append(bytes, x);
     for (const Eight& x : step.g) append(bytes, x);
     for (const Eight* x : {&step.t, &step.h, &step.hdot, &step.error, &step.rate_error, &step.duration, &step.end_h,
-                           &step.end_hdot, &step.end_W, &step.rounding})
+                           &step.end_hdot, &step.end_W, &step.end_gap_t, &step.rounding})
         append(bytes, *x);
     for (const LaneStep::End end : step.end) bytes.push_back(static_cast<char>(end));
     return bytes;
@@ -246,6 +258,7 @@ std::string end_of(const Attempt& attempt) {
         append(bytes, trajectory.end.q[i]);
         append(bytes, trajectory.end.v[i]);
     }
+    append(bytes, trajectory.loss);
     append(bytes, trajectory.statistics.least_gap);
     for (const long count :
          {trajectory.statistics.steps, trajectory.statistics.impacts, trajectory.statistics.evaluations})
