@@ -55,6 +55,10 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
         result.push_back({About::best_estimate, *certified.best, c.zeno_low});
         result.push_back({About::best_estimate, c.zeno_high, *certified.best});
     }
+    // Whatever it says of them: what is held stays held, and what is open open.
+    if (trial.least)
+        for (const Reals* part : {&trial.least->forces, &trial.least->gaps, &trial.least->transmissions})
+            for (const Real& x : *part) result.push_back({About::others, actual(x), 0.0});
     if (c.others) {
         for (std::size_t i = 0; i < c.others->held.size(); ++i) {
             const Certificate::Others::Held& held = c.others->held[i];
