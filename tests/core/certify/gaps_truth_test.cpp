@@ -224,7 +224,19 @@ TEST(ShiftedVariables, AreThoseOfTheMotion) {
     const auto near = [](const Real50& a, const Real50& b, double error) {
         EXPECT_LT(static_cast<double>(abs(a - b)), error) << a << " " << b;
     };
+    auto rates = model->evaluator<Real50>(model->bouncing().rates, run.parameters);
+    const auto rate = [&](std::size_t i, const Real50& sigma) {
+        for (std::size_t j = 0; j < 2; ++j) {
+            rates.input(layout.q(j)) = q[j];
+            rates.input(layout.v(j)) = s[j];
+        }
+        rates.input(layout.sigma()) = sigma;
+        rates.clock() = t;
+        rates.run();
+        return rates.s_rate(i);
+    };
     for (std::size_t i = 0; i < 2; ++i) {
+        near(rate(i, Real50(1) / 5), exact.at(q, s, Real50(1) / 5, t)[i], 1e-20);
         near(term(0, i, 0), none[i], 1e-20);
         near(term(2, i, 0), (up[i] - down[i]) / (2 * step), 1e-17);
         near(term(3, i, 0), (up[i] - 2 * none[i] + down[i]) / (2 * step * step), 1e-9);
@@ -267,6 +279,32 @@ TEST(Truth, TheTimeIsACoordinateOfTheNeighbourhood) {
     }
     EXPECT_LE(certificate->zeno_low, static_cast<double>(zeno->point.t));
     EXPECT_GE(certificate->zeno_high, static_cast<double>(zeno->point.t));
+}
+
+// 2.3: b bounces until T = 2 e w/(1 - e) = 0.6 while a is held by a force of 1 - t. Impacts on b do not disturb a; but the
+// force must last.
+TEST(Truth, WhatIsHeldMustBePressedUntilTheZenoPoint) {
+    const auto model = typed(R"toml(
+title = "One is held, one bounces"
+coordinate = [{ name = "a", start = 0 }, { name = "b", start = 0 }]
+lagrangian = { kinetic = "1/2*(a'^2 + b'^2)", potential = "b + a*(1 - t)" }
+constraint = [{ name = "held", gap = "a", restitution = 0.5 }, { name = "floor", gap = "b", restitution = 0.5 }]
+)toml");
+    const auto run = model->default_run();
+    for (const double t : {0.0, 0.2, 0.41, 0.9}) {
+        State before = run.start();
+        before.t = t;
+        before.v[1] = -0.3;
+        const Vector s = Vector::Zero(2);
+        const auto certificate =
+            truncation_conditions(*model, run, 1, ContactSet::of(0))->prove_any({before, 0.3, s, s});
+        EXPECT_EQ(certificate.has_value(), t + 0.6 < 1.0) << t;
+        if (!certificate) continue;
+        EXPECT_NEAR(certificate->zeno_time, t + 0.6, 1e-12);
+        ASSERT_TRUE(certificate->others);
+        ASSERT_EQ(certificate->others->held.size(), 1u);
+        EXPECT_LE(certificate->others->held[0].least_force, 0.4 - t);
+    }
 }
 
 }  // namespace achilles::test
