@@ -238,14 +238,18 @@ class Report {
             return;
         }
         const ZenoCondition& zeno = *found;
-        const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
         const auto plain = [&](Expression e) { return achilles::write(e, model_.slot_names(), page_.notation()).text; };
-        std::vector<std::string> there;
+        std::vector<Fraction> values;
         for (const auto& [symbol, value] : zeno.solved) {
             zeno.algebra->work() = Work{1000000};
-            there.push_back(in_line(fmt::format("{} = {}", plain(symbol),
-                                                writer.write(zeno.algebra->simplify(value), *zeno.algebra).text)));
+            values.push_back(zeno.algebra->simplify(value));
         }
+        // It knows what the algebra has met so far.
+        const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
+        std::vector<std::string> there;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            there.push_back(in_line(
+                fmt::format("{} = {}", plain(zeno.solved[i].first), writer.write(values[i], *zeno.algebra).text)));
         if (!there.empty()) {
             const std::string line = fmt::format("there {}", fmt::join(there, ", "));
             page_.sentence({line, line});

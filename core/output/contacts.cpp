@@ -33,22 +33,19 @@ Impulses::Impulses(const Trajectory& trajectory)
 std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     const Event& impact = trajectory_.events[event];
     if (impact.joint && !impact.joint->impulses.empty()) return impact.joint->impulses;
-    // One contact alone, while others stay held: p = (hdot+ - hdot-)/W_i^A, and kappa p of each that is held.
-    const ContactSet held = held_before(trajectory_, event), landing = impact.contacts;
-    if (landing.count() != 1 || held.count() + 1 > most_contacts) return {};
-    const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, held.with(landing));
-    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(held));
+    // G (v+ - v-) = W p over what is held and what lands.
+    const ContactSet all = held_before(trajectory_, event).with(impact.contacts);
+    if (all.count() > most_contacts) return {};
+    const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(all));
     if (!block) return {};
-    Eigen::Index place = 0;
-    while (!contains(closed.places_of(landing), place)) ++place;
-    const Contact& contact = closed.contacts[static_cast<std::size_t>(place)];
-    const Transmission<double> passed = block->transmission(closed.W, place);
-    const double impulse = contact.g.dot(impact.v_after - impact.v_before) / passed.W;
+    ContactVector<double> jump(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        jump[static_cast<Eigen::Index>(i)] = closed.contacts[i].g.dot(impact.v_after - impact.v_before);
+    const ContactVector<double> p = block->solve(jump);
     std::vector<std::pair<std::size_t, double>> impulses;
-    for (std::size_t i = 0; i < closed.which.size(); ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        impulses.emplace_back(closed.which[i], k == place ? impulse : passed.kappa[k] * impulse);
-    }
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        impulses.emplace_back(closed.which[i], p[static_cast<Eigen::Index>(i)]);
     return impulses;
 }
 
@@ -97,10 +94,10 @@ std::vector<Chatter> chatters_of(const Trajectory& trajectory) {
         return event.kind == Event::Kind::zeno ? 1 : event.opened.empty() ? 0 : -1;
     };
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-        const std::size_t first = i;
+        const std::size_t first = i + 1;  // the phase before the first turn is like any other
         if (end_of(i) == 0) continue;
         while (i + 2 < ends.size() && end_of(i + 1) == -end_of(i)) ++i;
-        if (i + 1 - first > few) found.push_back({first, i + 1, first == 0 ? 0 : ends[first - 1], ends[i]});
+        if (i + 1 - first > few) found.push_back({first, i + 1, ends[first - 1], ends[i]});
     }
     return found;
 }

@@ -31,7 +31,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     };
     ImpactReason reason;
     const Event* next = event + 1 < trajectory.events.size() ? &trajectory.events[event + 1] : nullptr;
-    reason.cut = next != nullptr && next->kind == Event::Kind::zeno && next->contacts == impact.contacts;
+    reason.cut = next != nullptr && next->truncation && next->truncation->t == impact.t;
     reason.energy_before = energy_at(impact.v_before);
     reason.energy_after = energy_at(impact.v_after);
 

@@ -262,6 +262,32 @@ TEST(CheckReport, TellsForcesAndEveryContact) {
               std::string::npos);
 }
 
+// What a gap was solved for may name what hddot does not.
+TEST(CheckReport, TellsWhereTheSurfacesAre) {
+    const auto legs = test::typed(R"toml(
+title = "Two legs"
+[[coordinate]]
+name = "z"
+[[coordinate]]
+name = "a"
+[lagrangian]
+kinetic = "z'^2/2 + a'^2/6"
+potential = "z"
+[[constraint]]
+name = "p"
+gap = "z + a"
+restitution = 0.5
+[[constraint]]
+name = "q"
+gap = "z - a"
+restitution = 0.5
+)toml");
+    double disagreement = 1.0;
+    const std::string report = check_report(*legs, legs->default_run(), 0.001, Notation::text, disagreement);
+    EXPECT_NE(report.find("there z = a, z' = a', a = 0, a' = 0"), std::string::npos) << report;
+    EXPECT_EQ(report.find("1 - 1"), std::string::npos);
+}
+
 // A lie: forces that are not those of the file must show, and so must a wrong condition while another is held.
 TEST(CheckReport, SeesWrongForces) {
     const auto model = test::load_gaps("pendulum_two_stops");
