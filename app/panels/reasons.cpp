@@ -126,7 +126,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
-    row("gap speed |\u1e23|", number(event.impact_speed, "{:.9g}"));
+    row("gap speed |h\u0307|", number(event.impact_speed, "{:.9g}"));
     row("energy", number(reason.energy_before), number(reason.energy_after));
     row("energy lost",
         number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))));

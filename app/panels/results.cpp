@@ -63,10 +63,18 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
     constexpr std::size_t most = 400;  // more than anybody reads, and a frame has no time for
     std::vector<Result> results;
     int zeno = 0, line = 0;
+    const std::vector<Chatter> chatters = chatters_of(trajectory);
+    auto chatter = chatters.begin();
     float x = 0.0F;
     for (const std::size_t turn : turns(trajectory, true)) {
         if (results.size() == most) break;
         const Event& event = trajectory.events[turn];
+        while (chatter != chatters.end() && turn >= chatter->last_event) ++chatter;
+        // Of contacts that come to rest and are opened again and again only how it ends.
+        if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) {
+            zeno += event.kind == Event::Kind::zeno ? 1 : 0;
+            continue;
+        }
         Result result{turn, name_of(trajectory, event, zeno) + "  " + time_text(event)};
         result.width = units(sign_width) + ImGui::CalcTextSize(result.text.c_str()).x;
         if (x > 0.0F && x + result.width > width) x = 0.0F, ++line;
