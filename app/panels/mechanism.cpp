@@ -280,7 +280,8 @@ void drag(const Session& session, const Picture& picture, HeldMechanism& held, C
         return;
     }
     held.has_moved = true;
-    if (session.time() > 0.0) commands.emplace_back(command::Seek{0.0});  // the start is what is dragged
+    const double start_time = session.run().options.start_time;
+    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});  // the start is what is dragged
     if (held.what == Holding::body) drag_body(session, picture, held, commands);
     if (held.what == Holding::arrow) drag_arrow(session, picture, held, commands);
 }

@@ -193,7 +193,8 @@ void use_mouse(const Session& session, const Axes& axes, const Panel& panel, con
         plane.framing = {};
     }
     if (!plane.is_held || (delta.x == 0.0F && delta.y == 0.0F)) return;
-    if (session.time() > 0.0) commands.emplace_back(command::Seek{0.0});
+    const double start_time = session.run().options.start_time;
+    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});
     const Point to = map.data({mouse.x + plane.offset.x, mouse.y + plane.offset.y});
     const auto& quantities = plane.view->quantities();
     State wanted{session.run().q, session.run().v};

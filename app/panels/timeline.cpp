@@ -20,8 +20,9 @@ constexpr float marks = 18.0F, band = 12.0F, axis = 24.0F, space = 6.0F;
 // Time to pixels along the band.
 struct Track {
     float left, width, top;
-    double end;
-    float x(double t) const { return left + static_cast<float>(t / end) * width; }
+    double start, end;
+    float x(double t) const { return left + static_cast<float>((t - start) / (end - start)) * width; }
+    double time(float x) const { return start + double{(x - left) / width} * (end - start); }
 };
 
 void paint_phases(const Session& session, const Track& track, ImDrawList* list) {
@@ -52,13 +53,15 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
                                      [&](const Event& e) { return std::floor(track.x(e.t)) <= pixel; });
     }
     for (const std::size_t turn : turns(session.trajectory()))
-        paint_marker(list, event_markers(session.theme(), events[turn].kind),
+        paint_marker(list,
+                     events[turn].opened.empty() ? event_markers(session.theme(), events[turn].kind)
+                                                 : opened_markers(session.theme()),
                      {track.x(events[turn].t), top - units(8.0F)}, scale);
 }
 
 void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
     Axis time;
-    set_ticks(time, 0.0, track.end, 0.0, static_cast<int>(track.width / units(70.0F)));
+    set_ticks(time, track.start, track.end, 0.0, static_cast<int>(track.width / units(70.0F)));
     const float top = track.top + units(marks + band);
     for (const Tick& tick : time.ticks) {
         if (tick.label.empty()) continue;
@@ -162,7 +165,7 @@ void use_keys(const Session& session, Commands& commands) {
     if (ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
     if (is_pressed(key::left)) commands.emplace_back(command::Step{-1});
     if (is_pressed(key::right)) commands.emplace_back(command::Step{1});
-    if (is_pressed(key::home)) commands.emplace_back(command::Seek{0.0});
+    if (is_pressed(key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
     if (is_pressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
@@ -173,7 +176,7 @@ std::optional<int> event_at(const Session& session, const Track& track) {
     const float top = track.top + units(marks), reach = units(marker_reach);
     NearestEvent nearest(mouse, reach);
     const auto at = [&](float x) {
-        return std::lower_bound(events.begin(), events.end(), double{(x - track.left) / track.width} * track.end,
+        return std::lower_bound(events.begin(), events.end(), track.time(x),
                                 [](const Event& event, double t) { return event.t < t; });
     };
     // Of impacts, whose sign is a line, the nearest before and after the mouse.
@@ -237,13 +240,14 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);
+    const Options& options = session.trajectory().run.options;
     const Track track{area.x + inset, std::max(1.0F, area.width - 2.0F * inset), area.y + units(space),
-                      std::max(session.trajectory().run.options.end_time, session.trajectory().end_time)};
+                      options.start_time, std::max(options.end_time, session.trajectory().end_time)};
     ImGui::InvisibleButton("timeline", {area.width, units(space + marks + band + axis)});
     remember(state, "timeline");
     use_events(session, track, state, commands);
     double time = 0.0;
-    if (!state.on_marker && dragged_to(0.0, track.end, track.left, track.width, time) && time != session.time())
+    if (!state.on_marker && dragged_to(track.start, track.end, track.left, track.width, time) && time != session.time())
         commands.emplace_back(command::Seek{time});
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_phases(session, track, list);

@@ -195,7 +195,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     Watch watch;
     watch.stop = at_once.get_token();
     simulated_ = std::make_shared<Simulated>(system_, run, plots_, theme_, &watch);
-    move_to(0.0);
+    move_to(run.options.start_time);
 }
 
 namespace {
@@ -262,7 +262,7 @@ void Session::perform(const command::Seek& command) {
 
 void Session::perform(const command::Play&) {
     // Play at the end means: once more.
-    if (time_ >= trajectory().end_time) move_to(0.0);
+    if (time_ >= trajectory().end_time) move_to(run().options.start_time);
     playing_ = true;
 }
 
@@ -328,9 +328,10 @@ std::vector<double> Session::values(std::size_t plot, const Sample& sample) cons
 // The next event after the present, or the last before it; beyond them the end and the start.
 void Session::perform(const command::Step& command) {
     const auto& events = trajectory().events;
+    const double start = run().options.start_time;
     double time = time_;
     for (int i = 0; i < std::abs(command.events); ++i) {
-        if (time == (command.events > 0 ? trajectory().end_time : 0.0)) break;
+        if (time == (command.events > 0 ? trajectory().end_time : start)) break;
         const auto later = std::upper_bound(events.begin(), events.end(), time,
                                             [](double t, const Event& event) { return t < event.t; });
         const auto here = std::lower_bound(events.begin(), events.end(), time,
@@ -338,7 +339,7 @@ void Session::perform(const command::Step& command) {
         if (command.events > 0)
             time = later != events.end() ? later->t : trajectory().end_time;
         else
-            time = here != events.begin() ? std::prev(here)->t : 0.0;
+            time = here != events.begin() ? std::prev(here)->t : start;
     }
     move_to(time);
     place(command::Seek{time});

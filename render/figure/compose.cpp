@@ -328,7 +328,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
     if (several) add_opened(panel, trajectory, samples.back().t, values, framing, theme);
     const bool whole_run = over_time && !framing.log_x;
-    if (whole_run) x_range.low = 0.0, x_range.high = trajectory.end_time;
+    if (whole_run) x_range.low = trajectory.run.options.start_time, x_range.high = trajectory.end_time;
     set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
     set_limits(panel.y, framing.y, y_range, 0.07);
     thin(panel);

@@ -61,6 +61,15 @@ TEST(Frames, AreNumberedAndTheSameByOneProcessAndByThree) {
     EXPECT_EQ(image.height, 200);
 }
 
+TEST(Frames, BeginWhereTheRunDoes) {
+    const Folder folder;
+    const std::string film = "frames ball_on_sine --size 320x200 --fps 1 --view height --out ";
+    ASSERT_EQ(folder.run(film + "here --start-time 5 --end 7").status, 0);
+    EXPECT_EQ(contents(folder.path() / "here").size(), 3u);
+    ASSERT_EQ(folder.run(film + "there --start-time -1 --end 1").status, 0);
+    EXPECT_EQ(contents(folder.path() / "there").size(), 3u);
+}
+
 TEST(Frames, GoOnWhereARunWasInterrupted) {
     const Folder folder;
     ASSERT_EQ(folder.run(short_film + "--out film").status, 0);

@@ -127,6 +127,19 @@ TEST(Session, plays_and_finds_events) {
     EXPECT_EQ(session.selected(), 0);
 }
 
+// Whatever the clock says there.
+TEST(Session, begins_and_begins_again_where_the_run_starts) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::End{1.0});
+    session.apply(command::UseOption("start-time", {-3.0}));
+    EXPECT_EQ(session.error(), "");
+    session.apply(command::Step{-100});
+    EXPECT_EQ(session.time(), -3.0);
+    session.apply(command::Seek{1.0});
+    session.apply(command::Play{});
+    EXPECT_EQ(session.time(), -3.0);
+}
+
 TEST(Session, plays_to_the_end_or_round_and_round) {
     Session session = test::session("ball_on_sine");
     play_on(session, 1.0);

@@ -74,6 +74,16 @@ TEST(TimeBars, are_under_plots_over_time_of_several_contacts_alone) {
     EXPECT_EQ(one.markers.size(), 3u);
 }
 
+TEST(Plots, over_time_begin_where_the_run_does) {
+    const auto model = test::load("ball_on_floor");
+    auto run = model->default_run();
+    run.options.start_time = -2.0;
+    run.options.end_time = 1.0;
+    const Panel panel = panel_of(simulate(model, run), "t", "y");
+    EXPECT_EQ(panel.x.low, -2.0);
+    EXPECT_EQ(panel.x.high, 1.0);
+}
+
 // Of a sheet: the fills of a colour, from left to right.
 std::vector<Rectangle> fills(const Sheet& sheet, const Color& color) {
     std::vector<Rectangle> found;

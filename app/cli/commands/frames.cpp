@@ -33,13 +33,14 @@ struct FramesArguments {
 
 // The instants of the frames.
 struct Clock {
-    double fps, speed, end;
-    std::size_t count() const { return static_cast<std::size_t>(std::floor(end * fps / speed * (1.0 + 1e-12))) + 1; }
-    double time(std::size_t frame) const { return std::min(static_cast<double>(frame) * speed / fps, end); }
+    double fps, speed, start, end;
+    double last() const { return (end - start) * fps / speed; }
+    std::size_t count() const { return static_cast<std::size_t>(std::floor(last() * (1.0 + 1e-12))) + 1; }
+    double time(std::size_t frame) const { return std::min(start + static_cast<double>(frame) * speed / fps, end); }
 };
 
 void check_count(const Clock& clock) {
-    if (clock.end * clock.fps / clock.speed < static_cast<double>(most_frames)) return;
+    if (clock.last() < static_cast<double>(most_frames)) return;
     throw InputError({}, {}, fmt::format("these would be more than {} frames", most_frames),
                      "fewer a second (--fps), a higher --speed or an earlier --end make it less");
 }
@@ -121,10 +122,10 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const std::vector<ViewDescription> views = views_for(description, arguments.views);
     check_asked(*model, run, arguments.settings);
     warn(description, run);
-    check_count({arguments.fps, arguments.speed, run.options.end_time});
+    check_count({arguments.fps, arguments.speed, run.options.start_time, run.options.end_time});
 
     const Trajectory trajectory = simulate(model, run);
-    const Clock clock{arguments.fps, arguments.speed, trajectory.end_time};
+    const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
     Animation animation(trajectory, views, arguments.size, arguments.speed / arguments.fps);
     const std::vector<Shown> shown{{arguments.system, &trajectory}};
     int status = reached_end;
