@@ -30,9 +30,9 @@ void on_every_run(const Case& one, F law) {
     }
 }
 
-TEST_P(Law, EnergyIsConstantInPhasesAndNeverRisesAtImpacts) { on_every_run(GetParam(), energy); }
+TEST_P(Law, EnergyIsWorkLessLoss) { on_every_run(GetParam(), energy); }
 TEST_P(Law, TheGapIsNeverNegative) { on_every_run(GetParam(), gap); }
-TEST_P(Law, PhasesAbutAndAlternate) { on_every_run(GetParam(), phases); }
+TEST_P(Law, PhasesAbutAndHoldWhatTheirEventsSay) { on_every_run(GetParam(), phases); }
 TEST_P(Law, TheContactForcePressesUntilTheRelease) { on_every_run(GetParam(), contact_force); }
 
 // Starts and parameters anywhere near the file's, within its sliders.
@@ -63,7 +63,9 @@ TEST_P(Law, AllHoldFromOtherStarts) {
             continue;  // a start with a negative gap
         }
         ++done;
-        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        // Not all that chatters together is completed (theory-gaps.md 2.6): such a run says so.
+        if (model->contacts() == 1 || trajectory.outcome.kind != Outcome::Kind::undecided)
+            EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         for (const auto law : {energy, gap, phases, contact_force}) {
             const Violations violations = law(trajectory);
             EXPECT_TRUE(violations.empty()) << listed(violations);

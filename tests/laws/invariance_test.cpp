@@ -1,6 +1,7 @@
 // What must not change a motion: another zero of the potential, L in other units of energy, other units of time and of
 // the coordinates, a gap times a positive function. The texts of the system are rewritten, so that everything is
 // derived and certified anew.
+#include <algorithm>
 #include <cctype>
 
 #include "laws/laws.hpp"
@@ -49,8 +50,11 @@ void expect_same(const Trajectory& a, const Trajectory& b) {
 
 void wrap(Text& text, const std::string& before, const std::string& after) { text.text = before + text.text + after; }
 
-// A text with every coordinate c replaced by (factor c).
-std::string rescaled(const SystemDescription& system, const std::string& text, const std::string& factor) {
+// A text with factors before every coordinate, before every rate, and before t.
+struct Factors {
+    std::string coordinate = "1", rate = "1", time = "1";
+};
+std::string rescaled(const SystemDescription& system, const std::string& text, const Factors& factors) {
     std::string result;
     const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
     for (std::size_t i = 0; i < text.size();) {
@@ -60,11 +64,35 @@ std::string rescaled(const SystemDescription& system, const std::string& text, c
         const std::string word = text.substr(i, end - i);
         bool coordinate = false;
         for (const auto& c : system.coordinates) coordinate = coordinate || c.name == word;
-        if (coordinate && end < text.size() && text[end] == '\'') ++end;
-        result += coordinate ? "(" + factor + "*" + text.substr(i, end - i) + ")" : word;
+        const bool rate = coordinate && end < text.size() && text[end] == '\'';
+        if (rate) ++end;
+        const std::string factor = rate          ? factors.rate
+                                   : coordinate  ? factors.coordinate
+                                   : word == "t" ? factors.time
+                                                 : "1";
+        result += factor == "1" ? text.substr(i, end - i) : "(" + factor + "*" + text.substr(i, end - i) + ")";
         i = end;
     }
     return result;
+}
+
+// All of a system's texts where coordinates, rates or t may stand.
+std::vector<Text*> texts_of(SystemDescription& system) {
+    std::vector<Text*> texts{&system.kinetic, &system.potential, &system.dissipation};
+    for (CoordinateDescription& coordinate : system.coordinates) texts.push_back(&coordinate.force);
+    for (ConstraintDescription& constraint : system.constraints) texts.push_back(&constraint.gap);
+    texts.erase(std::remove_if(texts.begin(), texts.end(), [](const Text* text) { return text->text.empty(); }),
+                texts.end());
+    return texts;
+}
+
+// Energy, dissipation and forces times factors; forces are per coordinate.
+void strengthen(SystemDescription& system, const std::string& energy, const std::string& dissipation,
+                const std::string& force) {
+    if (!system.potential.text.empty()) wrap(system.potential, energy + "*(", ")");
+    if (!system.dissipation.text.empty()) wrap(system.dissipation, dissipation + "*(", ")");
+    for (CoordinateDescription& coordinate : system.coordinates)
+        if (!coordinate.force.text.empty()) wrap(coordinate.force, force + "*(", ")");
 }
 
 TEST_P(Invariance, AnotherZeroOfThePotential) {
@@ -76,14 +104,14 @@ TEST_P(Invariance, AnotherZeroOfThePotential) {
 TEST_P(Invariance, LInOtherUnitsOfEnergy) {
     SystemDescription changed = description();
     wrap(changed.kinetic, "1000*(", ")");
-    wrap(changed.potential, "1000*(", ")");
+    strengthen(changed, "1000", "1000", "1000");
     expect_same(rewritten(changed), rewritten(description()));
     // The contact force is in these units.
     const auto force = [&](const SystemDescription& system) {
         const Model model(system);
         const auto run = model.default_run();
         auto lambda = model.evaluator(model.force(), run.parameters);
-        set_state(lambda, State{run.q, run.v});
+        set_state(lambda, run.start());
         lambda.run();
         return lambda.output(0);
     };
@@ -93,15 +121,17 @@ TEST_P(Invariance, LInOtherUnitsOfEnergy) {
 // In minutes, say: rates are 60 times as large, accelerations 3600 times.
 TEST_P(Invariance, OtherUnitsOfTime) {
     SystemDescription changed = description();
-    wrap(changed.potential, "3600*(", ")");
+    for (Text* text : texts_of(changed))
+        if (text != &changed.kinetic) text->text = rescaled(changed, text->text, {"1", "1/60", "60"});
+    strengthen(changed, "3600", "216000", "3600");
     expect_same(rewritten(changed, 60.0), rewritten(description()));
 }
 
 // Coordinates in units a hundredth as large, angles too.
 TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     SystemDescription changed = description();
-    for (Text* text : {&changed.kinetic, &changed.potential, &changed.constraints[0].gap})
-        text->text = rescaled(changed, text->text, "0.01");
+    for (Text* text : texts_of(changed)) text->text = rescaled(changed, text->text, {"0.01", "0.01", "1"});
+    strengthen(changed, "1", "1", "0.01");
     ASSERT_NE(changed.constraints[0].gap.text, description().constraints[0].gap.text);
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
 }
@@ -124,7 +154,7 @@ TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     const std::string q = description().coordinates[0].name;
     for (const std::string& factor : {"(2 + sin(" + q + "))", "exp(" + q + ")"}) {
         SystemDescription changed = description();
-        wrap(changed.constraints[0].gap, factor + "*(", ")");
+        for (ConstraintDescription& constraint : changed.constraints) wrap(constraint.gap, factor + "*(", ")");
         const std::vector<Event> found = events(changed);
         ASSERT_EQ(found.size(), expected.size()) << factor;
         for (std::size_t i = 0; i < found.size(); ++i) {

@@ -15,14 +15,16 @@ namespace achilles::test {
 
 using Violations = std::vector<std::string>;
 
-// The energy is constant where the motion is smooth, and falls by (1 - e^2) hdot^2/(2 W) in an impact.
+// E - work + loss is constant over the whole run; an impact with impulses p loses sum p (1 - e) |hdot|/2, and the work of
+// moving surfaces in it is -sum p dh/dt.
 Violations energy(const Trajectory& trajectory);
-// gap >= -1e-12 max(1, |q|) everywhere.
+// Every gap >= -1e-12 max(1, |q|) everywhere.
 Violations gap(const Trajectory& trajectory);
-// Phases abut and alternate (Def. 5): hybrid, Zeno point, constrained, release, hybrid, ...; impacts are Newton's, in
-// hybrid phases; Zeno points lie on h = hdot = 0 with hddot < 0, inside what their certificate says.
+// Phases abut, and each ends where the set of held contacts changes (Def. 5, where there is one: hybrid, Zeno point,
+// constrained, release, hybrid, ...); impacts are Moreau's, with one contact Newton's; Zeno points lie on h = hdot = 0 where forces
+// press, inside what their certificate says.
 Violations phases(const Trajectory& trajectory);
-// lambda > 0 inside constrained phases, 0 in flight; a release is where lambda = 0 and h''' > 0.
+// The force of every held contact presses inside constrained phases; a release is where it is 0 and h''' > 0.
 Violations contact_force(const Trajectory& trajectory);
 
 // One file of assets/systems, integrated by one method.
