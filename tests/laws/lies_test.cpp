@@ -96,5 +96,58 @@ TEST(Lies, ContactForce) {
     EXPECT_FALSE(contact_force(late).empty());
 }
 
+// ---- several contacts, a drive and dampers ----
+
+Trajectory truth_of_two_stops() {
+    const auto model = model_of("pendulum_two_stops");
+    auto run = model->default_run();
+    run.options.end_time = 7.0;  // the knee locks at 4.85, a blow against the wall opens it at 6.65
+    return simulate(model, run);
+}
+
+Event& blow(Trajectory& trajectory) {
+    for (Event& event : trajectory.events)
+        if (!event.opened.empty()) return event;
+    throw std::logic_error("no such event");
+}
+
+TEST(Lies, TheTruthOfTwoStopsViolatesNothing) {
+    const Trajectory trajectory = truth_of_two_stops();
+    for (const auto& law : {energy, gap, phases, contact_force}) EXPECT_TRUE(law(trajectory).empty());
+}
+
+TEST(Lies, TwoStops) {
+    const auto lie = [](const char* name, Violations (*law)(const Trajectory&), void (*change)(Trajectory&)) {
+        Trajectory trajectory = truth_of_two_stops();
+        change(trajectory);
+        EXPECT_FALSE(law(trajectory).empty()) << name;
+    };
+    lie("the knee is said to stay locked", phases, [](Trajectory& t) {
+        Event& event = blow(t);
+        event.held = event.opened;
+        event.opened = {};
+    });
+    lie("another contact is held", phases, [](Trajectory& t) { t.phases[1].held = ContactSet::of(1); });
+    lie("another contact strikes", phases, [](Trajectory& t) { blow(t).contacts = ContactSet::of(0); });
+    lie("the knee is left where it is", phases, [](Trajectory& t) {
+        Event& event = blow(t);
+        event.v_after[1] = 0.0;
+    });
+    lie("work that nobody did", energy, [](Trajectory& t) {
+        for (Piece& piece : t.pieces)
+            if (piece.start > 5.0) piece.work += 1e-6;
+    });
+    lie("a loss that was none", energy, [](Trajectory& t) { blow(t).loss += 1e-9; });
+    lie("a gap that closes unseen", gap, [](Trajectory& t) {
+        for (const Piece& piece : t.pieces)
+            if (piece.held.empty()) t.coefficients[piece.first] += 0.4;  // theta1 beyond the wall
+    });
+    lie("contact in flight", contact_force, [](Trajectory& t) {
+        for (Piece& piece : t.pieces)
+            if (piece.start >= t.phases[1].end) piece.held = ContactSet::of(1);
+        t.phases[2].held = ContactSet::of(1);
+    });
+}
+
 }  // namespace
 }  // namespace achilles::test

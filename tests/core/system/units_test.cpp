@@ -28,7 +28,7 @@ TEST(Units, follow_from_those_of_the_file) {
     EXPECT_EQ(unit("ball_on_sine", "(x'^2)^0.75"), "");  // no whole powers
     EXPECT_EQ(unit("ball_in_bowl", "c*x"), "");          // 1/m times m
     EXPECT_EQ(unit("bead_in_ring", "r*sin(phi)"), "m");
-    EXPECT_EQ(unit("impact_oscillator", "K*y"), "N");  // N/m
+    EXPECT_EQ(unit("impact_oscillator", "k*x"), "N");  // N/m
     EXPECT_EQ(unit("swinging_leg", "c"), "J");         // "N m", which a product does not tell from work
 }
 
