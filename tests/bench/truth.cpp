@@ -1,11 +1,11 @@
-// bench_truth [COUNT [SYSTEM]]: certificates against the truth over COUNT random collisions (10000) of every system, or
-// this one, and over all that as many random runs of the systems with forces, time and several contacts certify; 1200
-// are more than 20000 certificates in all. Prints how many were proved and how many of those are false, which must be none,
-// and the medians of bound over truth (farthest: the velocity bound over the largest excursion on the way, which Def. 7
-// adds up; formula: the velocity bound over that of Def. 7's own formula with the values at the restart for its
-// maxima). uniform: the bound for all times over the largest distance at 30 instants within the first flights, the
-// median and the least; not a number where no certificate claims one. estimates, worst: how many Zeno times simulate()
-// estimated, and the largest error of one over the half width of its interval.
+// bench_truth [COUNT [SYSTEM]]: certificates against the truth over COUNT random collisions (10000) of every system,
+// or this one, and over all that as many random runs of the systems with forces, time and several contacts certify;
+// 1200 are more than 20000 certificates in all. Prints how many were proved and how many of those are false, which
+// must be none, and the medians of bound over truth (farthest: the velocity bound over the largest excursion on the
+// way, which Def. 7 adds up; formula: the velocity bound over that of Def. 7's own formula with the values at the
+// restart for its maxima). uniform: the bound for all times over the largest distance at 30 instants within the first
+// flights, the median and the least; not a number where no certificate claims one. estimates, worst: how many Zeno
+// times simulate() estimated, and the largest error of one over the half width of its interval.
 #include <fmt/format.h>
 
 #include <cstdlib>

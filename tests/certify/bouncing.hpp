@@ -1,5 +1,5 @@
-// What really happens after a collision, in 34 digits: the bouncing of a contact to its Zeno point, impact by impact, while
-// others are held, and the constrained motion from a restart. Certificates (core/certify) are judged by it.
+// What really happens after a collision, in 34 digits: the bouncing of a contact to its Zeno point, impact by impact,
+// while others are held, and the constrained motion from a restart. Certificates (core/certify) are judged by it.
 #pragma once
 
 #include <array>
@@ -48,24 +48,25 @@ struct Flight {
 
 class TrueMotion {
  public:
-    // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that long.
+    // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that
+    // long.
     TrueMotion(const Model& model, const Run& run, double longest_step = 1e300, std::size_t contact = 0,
                ContactSet held = {});
 
-    // The collision that a computed state stands for: q moved along n until h = 0 to working precision, of what is held as
-    // well, whose hdot becomes 0; else v as it is.
+    // The collision that a computed state stands for: q moved along n until h = 0 to working precision, of what is
+    // held as well, whose hdot becomes 0; else v as it is.
     Point collision(const State& before);
     // Where Def. 7 (Euclidean) or the plastic impact (kinetic) restarts from it.
     Point restart(const Point& collision, Reinitialization kind);
-    // Follows the impacts until their speed has fallen by the factor `until`; what is left is a geometric series, up to
-    // terms in the square of that speed. Nothing if the bouncing does not behave like one.
+    // Follows the impacts until their speed has fallen by the factor `until`; what is left is a geometric series, up
+    // to terms in the square of that speed. Nothing if the bouncing does not behave like one.
     std::optional<ZenoPoint> zeno(const Point& collision, double until = 1e-8);
     // Instants within its first flights, in time: spread evenly, and the top of each.
     std::vector<Instant> inside(const ZenoPoint& zeno, double tolerance);
     // The motion that keeps contact, for a time, whatever the force.
     Point constrained(Point start, const Real& duration, double tolerance);
-    // Where the motion is at these times after the start, which ascend: in contact whatever the force, or free whatever
-    // the gap.
+    // Where the motion is at these times after the start, which ascend: in contact whatever the force, or free
+    // whatever the gap.
     std::vector<Point> contact_at(const Point& start, const Reals& times, double tolerance);
     std::vector<Point> flight_at(const Point& start, const Reals& times, double tolerance);
 
@@ -86,8 +87,8 @@ class TrueMotion {
     // hddot of the free motion, and its rate h''' along the constrained one.
     Real normal_acceleration(const Point& point);
     Real jerk(const Point& point);
-    // What a certificate says of the other contacts while this one is in the air: the forces that hold what is held, the
-    // gaps of what is open, and what an impulse is passed on by, all in ascending order of the contacts.
+    // What a certificate says of the other contacts while this one is in the air: the forces that hold what is held,
+    // the gaps of what is open, and what an impulse is passed on by, all in ascending order of the contacts.
     struct Others {
         Reals forces, gaps, transmissions;
     };

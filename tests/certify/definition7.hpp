@@ -12,11 +12,13 @@ class Definition7 {
  public:
     Definition7(const Model& model, const Run& run, std::size_t contact = 0, ContactSet held = {});
 
-    // What the bounds on time, position and velocity are per unit of the impact speed: eps_t/c1, eps_q'/c2, eps_v'/c3.
+    // What the bounds on time, position and velocity are per unit of the impact speed: eps_t/c1, eps_q'/c2,
+    // eps_v'/c3.
     struct Factors {
         double time, position, velocity;
     };
-    // Of a system without time: with the maxima over the neighbourhood of radii eps_q' and eps_v'; nothing where a_min > 0, e' < 1 is not proved.
+    // Of a system without time: with the maxima over the neighbourhood of radii eps_q' and eps_v'; nothing where
+    // a_min > 0, e' < 1 is not proved.
     std::optional<Factors> over(const Collision& collision, double eps_q, double eps_v);
     // With the maxima replaced by the values at the restart: what the formula itself gives, however V is chosen.
     Factors at(const Collision& collision);

@@ -13,9 +13,9 @@ struct Slope {
     double factor = 0.0;  // error/w^3 at the least w
 };
 
-// The error at a time `later` after collisions at the place of a Zeno point of the default run (the first is 0), which
-// share (q, s) and differ in their speed, `speeds` in descending order; of the state there, when the bouncing is replaced
-// by this restart. Zeros where some bouncing has no Zeno point.
+// The error at a time `later` after collisions at the place of a Zeno point of the default run (the first is 0),
+// which share (q, s) and differ in their speed, `speeds` in descending order; of the state there, when the bouncing
+// is replaced by this restart. Zeros where some bouncing has no Zeno point.
 Slope restart_slope(const std::shared_ptr<const Model>& model, Reinitialization kind, std::size_t zeno = 0,
                     const std::vector<double>& speeds = {3e-2, 3e-3, 3e-4, 3e-5, 3e-6}, double later = 0.5);
 

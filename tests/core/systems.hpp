@@ -30,7 +30,7 @@ inline std::vector<std::string> all_systems() {
     return names;
 }
 
-// The reference systems with forces, moving and several gaps (theory-gaps.md 7); one of those with one gap and time.
+// The reference systems with forces, moving and several gaps (tests/reference/gaps.json); those with one gap and time.
 inline const char* const reference_systems[] = {"driven_damped_pendulum", "travelling_wave",    "vibrating_table",
                                                 "bowl_and_post",          "pendulum_two_stops", "ball_in_box"};
 inline const char* const timed_systems[] = {"driven_damped_pendulum", "travelling_wave", "vibrating_table"};

@@ -1,4 +1,4 @@
-// What must not change a motion with forces, time and several gaps (theory-gaps.md 9.5): the numbering of contacts, a gap
+// What must not change a motion with forces, time and several gaps: the numbering of contacts, a gap
 // that is never reached, another system in the same file, the frame, the time at which it starts.
 #include <fmt/format.h>
 
@@ -85,7 +85,7 @@ TEST_P(GapLaws, AGapThatIsNeverReachedChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Reference, GapLaws, testing::ValuesIn(reference_systems),
                          [](const auto& info) { return std::string(info.param); });
 
-// A text with every coordinate's name, its rate and the parameters' replaced: two systems in one file must not share any.
+// Two systems in one file, which must not share a name: coordinates and parameters of the second get a prefix.
 SystemDescription joined_systems(const SystemDescription& a, SystemDescription b) {
     const auto renamed_in = [&](std::string text) {
         std::string result;

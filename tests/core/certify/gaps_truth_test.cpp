@@ -1,5 +1,5 @@
-// What theory-gaps.md says of forces, time and held contacts, against the truth: the order of the restart, certificates,
-// the terms of the shifted variables. bench_truth does the certificates at length.
+// What is said of forces, time and held contacts (theory-gaps.md 1, 2.3), against the truth: the order of the
+// restart, certificates, the terms of the shifted variables. bench_truth does the certificates at length.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -41,7 +41,8 @@ const Drag drags[] = {
 
 }  // namespace
 
-// Section 6; the factors, error/w^3 at w = 1e-4, are what they were: a term of third order that changes is seen there.
+// theory-gaps.md 6; the factors, error/w^3 at w = 1e-4, are what they were: a term of third order that changes is
+// seen there.
 TEST(Restarts, StayOfThirdOrderWithForcesTimeAndHeldContacts) {
     const std::vector<double> speeds{1e-2, 1e-3, 1e-4};
     struct Case {
@@ -81,7 +82,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const Model>>> attacked() {
 
 }  // namespace
 
-// Section 9.4, a sample: whatever is certified is true, also of the contacts that are held or open meanwhile; and the
+// A sample: whatever is certified is true, also of the contacts that are held or open meanwhile; and the
 // bound is not far from the error, of the reference systems, whose impacts change something.
 TEST(Truth, CertificatesWithForcesTimeAndHeldContactsAreTrue) {
     int with_held = 0;
@@ -194,8 +195,8 @@ class TangentialRate {
 
 }  // namespace
 
-// T5: s' = A + B sigma + D(xi) sigma^2 with some xi between 0 and sigma, for a force of the third degree and a moving gap,
-// in which every term of B counts. The derivatives by sigma are central differences.
+// T5: s' = A + B sigma + D(xi) sigma^2 with some xi between 0 and sigma, for a force of the third degree and a moving
+// gap, in which every term of B counts. The derivatives by sigma are central differences.
 TEST(ShiftedVariables, AreThoseOfTheMotion) {
     Plane plane = windy_ball(drags[3].a, drags[3].b);
     plane.kinetic = "1/2*(a'^2 + (2 + sin(a))*b'^2 + 0.6*a'*b')";
@@ -250,8 +251,8 @@ TEST(ShiftedVariables, AreThoseOfTheMotion) {
     }
 }
 
-// T6: the certificate of a table that vibrates holds while it moves on. Of a bouncing that takes a quarter of its period the
-// acceleration changes so much that a certificate of the collision's instant alone would be false.
+// T6: the certificate of a table that vibrates holds while it moves on. Of a bouncing that takes a quarter of its
+// period the acceleration changes so much that a certificate of the collision's instant alone would be false.
 TEST(Truth, TheTimeIsACoordinateOfTheNeighbourhood) {
     const auto model = load("vibrating_table");
     auto run = model->default_run();
@@ -281,8 +282,8 @@ TEST(Truth, TheTimeIsACoordinateOfTheNeighbourhood) {
     EXPECT_GE(certificate->zeno_high, static_cast<double>(zeno->point.t));
 }
 
-// 2.3: b bounces until T = 2 e w/(1 - e) = 0.6 while a is held by a force of 1 - t. Impacts on b do not disturb a; but the
-// force must last.
+// 2.3: b bounces until T = 2 e w/(1 - e) = 0.6 while a is held by a force of 1 - t. Impacts on b do not disturb a;
+// but the force must last.
 TEST(Truth, WhatIsHeldMustBePressedUntilTheZenoPoint) {
     const auto model = typed(R"toml(
 title = "One is held, one bounces"

@@ -1,5 +1,5 @@
-// Starts and landings that a person types and no drawing of lots would give: symmetric, redundant, just touching. They go
-// on, and say what was decided (theory-gaps.md 2.4, 2.5, 9.6).
+// Starts and landings that a person types and no drawing of lots would give: symmetric, redundant, just touching.
+// They go on, and say what was decided (theory-gaps.md 2.4, 2.5).
 #include <gtest/gtest.h>
 
 #include <cmath>
