@@ -101,8 +101,8 @@ void panel_switch(const Session& session, const Shown& panel, PanelState& state,
         commands.emplace_back(command::Show{panel.what, !shown});
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = packed(shown ? text_color() : faint_color());
-    list->AddRect({r.x + 0.5F, r.y + 0.5F}, {r.x + r.width - 0.5F, r.y + r.height - 0.5F}, ink, units(2.0F), 0,
-                  units(1.2F));
+    stroke_rectangle(list, {r.x + 0.5F, r.y + 0.5F}, {r.x + r.width - 0.5F, r.y + r.height - 0.5F}, ink, units(2.0F),
+                     units(1.2F));
     const float across = 0.38F * r.width, down = 0.4F * r.height, inset = units(2.5F);
     ImVec2 low{r.x + inset, r.y + inset}, high{r.x + r.width - inset, r.y + r.height - inset};
     if (panel.key == '1') high.x = r.x + across;

@@ -8,6 +8,7 @@
 #include "output/output.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -64,7 +65,7 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
     ImGui::SameLine();
     quiet(more);
     const float width = ImGui::GetTextLineHeight();
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - width - margin);
+    ImGui::SameLine(content_right() - width - margin);
     const bool pressed = ImGui::InvisibleButton("close", {width, width}), close = take_escape(state) || pressed;
     remember(state, "close card");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();

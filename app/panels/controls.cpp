@@ -11,6 +11,7 @@
 #include "panels/print.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -58,7 +59,7 @@ void first_section(const char* title, const Session& session, const Run& file, P
     section(title, changed ? width + units(8.0F) : 0.0F);
     if (!changed) return;
     const ImVec2 low = ImGui::GetItemRectMin();
-    const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x;
+    const float right = ImGui::GetWindowPos().x + content_right();
     ImGui::SameLine(0.0F, 0.0F);
     ImGui::SetCursorScreenPos({right - width, low.y});
     if (ImGui::InvisibleButton("reset all", {width, ImGui::GetTextLineHeight()}))

@@ -93,7 +93,7 @@ void paint_problem(const Page& page, const std::string& text, Location at, ImDra
     std::vector<ImVec2> wave;
     for (float x = left; x < right + 0.5F * step; x += step)
         wave.push_back({x, wave.size() % 2 == 0 ? y : y - units(2.0F)});
-    list->AddPolyline(wave.data(), static_cast<int>(wave.size()), packed(error_color()), ImDrawFlags_None, units(1.5F));
+    stroke(list, wave, false, packed(error_color()), units(1.5F));
     list->PopClipRect();
 }
 
@@ -111,15 +111,10 @@ bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
     return ImGui::IsItemEdited();
 }
 
-int line_of_cursor(const ImGuiInputTextState& input) {
-    const ImWchar* begin = input.TextW.Data;
-    return 1 + static_cast<int>(std::count(begin, begin + std::min(input.Stb.cursor, input.CurLenW), ImWchar{'\n'}));
-}
-
 // Text, line numbers and marks, as high as given.
 void show_text(const Session& session, PanelState& state, float height) {
     EditorState& editor = state.editor;
-    ImGui::PushFont(monospace_font());
+    push_font(monospace_font());
     ImGui::PushID(editor.revision);
     const int lines = 1 + static_cast<int>(std::count(editor.text.begin(), editor.text.end(), '\n'));
     const float letter = ImGui::CalcTextSize("0").x;
@@ -145,7 +140,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     const bool was_left = ImGui::IsItemDeactivated();
     editor.is_active = ImGui::IsItemActive();
     const ImGuiInputTextState* input = ImGui::GetInputTextState(ImGui::GetID(text_id));
-    const float sideways = input != nullptr ? input->ScrollX : 0.0F;
+    const float sideways = input != nullptr ? scrolled_sideways(*input) : 0.0F;
     // The widget scrolls in a window of its own.
     const std::string name =
         fmt::format("{}/{}_{:08X}", ImGui::GetCurrentWindow()->Name, text_id, ImGui::GetID(text_id));
@@ -158,7 +153,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     }
     // A message that appears takes room from the text: the line under the hand stays in sight.
     if (child != nullptr && input != nullptr && height < editor.height) {
-        const float below = static_cast<float>(line_of_cursor(*input)) * line + paddings - height;
+        const float below = static_cast<float>(line_of_cursor(*input, editor.text)) * line + paddings - height;
         if (child->Scroll.y < below) ImGui::SetScrollY(child, below);
     }
     editor.height = height;
@@ -189,7 +184,7 @@ void show_problems(const Session& session, EditorState& editor, float height) {
     paint_error_card(area);
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(card_padding), units(card_padding)});
-    ImGui::BeginChild("problems", {area.width, height}, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    begin_padded_child("problems", {area.width, height});
     const float width = ImGui::GetContentRegionAvail().x;
     for (const InputError& problem : session.document().problems) {
         ImGui::BeginGroup();
@@ -253,7 +248,7 @@ void show_file(const Session& session, const EditorState& editor) {
     ImGui::TextUnformatted(fitted(name, room).c_str());
     tooltip(document.source);
     if (is_changed) {
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(status.c_str()).x);
+        ImGui::SameLine(content_right() - ImGui::CalcTextSize(status.c_str()).x);
         ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
         ImGui::TextUnformatted(status.c_str());
         ImGui::PopStyleColor();

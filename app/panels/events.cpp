@@ -174,7 +174,7 @@ void paint_titles(const Session& session, ImVec2 at, float width) {
 }
 
 void show_header(const Session& session, PanelState& state, Commands& commands) {
-    const float right = ImGui::GetContentRegionMax().x;
+    const float right = content_right();
     const float width =
         ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
     const float copy_width = button_width("copy");
@@ -293,7 +293,7 @@ void follow(const EventRows& all, int event, PanelState& state) {
 namespace {
 
 void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
-    ImGui::BeginChild("list", size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    begin_padded_child("list", size);
     paint_titles(session, ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x);
     ImGui::Dummy({1.0F, ImGui::GetTextLineHeight()});
     const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
@@ -324,7 +324,7 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
 void show_card(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(5.0F)});
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(2.0F)});
-    ImGui::BeginChild("card", size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+    begin_padded_child("card", size);
     if (const auto event = chosen(session))
         show_card_of_event(session, *event, state, commands);
     else

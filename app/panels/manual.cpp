@@ -22,7 +22,7 @@ void show_page(PanelState& state) {
     const float button_row = ImGui::GetFrameHeightWithSpacing();
     // Tables need letters of one width.
     ImGui::BeginChild("page", {0.0F, -button_row}, false, ImGuiWindowFlags_HorizontalScrollbar);
-    ImGui::PushFont(monospace_font());
+    push_font(monospace_font());
     ImGui::TextUnformatted(state.manual_text.data(), state.manual_text.data() + state.manual_text.size());
     ImGui::PopFont();
     ImGui::EndChild();

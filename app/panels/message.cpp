@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -62,12 +63,12 @@ MessageLine fitted(const MessageLine& line, float width) {
 
 float height_of(const MessageLine& line, float width) {
     if (!line.quoted) return ImGui::CalcTextSize(line.text.c_str(), nullptr, false, width).y;
-    return monospace_font()->FontSize * (line.caret ? 1.7F : 1.0F);
+    return size_of(monospace_font()) * (line.caret ? 1.7F : 1.0F);
 }
 
 void show_quoted(const MessageLine& whole, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::PushFont(monospace_font());
+    push_font(monospace_font());
     const MessageLine line = fitted(whole, width);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText(at, packed(text_color()), line.text.c_str());

@@ -8,6 +8,7 @@
 
 #include "figure/label.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -87,7 +88,7 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     }
     const char* text = "link time";
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize(text).x;
-    ImGui::SetCursorPos({ImGui::GetContentRegionMax().x - width, y});
+    ImGui::SetCursorPos({content_right() - width, y});
     bool linked = plots.linked();
     if (ImGui::Checkbox(text, &linked)) commands.emplace_back(command::Link{linked});
     remember(state, "link");

@@ -7,6 +7,7 @@
 
 #include "paint/marker.hpp"
 #include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles {
 
@@ -38,7 +39,7 @@ void show_legend(const Session& session) {
     for (const Markers& markers : events) width += ImGui::CalcTextSize(markers.label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
-    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - units(edge) - width + gap);
+    ImGui::SetCursorPosX(content_right() - units(edge) - width + gap);
     for (const Phase::Kind kind : phases) {
         legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
             list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},

@@ -151,7 +151,7 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
 void loop_box(const Session& session, PanelState& state, Commands& commands) {
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("loop").x;
     ImGui::SameLine();
-    const float left = ImGui::GetContentRegionMax().x - width - units(4.0F);
+    const float left = content_right() - width - units(4.0F);
     if (left < ImGui::GetCursorPosX()) return ImGui::NewLine();
     ImGui::SetCursorPosX(left);
     bool loops = session.scene().loops();

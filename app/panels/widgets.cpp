@@ -48,7 +48,7 @@ void section(const char* title, float free) {
     ImGui::PopStyleColor();
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const float y = std::floor(0.5F * (low.y + high.y) + units(1.0F));
-    const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x - free;
+    const float right = ImGui::GetWindowPos().x + content_right() - free;
     ImGui::GetWindowDrawList()->AddLine({high.x + units(8.0F), y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Border));
 }
 

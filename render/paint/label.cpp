@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -54,11 +55,6 @@ void paint_dots(ImDrawList* list, const Set& set, const Baseline& line, float si
     }
 }
 
-const ImFontGlyph* glyph_of(const ImFont* font, char32_t code) {
-    // ImGui's letters have 16 bits.
-    return font->FindGlyph(static_cast<ImWchar>(code <= 0xFFFF ? code : 0xFFFD));
-}
-
 // Sets one letter after the other; returns the length of the line.
 template <class Draw>
 float set_line(const std::string& label, float size, const Draw& draw) {
@@ -68,12 +64,12 @@ float set_line(const std::string& label, float size, const Draw& draw) {
         const Letter& letter = line[i];
         const float own_size = letter.script == 0 ? size : size * script_size;
         ImFont* font = font_for(double{own_size});
-        Set set{glyph_of(font, letter.code), own_size / font->FontSize, along, 0.0F, 0.0F, 0.0F};
-        set.base = font->Ascent * set.zoom;
+        Set set{&glyph_of(font, letter.code), own_size / size_of(font), along, 0.0F, 0.0F, 0.0F};
+        set.base = ascent_of(font) * set.zoom;
         if (letter.script != 0) {
             const float shift = letter.script < 0 ? index_drop : -power_rise;
-            set.down = std::round(font_for(double{size})->Ascent * size / font_for(double{size})->FontSize - set.base +
-                                  shift * size);
+            ImFont* around = font_for(double{size});
+            set.down = std::round(ascent_of(around) * size / size_of(around) - set.base + shift * size);
         }
         if (letter.italic) set.slant = italic_slant;
         draw(letter, set);
@@ -92,12 +88,12 @@ float paint_label(ImDrawList* list, float x, float y, const std::string& label, 
     // On whole pixels letters keep the shape they were made with.
     const Baseline line{{std::round(x), std::round(y)}, angle != 90};
     const ImU32 ink = IM_COL32(color.r, color.g, color.b, color.a);
-    list->PushTextureID(font_for(double{size})->ContainerAtlas->TexID);
+    push_font_texture(list);
     const float length = set_line(label, size, [&](const Letter& letter, const Set& set) {
         paint_glyph(list, set, line, ink);
         if (letter.dots > 0) paint_dots(list, set, line, size, letter.dots, ink);
     });
-    list->PopTextureID();
+    pop_font_texture(list);
     return length;
 }
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "surface/imgui_version.hpp"
+
 namespace achilles {
 
 namespace {
@@ -41,12 +43,9 @@ std::vector<Point> corners(const Mark& mark) {
 void paint_marker(ImDrawList* list, const Mark& mark) {
     std::vector<ImVec2> points;
     for (const Point& p : corners(mark)) points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
-    const int count = static_cast<int>(points.size());
     const auto color = [](Color c) { return IM_COL32(c.r, c.g, c.b, c.a); };
-    if (mark.fill.a > 0) list->AddConvexPolyFilled(points.data(), count, color(mark.fill));
-    if (mark.edge.a > 0)
-        list->AddPolyline(points.data(), count, color(mark.edge), ImDrawFlags_Closed,
-                          static_cast<float>(mark.edge_width));
+    if (mark.fill.a > 0) list->AddConvexPolyFilled(points.data(), static_cast<int>(points.size()), color(mark.fill));
+    if (mark.edge.a > 0) stroke(list, points, true, color(mark.edge), static_cast<float>(mark.edge_width));
 }
 
 void paint_marker(ImDrawList* list, const Markers& style, const Point& pixel, double scale) {

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "surface/imgui_version.hpp"
+
 namespace achilles {
 
 namespace {
@@ -63,16 +65,14 @@ Canvas::~Canvas() {
 }
 
 void Canvas::load_fonts() {
-    ImGuiIO& io = ImGui::GetIO();
-    unsigned char* pixels = nullptr;
-    int width = 0, height = 0;
-    io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+    ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+    const auto [pixels, width, height] = font_texture(atlas);
     if (std::max(width, height) > largest_texture) throw std::runtime_error("the text is too large for OpenGL");
     gl_.DeleteTextures(1, &fonts_);
     fonts_ = gl_.texture(GL_RGBA8, width, height, GL_RGBA, pixels);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    io.Fonts->SetTexID(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(fonts_)));
+    name_font_texture(atlas, fonts_);
 }
 
 void Canvas::resize(int width, int height) {
@@ -144,7 +144,7 @@ void Canvas::draw_triangles(const ImDrawCmd& command) {
     const int height = std::min(static_cast<int>(command.ClipRect.w), target_.height) - y;
     if (width <= 0 || height <= 0 || command.ElemCount == 0) return;
     gl_.Scissor(x, y, width, height);
-    gl_.BindTexture(GL_TEXTURE_2D, static_cast<GLuint>(reinterpret_cast<std::uintptr_t>(command.GetTexID())));
+    gl_.BindTexture(GL_TEXTURE_2D, texture_of(command));
     gl_.DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
                                offset(command.IdxOffset * sizeof(ImDrawIdx)), static_cast<GLint>(command.VtxOffset));
 }

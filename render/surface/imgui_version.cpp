@@ -3,6 +3,8 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <utility>
 
 namespace achilles {
@@ -38,6 +40,9 @@ constexpr std::pair<decltype(keypad_enter), int> widget_keys[] = {{ImGuiKey_Tab,
                                                                   {ImGuiKey_X, 'X'},
                                                                   {ImGuiKey_Y, 'Y'},
                                                                   {ImGuiKey_Z, 'Z'}};
+
+// ImGui's letters have 16 bits.
+ImWchar letter_of(char32_t code) { return static_cast<ImWchar>(code <= 0xFFFF ? code : 0xFFFD); }
 
 }  // namespace
 
@@ -99,5 +104,145 @@ bool is_pressed(int code, bool repeat) {
 float& time_held(int code) { return ImGui::GetKeyData(name_of(code))->DownDuration; }
 
 #endif
+
+#if IMGUI_VERSION_NUM < 19200
+
+void use_clipboard(Clipboard& clipboard) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.ClipboardUserData = clipboard.owner;
+    io.GetClipboardTextFn = clipboard.get;
+    io.SetClipboardTextFn = clipboard.set;
+}
+
+FontTexture font_texture(ImFontAtlas& atlas) {
+    unsigned char* pixels = nullptr;
+    FontTexture texture{};
+    atlas.GetTexDataAsRGBA32(&pixels, &texture.width, &texture.height);
+    texture.rgba = pixels;
+    return texture;
+}
+
+void name_font_texture(ImFontAtlas& atlas, unsigned name) {
+    atlas.SetTexID(reinterpret_cast<ImTextureID>(std::uintptr_t{name}));
+}
+
+unsigned texture_of(const ImDrawCmd& command) {
+    return static_cast<unsigned>(reinterpret_cast<std::uintptr_t>(command.GetTexID()));
+}
+
+void push_font_texture(ImDrawList* list) { list->PushTextureID(ImGui::GetIO().Fonts->TexID); }
+
+void pop_font_texture(ImDrawList* list) { list->PopTextureID(); }
+
+float size_of(const ImFont* font) { return font->FontSize; }
+
+float ascent_of(ImFont* font) { return font->Ascent; }
+
+const ImFontGlyph& glyph_of(ImFont* font, char32_t code) { return *font->FindGlyph(letter_of(code)); }
+
+const ImVector<ImFontGlyph>& glyphs_of(ImFont* font) { return font->Glyphs; }
+
+void push_font(ImFont* font) { ImGui::PushFont(font); }
+
+float content_right() { return ImGui::GetContentRegionMax().x; }
+
+float scrolled_sideways(const ImGuiInputTextState& input) { return input.ScrollX; }
+
+int line_of_cursor(const ImGuiInputTextState& input, const std::string&) {
+    const ImWchar* begin = input.TextW.Data;
+    return 1 + static_cast<int>(std::count(begin, begin + std::min(input.Stb.cursor, input.CurLenW), ImWchar{'\n'}));
+}
+
+#else
+
+namespace {
+
+// The letters of the size with which the font was added: there are no others.
+ImFontBaked& letters_of(ImFont* font) { return *font->GetFontBaked(font->LegacySize); }
+
+Clipboard& used_clipboard() { return *static_cast<Clipboard*>(ImGui::GetPlatformIO().Platform_ClipboardUserData); }
+
+}  // namespace
+
+void use_clipboard(Clipboard& clipboard) {
+    ImGuiPlatformIO& io = ImGui::GetPlatformIO();
+    io.Platform_ClipboardUserData = &clipboard;
+    io.Platform_GetClipboardTextFn = [](ImGuiContext*) { return used_clipboard().get(used_clipboard().owner); };
+    io.Platform_SetClipboardTextFn = [](ImGuiContext*, const char* text) {
+        used_clipboard().set(used_clipboard().owner, text);
+    };
+}
+
+// By the functions under those that 1.92 calls obsolete and may be built without.
+FontTexture font_texture(ImFontAtlas& atlas) {
+    if (!atlas.TexIsBuilt) ImFontAtlasBuildMain(&atlas);
+    const ImTextureData& data = *atlas.TexData;  // of 32 bits a pixel, unless somebody asks for less
+    return {data.Pixels, data.Width, data.Height};
+}
+
+void name_font_texture(ImFontAtlas& atlas, unsigned name) { atlas.TexData->SetTexID(static_cast<ImTextureID>(name)); }
+
+unsigned texture_of(const ImDrawCmd& command) { return static_cast<unsigned>(command.GetTexID()); }
+
+void push_font_texture(ImDrawList* list) { list->PushTexture(ImGui::GetIO().Fonts->TexRef); }
+
+void pop_font_texture(ImDrawList* list) { list->PopTexture(); }
+
+float size_of(const ImFont* font) { return font->LegacySize; }
+
+float ascent_of(ImFont* font) { return letters_of(font).Ascent; }
+
+const ImFontGlyph& glyph_of(ImFont* font, char32_t code) { return *letters_of(font).FindGlyph(letter_of(code)); }
+
+const ImVector<ImFontGlyph>& glyphs_of(ImFont* font) { return letters_of(font).Glyphs; }
+
+void push_font(ImFont* font) { ImGui::PushFont(font, font->LegacySize); }
+
+float content_right() {
+    return ImGui::GetCursorScreenPos().x + ImGui::GetContentRegionAvail().x - ImGui::GetWindowPos().x;
+}
+
+float scrolled_sideways(const ImGuiInputTextState& input) { return input.Scroll.x; }
+
+int line_of_cursor(const ImGuiInputTextState& input, const std::string& text) {
+    const auto before = std::min(static_cast<std::size_t>(std::max(input.GetCursorPos(), 0)), text.size());
+    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(before), '\n'));
+}
+
+#endif
+
+#if IMGUI_VERSION_NUM < 19280
+
+void stroke(ImDrawList* list, const std::vector<ImVec2>& points, bool closed, unsigned color, float width) {
+    list->AddPolyline(points.data(), static_cast<int>(points.size()), color,
+                      closed ? ImDrawFlags_Closed : ImDrawFlags_None, width);
+}
+
+void stroke_rectangle(ImDrawList* list, const ImVec2& low, const ImVec2& high, unsigned color, float rounding,
+                      float width) {
+    list->AddRect(low, high, color, rounding, ImDrawFlags_None, width);
+}
+
+#else
+
+void stroke(ImDrawList* list, const std::vector<ImVec2>& points, bool closed, unsigned color, float width) {
+    list->AddPolyline(points.data(), static_cast<int>(points.size()), color, width,
+                      closed ? ImDrawFlags_Closed : ImDrawFlags_None);
+}
+
+void stroke_rectangle(ImDrawList* list, const ImVec2& low, const ImVec2& high, unsigned color, float rounding,
+                      float width) {
+    list->AddRect(low, high, color, rounding, width);
+}
+
+#endif
+
+bool begin_padded_child(const char* name, const ImVec2& size) {
+#if IMGUI_VERSION_NUM < 19000
+    return ImGui::BeginChild(name, size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);
+#else
+    return ImGui::BeginChild(name, size, ImGuiChildFlags_AlwaysUseWindowPadding);
+#endif
+}
 
 }  // namespace achilles

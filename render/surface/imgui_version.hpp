@@ -1,13 +1,24 @@
-// What ImGui's versions do in other ways, and the only place that asks for the version: 1.86 numbers keys as the program
-// does and looks at an array, 1.87 and later (Debian 13 has 1.90) name keys and are told what happens to them. All of it
-// is about ImGui's current context.
+// What ImGui's versions do in other ways, and the only place that asks for the version. Keys: 1.86 (Debian 12) numbers
+// them as the program does and looks at an array, 1.87 and later (Debian 13 has 1.90) name them and are told what happens.
+// Fonts: a font has one size, until 1.92 makes letters of any size when they are asked for. Text fields: the text that is
+// edited is 16-bit characters, in 1.92 the bytes that were given. All of it is about ImGui's current context.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "surface/frame.hpp"
 
+struct ImDrawCmd;
+struct ImDrawList;
+struct ImFont;
+struct ImFontAtlas;
+struct ImFontGlyph;
+struct ImGuiInputTextState;
 struct ImGuiIO;
+struct ImVec2;
+template <typename T>
+struct ImVector;
 
 namespace achilles {
 
@@ -19,5 +30,53 @@ void hold_keys(ImGuiIO& io, const std::vector<int>& codes);
 bool is_pressed(int code, bool repeat = true);
 // Seconds for which the key has been held, negative if it is not: a widget sees no key that is set to -1 for a while.
 float& time_held(int code);
+
+// Where text is copied to and pasted from. The object outlives the frames.
+struct Clipboard {
+    void* owner;
+    const char* (*get)(void* owner);
+    void (*set)(void* owner, const char* text);
+};
+void use_clipboard(Clipboard& clipboard);
+
+// Draws all letters of the fonts that were added; what is returned belongs to the atlas. In every version they are drawn
+// before the first frame and stay where they are in one texture, as ImGui does for a program that does not promise more
+// (ImGuiBackendFlags_RendererHasTextures). So pictures do not depend on what was drawn before them.
+struct FontTexture {
+    const unsigned char* rgba;
+    int width, height;  // pixels
+};
+FontTexture font_texture(ImFontAtlas& atlas);
+// The name that OpenGL gave to the atlas's texture, and that of the texture of a command that draws triangles.
+void name_font_texture(ImFontAtlas& atlas, unsigned name);
+unsigned texture_of(const ImDrawCmd& command);
+// What is drawn until pop_font_texture takes its letters from the atlas.
+void push_font_texture(ImDrawList* list);
+void pop_font_texture(ImDrawList* list);
+
+// The size in pixels that the font was added with: one line's height; and of that what is above the base line.
+float size_of(const ImFont* font);
+float ascent_of(ImFont* font);
+// Of the font at its own size: the letter's glyph, or that of U+FFFD; and all glyphs.
+const ImFontGlyph& glyph_of(ImFont* font, char32_t code);
+const ImVector<ImFontGlyph>& glyphs_of(ImFont* font);
+// ImGui's text is of this font and of its own size until ImGui::PopFont().
+void push_font(ImFont* font);
+
+// Lines through the points, from the last to the first too if `closed`; and round a rectangle, inside its edges. ImGui
+// 1.92.8 has other orders of arguments that a compiler takes for each other.
+void stroke(ImDrawList* list, const std::vector<ImVec2>& points, bool closed, unsigned color, float width);
+void stroke_rectangle(ImDrawList* list, const ImVec2& low, const ImVec2& high, unsigned color, float rounding,
+                      float width);
+
+// Where the content of ImGui's current window ends on the right, from the window's left edge.
+float content_right();
+// ImGui::BeginChild for a panel without a border that keeps the style's padding all the same.
+bool begin_padded_child(const char* name, const ImVec2& size);
+
+// Of the text field that has the hand: how far it is scrolled sideways, in pixels, and the line of its cursor, from 1.
+// `text` is what the field shows.
+float scrolled_sideways(const ImGuiInputTextState& input);
+int line_of_cursor(const ImGuiInputTextState& input, const std::string& text);
 
 }  // namespace achilles

@@ -135,7 +135,6 @@ void Interface::build_fonts(double scale) {
     }
     for (const double pixels : sizes) add(proportional, pixels);
     add(monospaced, std::max(std::round(0.9 * options_.text_size * scale), 4.0));  // the last: monospace_font()
-    atlas.Build();
 }
 
 const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int height, double seconds) {
@@ -174,7 +173,7 @@ void apply(const Input& input) {
 
 ImFont* font_for(double pixels) {
     ImFont* best = ImGui::GetIO().Fonts->Fonts.front();
-    const auto distance = [pixels](const ImFont* font) { return std::abs(double{font->FontSize} - pixels); };
+    const auto distance = [pixels](const ImFont* font) { return std::abs(double{size_of(font)} - pixels); };
     for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
         if (font != monospace_font() && distance(font) < distance(best)) best = font;
     return best;

@@ -1,5 +1,5 @@
-// ImGui as both surfaces set it up: its fonts, two looks, no file written, no clock read. Version 1.92 of
-// ImGui changed fonts; what depends on that is here, what differs between older ones in imgui_version.hpp.
+// ImGui as both surfaces set it up: its fonts, two looks, no file written, no clock read. What depends on
+// ImGui's version is in imgui_version.hpp.
 #pragma once
 
 #include "figure/palette.hpp"

@@ -14,6 +14,7 @@
 
 #include "surface/draw_data.hpp"
 #include "surface/events.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 #include "surface/memory_context.hpp"
 
@@ -126,6 +127,7 @@ struct Window::Implementation {
 
     std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)> owned;
     GLFWwindow* window;
+    Clipboard clipboard{};
     Interface interface;
     std::optional<Canvas> canvas;
     Events events;
@@ -206,12 +208,9 @@ void Window::Implementation::listen_to_keyboard() {
 }
 
 void Window::Implementation::set_clipboard() {
-    ImGuiIO& io = ImGui::GetIO();
-    io.ClipboardUserData = window;
-    io.GetClipboardTextFn = [](void* w) { return glfwGetClipboardString(static_cast<GLFWwindow*>(w)); };
-    io.SetClipboardTextFn = [](void* w, const char* text) {
-        glfwSetClipboardString(static_cast<GLFWwindow*>(w), text);
-    };
+    clipboard = {window, [](void* w) { return glfwGetClipboardString(static_cast<GLFWwindow*>(w)); },
+                 [](void* w, const char* text) { glfwSetClipboardString(static_cast<GLFWwindow*>(w), text); }};
+    use_clipboard(clipboard);
 }
 
 void Window::Implementation::make_cursors() {

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "app/open.hpp"
+#include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
 namespace achilles {
@@ -17,8 +18,8 @@ namespace {
 class Atlas {
  public:
     Atlas() {
-        for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
-            for (const ImFontGlyph& glyph : font->Glyphs)
+        for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
+            for (const ImFontGlyph& glyph : glyphs_of(font))
                 if (glyph.Visible != 0) glyphs_.push_back(&glyph);
         std::sort(glyphs_.begin(), glyphs_.end(), [](auto* a, auto* b) { return a->V0 < b->V0; });
     }

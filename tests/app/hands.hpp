@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/open.hpp"
+#include "surface/imgui_version.hpp"
 
 namespace achilles::test {
 
@@ -94,8 +95,8 @@ struct Hands {
             [&] {
                 commands = explorer(session, state);
                 std::map<std::pair<float, float>, ImWchar> glyphs;  // by their first corner in the texture
-                for (const ImFont* font : ImGui::GetIO().Fonts->Fonts)
-                    for (const ImFontGlyph& glyph : font->Glyphs)
+                for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
+                    for (const ImFontGlyph& glyph : glyphs_of(font))
                         if (glyph.Visible != 0) glyphs[{glyph.U0, glyph.V0}] = static_cast<ImWchar>(glyph.Codepoint);
                 for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
                     if (!window->Active || window->Hidden) continue;
