@@ -8,7 +8,8 @@
 #include <numbers>
 #include <tuple>
 
-#include "core/systems.hpp"
+#include "core/several.hpp"
+#include "figure/body.hpp"
 #include "figure/label.hpp"
 #include "figure/mechanism.hpp"
 #include "figure/ticks.hpp"
@@ -233,6 +234,32 @@ TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
 }
 
 // A run of more steps than a screen shows is drawn by some of them, over its whole time and as high as all.
+// At 10 s the ball lies in the bowl and at the post: g_bowl = (-r, 0, 1), g_post = (1, 0.3 sin(phi), 0).
+TEST(Composing, EveryContactShowsItsForce) {
+    const Trajectory trajectory = test::run_gaps("bowl_and_post");
+    ViewDescription view;
+    view.x.text = "t";
+    for (const char* y : {"lambda_bowl", "lambda_post", "gap_bowl''", "gap_post''", "work", "loss"})
+        view.y.emplace_back().text = y;
+    const Sample sample = Sampler(trajectory).at(10.0);
+    const std::vector<double> values = values_at(trajectory, sample, PreparedView(*trajectory.model, view));
+    const Vector force = contact_force(trajectory, sample);
+    EXPECT_GT(values[1], 0.0);
+    EXPECT_GT(values[2], 0.0);
+    EXPECT_EQ(values[3], 0.0);
+    EXPECT_EQ(values[4], 0.0);
+    EXPECT_EQ(values[5], sample.work);
+    EXPECT_EQ(values[6], sample.loss);
+    EXPECT_NEAR(force[0], values[2] - sample.state.q[0] * values[1], 1e-12);
+    EXPECT_NEAR(force[1], 0.3 * std::sin(sample.state.q[1]) * values[2], 1e-12);
+    EXPECT_NEAR(force[2], values[1], 1e-12);
+    // An event shows what is held after it.
+    const Event& release = trajectory.events[test::event_near(trajectory, 13.775854797030098)];
+    const std::vector<double> after = values_at(trajectory, sample_at(release), PreparedView(*trajectory.model, view));
+    EXPECT_GT(after[1], 0.0);
+    EXPECT_EQ(after[2], 0.0);
+}
+
 TEST(Compose, very_many_steps_are_thinned) {
     const auto model = test::load("ball_in_bowl");
     auto run = model->default_run();
