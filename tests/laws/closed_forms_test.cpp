@@ -212,8 +212,8 @@ TEST_P(ClosedForm, ImpactOscillatorThatNothingShakes) {
     EXPECT_NEAR(only(trajectory, Event::Kind::zeno).t, t, within);
 }
 
-// Without drive and damper ball and table swing as one mass about y = -m g/K; thrown off where the table falls freely, at
-// y = M g/K.
+// Without drive and damper ball and table swing as one mass about y = -m g/K; thrown off where the table falls freely,
+// at y = M g/K.
 TEST_P(ClosedForm, SprungTable) {
     const Trajectory trajectory = simulated("ball_on_table", {"z=-0.2", "y=-0.2", "F=0", "d=0"}, 0.4);
     const double w = sqrt(value("K") / (value("M") + value("m")));

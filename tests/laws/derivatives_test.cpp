@@ -110,7 +110,7 @@ TEST_P(Derivatives, FreeMotionIsLagranges) {
         Real power = along(V, x, unit(2 * dof_));
         for (std::size_t i = 0; i < dof_; ++i) power += Q[i] * x[dof_ + i];
         expect_same(along(energy, x, motion), power, "the rate of the energy");
-        expect_same(output(model_->power(), 0)(x), power, "the power");
+        expect_same(output(model_->power({}), 0)(x), power, "the power");
         expect_same(energy(x), T(x) + V(x), "the energy");
         for (std::size_t i = 0; i < dof_; ++i) {
             const Real rate = along([&](const Reals& at) { return momentum(at, i); }, x, motion);

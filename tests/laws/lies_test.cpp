@@ -142,10 +142,12 @@ TEST(Lies, TwoStops) {
         for (const Piece& piece : t.pieces)
             if (piece.held.empty()) t.coefficients[piece.first] += 0.4;  // theta1 beyond the wall
     });
-    lie("contact in flight", contact_force, [](Trajectory& t) {
+    lie("a wall that pulls", contact_force, [](Trajectory& t) {
+        // The weight at the wall is stronger than the motor.
+        const ContactSet both = ContactSet::of(0).with(1);
         for (Piece& piece : t.pieces)
-            if (piece.start >= t.phases[1].end) piece.held = ContactSet::of(1);
-        t.phases[2].held = ContactSet::of(1);
+            if (!piece.held.empty()) piece.held = both;
+        t.phases[1].held = both;
     });
 }
 
