@@ -173,7 +173,7 @@ void Execution::accept(const StepResult& result) {
         case End::no_event:
             next_.starts = result.starts;
             next_.begins = false;
-            return;
+            return check_touching();
         case End::impact:
             next_.starts = result.starts;
             return land(result.which, result.contact);

@@ -125,6 +125,8 @@ class Execution {
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
     void end_chatter(ContactSet contacts);
     bool stays_closed(std::size_t contact, ContactSet held);
+    bool is_at_rest(ContactSet held);
+    void check_touching();
     std::string names_of(ContactSet contacts) const;
 
     StepRequest next_;        // where the motion stands, and how it goes on

@@ -161,7 +161,7 @@ void Execution::collide(ContactSet landing) {
 
 // The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is open, or which the impacts would open.
 bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding) {
-    if (completing() || run_.options.truncation.conditions != Conditions::sharp) return false;
+    if (completing()) return false;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (!landing.contains(i) || !(restitutions_[i] < 1.0)) continue;
         for (std::size_t j = 0; j < surfaces_->count(); ++j) {
@@ -281,6 +281,8 @@ void Execution::decide(ContactSet closed) {
 // Contacts whose gradients depend on one another are held by some of them, which carry all: the gaps of the others stay 0
 // with theirs.
 bool Execution::hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
+    ContactSet all;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) all = all.with(i);
     constexpr double pressed = 1e-9;  // a force below that part of the others is in doubt, and carries nothing
     const std::size_t count = closed.which.size();
     for (int size = static_cast<int>(count); size > 0; --size)
@@ -302,15 +304,25 @@ bool Execution::hold_independent(const Closed& closed, const ContactVector<doubl
                 if (some.contains(i)) continue;
                 valid = valid && y[k] >= -scale;
                 const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
+                // What neither depends on them nor leaves needs a force of its own: they do not carry all.
+                if (!depends) valid = valid && y[k] > scale;
                 (depends ? carried : others) = (depends ? carried : others).with(i);
             }
             if (!valid) continue;
             next_.touching = closed.contacts_at(carried);
             // What is carried is so by all of these.
-            return judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
-                   closed.contacts_at(some).without(next_.held).empty();
+            if (judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
+                closed.contacts_at(some).without(next_.held).empty())
+                return true;
         }
-    return false;
+    // At rest for ever nothing has to be told apart.
+    const ContactSet pressed_ones = closed.contacts_at(active);
+    if (!is_at_rest(pressed_ones)) return false;
+    next_.held = pressed_ones;
+    next_.touching = closed.contacts_at(all).without(pressed_ones);
+    for (std::size_t i = 0; i < next_.starts.size(); ++i)
+        if (pressed_ones.contains(i)) next_.starts[i] = {};
+    return true;
 }
 
 // Those of the doubtful whose force grows from 0, while these are held.
@@ -382,10 +394,31 @@ bool Execution::judge(ContactSet closed, ContactSet active) {
 }
 
 // Whether a contact with h = hdot = hddot = 0 stays so along the motion that holds these: where hddot is 0 everywhere, or
-// the whole system is at rest and nothing depends on the time.
+// the whole system is at rest for ever.
 bool Execution::stays_closed(std::size_t contact, ContactSet held) {
-    if (surfaces_->count() > 1 && model_->is_carried(contact, held)) return true;
+    return (surfaces_->count() > 1 && model_->is_carried(contact, held)) || is_at_rest(held);
+}
+
+// What merely touches must go on to do so.
+void Execution::check_touching() {
+    if (next_.touching.empty()) return;
+    constexpr double closed = 1e-9;
+    const double size = 1.0 + next_.state.q.cwiseAbs().maxCoeff();
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (next_.touching.contains(i) && !(std::abs(surfaces_->of(i).at(next_.state).h) <= closed * size))
+            return stop(
+                Outcome::Kind::redundant_contacts,
+                fmt::format("{} was closed with {}, and is so no more: which of them carry cannot be decided, at {}",
+                            names_of(ContactSet::of(i)), names_of(next_.held), where(next_.state)));
+}
+
+// Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.
+bool Execution::is_at_rest(ContactSet held) {
     if (!model_->equations().autonomous || next_.state.v != Vector::Zero(next_.state.v.size())) return false;
+    const Closed closed = surfaces_->at(next_.state, held);
+    ContactSet places;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) places = places.with(i);
+    if (!held.empty() && !HeldBlock<double>::of(closed.W, places)) return false;
     auto motion = model_->evaluator(model_->motion(held).program, run_.parameters);
     MotionTerms<Evaluator<double>> terms(std::move(motion), static_cast<std::size_t>(model_->dof()),
                                          model_->contacts());

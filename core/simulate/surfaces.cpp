@@ -91,7 +91,7 @@ std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSe
         }
     constexpr int rounds = 8;
     double before = std::numeric_limits<double>::infinity();
-    Vector moved = Vector::Zero(state.q.size());  // by the last correction
+    ContactVector<double> p = ContactVector<double>::Zero(onto.count());  // of the last correction
     for (int round = 0;; ++round) {
         const Closed closed = at(state, onto);
         double largest = 0.0, least = std::numeric_limits<double>::infinity();
@@ -104,7 +104,7 @@ std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSe
             largest = std::max(largest, std::abs(c.h));
             least = std::min(least, c.h);
             // A correction that others needed leaves its own rounding, which may be large beside that of this gap.
-            const double left = 0x1p-50 * c.g.cwiseAbs().dot(moved.cwiseAbs());
+            const double left = 0x1p-50 * closed.W.row(static_cast<Eigen::Index>(i)).cwiseAbs().dot(p.cwiseAbs());
             near = near && regular &&
                    (std::abs(c.h) <= left ||
                     free_[closed.which[i]].within_gap_error(c.h, round < rounds ? 1.0 : 4.0, c, state));
@@ -118,9 +118,8 @@ std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSe
         }
         if (round == rounds) return std::nullopt;
         before = largest;
-        moved = state.q;
-        move_along(state.q, closed, h);
-        moved = state.q - moved;
+        p = solve(closed.W, h);
+        state.q = closed.after(state.q, -p);
     }
 }
 

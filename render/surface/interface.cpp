@@ -135,6 +135,7 @@ void Interface::build_fonts(double scale) {
     }
     for (const double pixels : sizes) add(proportional, pixels);
     add(monospaced, std::max(std::round(0.9 * options_.text_size * scale), 4.0));  // the last: monospace_font()
+    font_texture(atlas);  // letters are measured where no canvas draws them, too
 }
 
 const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int height, double seconds) {

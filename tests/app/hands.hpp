@@ -102,8 +102,10 @@ struct Hands {
                     if (!window->Active || window->Hidden) continue;
                     for (const ImDrawVert& vertex : window->DrawList->VtxBuffer) {
                         const auto glyph = glyphs.find({vertex.uv.x, vertex.uv.y});
+                        if (glyph == glyphs.end()) continue;
                         char letter[5] = {};
-                        if (glyph != glyphs.end()) text += ImTextCharToUtf8(letter, glyph->second);
+                        ImTextCharToUtf8(letter, glyph->second);
+                        text += letter;
                     }
                 }
             },

@@ -42,6 +42,16 @@ inline std::shared_ptr<const Model> load(const std::string& name) {
     return std::make_shared<const Model>(read_system(path));
 }
 
+// Of the gallery, those with one gap and nothing that depends on the time.
+inline std::vector<std::string> plain_systems() {
+    std::vector<std::string> names = all_systems();
+    std::erase_if(names, [](const std::string& name) {
+        const auto model = load(name);
+        return model->contacts() > 1 || !model->equations().autonomous;
+    });
+    return names;
+}
+
 // A system whose restitutions all are a parameter, e.
 inline std::shared_ptr<const Model> with_one_restitution(const Model& model) {
     SystemDescription system = model.description();

@@ -64,8 +64,9 @@ TEST_P(Law, AllHoldFromOtherStarts) {
         }
         ++done;
         // Not all that chatters together is completed (theory-gaps.md 2.6): such a run says so.
-        if (model->contacts() == 1 || trajectory.outcome.kind != Outcome::Kind::undecided)
+        if (model->contacts() == 1 || trajectory.outcome.kind != Outcome::Kind::undecided) {
             EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        }
         for (const auto law : {energy, gap, phases, contact_force}) {
             const Violations violations = law(trajectory);
             EXPECT_TRUE(violations.empty()) << listed(violations);

@@ -83,7 +83,7 @@ TEST_P(GapLaws, AGapThatIsNeverReachedChangesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Reference, GapLaws, testing::ValuesIn(reference_systems),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& one) { return std::string(one.param); });
 
 // Two systems in one file, which must not share a name: coordinates and parameters of the second get a prefix.
 SystemDescription joined_systems(const SystemDescription& a, SystemDescription b) {

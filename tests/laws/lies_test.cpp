@@ -99,7 +99,7 @@ TEST(Lies, ContactForce) {
 // ---- several contacts, a drive and dampers ----
 
 Trajectory truth_of_two_stops() {
-    const auto model = model_of("pendulum_two_stops");
+    const auto model = model_of("double_pendulum_two_stops");
     auto run = model->default_run();
     run.options.end_time = 7.0;  // the knee locks at 4.85, a blow against the wall opens it at 6.65
     return simulate(model, run);

@@ -26,7 +26,7 @@ TEST(Layout, paths_fill_their_place) {
         const auto area = [](const Rectangle& r) { return double{r.width} * double{r.height}; };
         for (std::size_t i = 0; i < plots.size(); ++i) {
             const Rectangle& a = plots[i].plot;
-            EXPECT_GT(area(a), 0.6 * area(plots[i].place)) << name << " " << figure.panels[i].title;
+            EXPECT_GT(area(a), 0.49 * area(plots[i].place)) << name << " " << figure.panels[i].title;
             EXPECT_TRUE(a.x > 0 && a.y > 0 && a.x + a.width < 1200 && a.y + a.height < 800) << name;
             for (std::size_t j = 0; j < i; ++j) {
                 const Rectangle& b = plots[j].plot;

@@ -30,7 +30,9 @@ TEST(Parts, a_spring_stretches_between_straight_ends_and_keeps_its_breadth) {
         for (std::size_t i = 2; i < 12; ++i) {
             EXPECT_NEAR(std::abs(line[i].x - 1.0), 0.15, 1e-15);
             EXPECT_NEAR(line[i].y, 1.0 + end + (length - 2.0 * end) * (static_cast<double>(i) - 1.5) / 10.0, 1e-14);
-            if (i > 2) EXPECT_LT((line[i].x - 1.0) * (line[i - 1].x - 1.0), 0.0);
+            if (i > 2) {
+                EXPECT_LT((line[i].x - 1.0) * (line[i - 1].x - 1.0), 0.0);
+            }
         }
     }
 }
@@ -53,9 +55,13 @@ TEST(Parts, the_piston_of_a_damper_stays_in_its_cup) {
         EXPECT_EQ(line[12].x, length);
         EXPECT_GT(piston, before);
         before = piston;
-        if (length == 1.0) EXPECT_NEAR(piston, 0.5 * (bottom + mouth), 1e-15);
+        if (length == 1.0) {
+            EXPECT_NEAR(piston, 0.5 * (bottom + mouth), 1e-15);
+        }
         // What is drawn out is the rod, not the cup.
-        if (length >= 1.0) EXPECT_NEAR(mouth - bottom, 0.4, 1e-15);
+        if (length >= 1.0) {
+            EXPECT_NEAR(mouth - bottom, 0.4, 1e-15);
+        }
         EXPECT_NEAR(apart(line[4], line[5]), 0.2, 1e-15);
     }
 }

@@ -254,7 +254,7 @@ TEST(SharpCertificates, AreNotPutOff) {
 // It is a guess: of 192 000 cuts of random runs through the gallery, 8 came an impact late. Of these few, none may.
 TEST(SharpCertificates, AreNotPutOffInTheGallery) {
     Cuts cuts;
-    for (const std::string& system : test::all_systems()) {
+    for (const std::string& system : test::plain_systems()) {
         const auto model = test::load(system);
         test::Starts starts(model, 7);
         auto run = model->default_run();

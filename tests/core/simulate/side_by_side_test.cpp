@@ -69,7 +69,8 @@ std::shared_ptr<const Model> many_functions_of_time() {
 
 std::vector<std::pair<std::string, std::shared_ptr<const Model>>> models() {
     std::vector<std::pair<std::string, std::shared_ptr<const Model>>> all;
-    for (const std::string& name : test::all_systems()) all.emplace_back(name, test::load(name));
+    for (const std::string& name : test::all_systems())  // of one gap: others are not stepped side by side
+        if (const auto model = test::load(name); model->contacts() == 1) all.emplace_back(name, model);
     for (const std::string name : test::timed_systems) all.emplace_back(name, test::load(name));
     all.emplace_back("many functions", many_functions());
     all.emplace_back("many functions of time", many_functions_of_time());
