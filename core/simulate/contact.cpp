@@ -71,6 +71,7 @@ std::optional<StepResult::End> EventStepper::locate_release(double theta) {
     ContactKinematics& leaving = surfaces_->of(contact_, held().without(contact_));
     double duration = theta * flow_->duration();
     for (int round = 0; round < 8; ++round) {
+        known_ = {};
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
         const bool projected = surfaces_->project(flow_->edit_end(), held(), held()).has_value();
         if (!projected || flow_->duration() < duration * (1.0 - 1e-12)) return std::nullopt;
@@ -78,6 +79,7 @@ std::optional<StepResult::End> EventStepper::locate_release(double theta) {
         const double correction = -leaving.normal_acceleration(end) / leaving.jerk(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
+            known_ = {};
             flow_->shift_end(correction);
             surfaces_->project(flow_->edit_end(), held(), held());
             break;

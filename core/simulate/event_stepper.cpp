@@ -5,7 +5,7 @@
 namespace achilles {
 
 EventStepper::EventStepper(const Model& model, const Run& run, Surfaces& surfaces)
-    : model_(&model), run_(run), surfaces_(&surfaces), usual_(model, run) {}
+    : model_(&model), run_(run), surfaces_(&surfaces), usual_(model, run), along_(surfaces.count()) {}
 
 const StepResult& EventStepper::step(const StepRequest& request) {
     request_ = &request;
@@ -24,7 +24,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     result_.steps = 0;
     result_.state = &request.state;
     result_.starts = request.starts;
-    asked_again_ = {};
+    asked_again_ = known_ = {};
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
@@ -86,7 +86,10 @@ bool EventStepper::end_step_at(double theta) {
     return theta > 0.0 && theta < 1.0 && end_step_after(theta * flow_->duration());
 }
 
-bool EventStepper::end_step_after(double duration) { return flow_->redo_step(duration) == StepFailure::none; }
+bool EventStepper::end_step_after(double duration) {
+    known_ = {};
+    return flow_->redo_step(duration) == StepFailure::none;
+}
 
 // The flow's last step, as it stands, is what came.
 void EventStepper::end_step(double gap) {

@@ -36,7 +36,8 @@ class EventStepper {
     // Of open gaps (flight.cpp).
     Descent gap_descent();
     std::optional<End> meet_gap(Descent descent);
-    Polynomial gap_along(std::size_t contact);
+    const Polynomial& gap_along(std::size_t contact);
+    Polynomial make_gap(std::size_t contact);
     End doubt_gap(double theta);
     End land_here();
     End land_under();
@@ -71,9 +72,11 @@ class EventStepper {
     std::size_t contact_ = 0;  // whose event is looked at
     ContactSet asked_again_;   // the step was ended where these entered their remainder
     StepResult result_;
-    State landed_;           // an impact without a step
-    std::vector<Gap> gaps_;  // where a stretch starts
-    long evaluations_ = 0;   // told so far
+    State landed_;                   // an impact without a step
+    std::vector<Gap> gaps_;          // where a stretch starts
+    std::vector<Polynomial> along_;  // gap_along() of those that are known of the step as it now is
+    ContactSet known_;
+    long evaluations_ = 0;  // told so far
 };
 
 }  // namespace achilles

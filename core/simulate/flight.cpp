@@ -6,10 +6,17 @@
 
 namespace achilles {
 
+// Made once for a step as it stands.
+const Polynomial& EventStepper::gap_along(std::size_t contact) {
+    if (!known_.contains(contact)) along_[contact] = make_gap(contact);
+    known_ = known_.with(contact);
+    return along_[contact];
+}
+
 // The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
 // leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
 // better (the difference is above its rounding), the polynomial is made to end there.
-Polynomial EventStepper::gap_along(std::size_t contact) {
+Polynomial EventStepper::make_gap(std::size_t contact) {
     const int multiplicity = start_of(contact).multiplicity;
     Polynomial h = flow_->event_function(contact);
     for (int j = 0; j < multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
@@ -28,7 +35,7 @@ Polynomial EventStepper::gap_along(std::size_t contact) {
 }
 
 Descent EventStepper::gap_descent() {
-    const Polynomial h = gap_along(contact_);
+    const Polynomial& h = gap_along(contact_);
     return first_descent(h, start_of(contact_).multiplicity, flow_->remainder(contact_, h));
 }
 
@@ -69,7 +76,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
             result_.starts[i] = {{0.0, 0.0}, 1, false};
             continue;
         }
-        const Polynomial h = gap_along(i);
+        const Polynomial& h = gap_along(i);
         ContactKinematics& surface = surfaces_->of(i);
         const Contact end = surface.at(flow_->end());
         Gap gap{h(1.0), h.slope(1.0) / flow_->duration()};
@@ -126,14 +133,16 @@ StepResult::End EventStepper::land_under() {
 std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
     double duration = theta * flow_->duration();
     for (int round = 0; round < 8; ++round) {
+        known_ = {};
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
         if (flow_->is_expansion()) break;
         const bool shortened = flow_->duration() < duration * (1.0 - 1e-12);
-        const Polynomial h = gap_along(contact_);
+        const Polynomial& h = gap_along(contact_);
         const double hdot = h.slope(1.0) / flow_->duration();
         if (shortened || !(hdot < 0.0)) return std::nullopt;
         const double correction = -h(1.0) / hdot;
         if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
+            known_ = {};
             flow_->shift_end(correction);
             break;
         }
