@@ -9,8 +9,11 @@
 
 namespace achilles {
 
-// Of what an impulse is passed on by.
-bool is_not_negative(const Interval& kappa);
+// What a program of Neighbours or PairPrograms proves, which has run: of every held contact hddot, W and a kappa for each of
+// the `bouncing` ones, then of so many open ones the gap. Nothing where one is not proved pressed, or open.
+std::optional<Certificate::Others> others_proved(const Evaluator<Interval>& program,
+                                                 const std::vector<std::size_t>& held, std::size_t open,
+                                                 std::size_t bouncing);
 
 class OthersStay {
  public:

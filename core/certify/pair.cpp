@@ -139,21 +139,7 @@ std::optional<Certificate::Others> PairConditions::others_stay(const std::vector
     others_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
     others_.clock() = box[2 * dof_ + 2];
     others_.run();
-    Certificate::Others others;
-    std::size_t next = 0;
-    for (const std::size_t contact : programs_->held) {
-        const Interval hddot = others_.output(next), W = others_.output(next + 1);
-        const Interval kappa = hull(others_.output(next + 2), others_.output(next + 3));
-        next += 4;
-        if (!certainly_negative(hddot) || !certainly_positive(W) || !is_not_negative(kappa)) return std::nullopt;
-        others.held.push_back({contact, kappa.lo(), kappa.hi(), (-hddot / W).lo()});
-    }
-    for (std::size_t i = 0; i < programs_->open.size(); ++i) {
-        const Interval gap = others_.output(next++);
-        if (!certainly_positive(gap)) return std::nullopt;
-        others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
-    }
-    return others;
+    return others_proved(others_, programs_->held, programs_->open.size(), 2);
 }
 
 // What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.

@@ -1,5 +1,4 @@
-// What an execution does where several contacts are closed: impacts of several, and who is held after an event
-// (theory-gaps.md 2.1 to 2.5).
+// Impacts of several contacts, and two that chatter together (theory-gaps.md 2.1, 2.4, 2.6).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contacts/complementarity.hpp"
 #include "contacts/moreau.hpp"
 #include "simulate/execution.hpp"
 
@@ -159,7 +157,8 @@ void Execution::collide(ContactSet landing) {
     if (!outcome_) begin_stretch(next_.held, run_.options.end_time);
 }
 
-// The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is open, or which the impacts would open.
+// The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is
+// open, or which the impacts would open.
 bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding) {
     if (completing()) return false;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
@@ -247,186 +246,6 @@ bool Execution::too_short_to_resolve(std::size_t which, double hdot) {
     const double a = -surface.normal_acceleration(next_.state);
     if (!(a > 0.0)) return false;
     return hdot * hdot / (2.0 * a) < 4.0 * surface.gap_error(next_.state) || 2.0 * hdot / a < 4.0 * ulp(next_.state.t);
-}
-
-// Contacts with h = 0 and hdot = 0: who of them is held, who leaves, who merely touches (theory-gaps.md 2.2). What was held
-// before counts no more.
-void Execution::decide(ContactSet closed) {
-    next_.held = next_.touching = {};
-    not_unique_ = false;
-    if (closed.empty()) return;
-    if (closed.count() > most_contacts)
-        return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("{} contacts are closed at once, more than the {} that can be decided: {}, at {}",
-                                closed.count(), most_contacts, names_of(closed), where(next_.state)));
-    const Closed all = surfaces_->at(next_.state, closed);
-    ContactVector<double> hddot(all.W.rows());
-    for (std::size_t i = 0; i < all.which.size(); ++i)
-        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(all.which[i]).normal_acceleration(next_.state);
-    const auto forces = solve_complementarity(all.W, hddot);
-    if (!forces)
-        return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("no forces hold {}, at {}", names_of(closed), where(next_.state)));
-    not_unique_ = !forces->unique;
-    const ContactSet active = all.contacts_at(forces->active);
-    const bool decided = forces->unique ? judge(closed, active) : hold_independent(all, hddot, forces->active);
-    if (!decided)
-        stop(Outcome::Kind::undecided,
-             fmt::format("the contact force and its rate are zero to within rounding: contact or release cannot be "
-                         "decided{}{} at {}",
-                         surfaces_->count() > 1 ? " for " : "", surfaces_->count() > 1 ? names_of(closed) : "",
-                         where(next_.state)));
-}
-
-// Contacts whose gradients depend on one another are held by some of them, which carry all: the gaps of the others stay 0
-// with theirs.
-bool Execution::hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
-    ContactSet all;
-    for (std::size_t i = 0; i < closed.which.size(); ++i) all = all.with(i);
-    constexpr double pressed = 1e-9;  // a force below that part of the others is in doubt, and carries nothing
-    const std::size_t count = closed.which.size();
-    for (int size = static_cast<int>(count); size > 0; --size)
-        for (std::uint32_t bits = 1; bits < 1u << count; ++bits) {
-            ContactSet some;
-            for (std::size_t i = 0; i < count; ++i)
-                if (bits >> i & 1u) some = some.with(i);
-            if (some.count() != size || !some.without(active).empty()) continue;
-            const auto block = HeldBlock<double>::of(closed.W, some);
-            if (!block) continue;
-            const ContactVector<double> lambda = -block->solve(hddot);
-            const ContactVector<double> y = hddot + closed.W * lambda;
-            bool valid = true;
-            ContactSet carried, others;
-            for (std::size_t i = 0; i < count; ++i) {
-                const auto k = static_cast<Eigen::Index>(i);
-                const double scale = 1e-12 * (std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs()));
-                if (some.contains(i)) valid = valid && lambda[k] > pressed * lambda.cwiseAbs().maxCoeff();
-                if (some.contains(i)) continue;
-                valid = valid && y[k] >= -scale;
-                const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
-                // What neither depends on them nor leaves needs a force of its own: they do not carry all.
-                if (!depends) valid = valid && y[k] > scale;
-                (depends ? carried : others) = (depends ? carried : others).with(i);
-            }
-            if (!valid) continue;
-            next_.touching = closed.contacts_at(carried);
-            // What is carried is so by all of these.
-            if (judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
-                closed.contacts_at(some).without(next_.held).empty())
-                return true;
-        }
-    // At rest for ever nothing has to be told apart.
-    const ContactSet pressed_ones = closed.contacts_at(active);
-    if (!is_at_rest(pressed_ones)) return false;
-    next_.held = pressed_ones;
-    next_.touching = closed.contacts_at(all).without(pressed_ones);
-    for (std::size_t i = 0; i < next_.starts.size(); ++i)
-        if (pressed_ones.contains(i)) next_.starts[i] = {};
-    return true;
-}
-
-// Those of the doubtful whose force grows from 0, while these are held.
-ContactSet Execution::pressed_by_rates(ContactSet doubtful, ContactSet held) {
-    const Closed closed = surfaces_->at(next_.state, doubtful.with(held));
-    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(held));
-    if (!block) return {};
-    std::vector<std::size_t> which;
-    std::vector<Eigen::Index> places;
-    for (std::size_t i = 0; i < closed.which.size(); ++i)
-        if (doubtful.contains(closed.which[i])) {
-            which.push_back(closed.which[i]);
-            places.push_back(static_cast<Eigen::Index>(i));
-        }
-    const auto n = static_cast<Eigen::Index>(which.size());
-    ContactMatrix<double> W(n, n);
-    ContactVector<double> jerk(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        jerk[i] = surfaces_->of(which[at], held).jerk(next_.state);
-        const ContactVector<double> kappa = block->transmission(closed.W, places[at]).kappa;
-        for (Eigen::Index k = 0; k < n; ++k)
-            W(k, i) = HeldBlock<double>::between(closed.W, places[static_cast<std::size_t>(k)], places[at], kappa);
-    }
-    const auto rates = solve_complementarity(W, jerk);
-    ContactSet pressed;
-    for (std::size_t i = 0; rates && i < which.size(); ++i)
-        if (rates->active.contains(i)) pressed = pressed.with(which[i]);
-    return pressed;
-}
-
-// Proves for each contact what the forces say of it: `active` are held by them, the others leave. Where that cannot be told,
-// the rate of hddot along the motion decides, of one contact or of several that do not feel one another.
-bool Execution::judge(ContactSet closed, ContactSet active) {
-    ContactSet held, doubtful;
-    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (!closed.contains(i)) continue;
-        const Interval hddot = surfaces_->of(i, active.without(i)).normal(next_.state).hddot;
-        if (certainly_negative(hddot)) {
-            held = held.with(i);
-            next_.starts[i] = {};
-        } else if (certainly_positive(hddot)) {
-            next_.starts[i] = {{0.0, 0.0}, 2};
-        } else {
-            doubtful = doubtful.with(i);
-        }
-    }
-    if (!doubtful.empty()) {
-        // The rates of hddot decide, 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful, as far as they are proved.
-        ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, held);
-        const bool alone = doubtful.count() == 1;
-        for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-            if (!doubtful.contains(i)) continue;
-            const auto normal = surfaces_->of(i, alone ? held : held.with(pressed).without(i)).normal(next_.state);
-            if (certainly_negative(normal.jerk) && pressed.contains(i)) {
-                held = held.with(i);
-                next_.starts[i] = {{}, 1};
-            } else if (certainly_positive(normal.jerk) && (alone || !pressed.contains(i))) {
-                next_.starts[i] = {{0.0, 0.0}, 3};
-            } else if (stays_closed(i, held)) {
-                next_.touching = next_.touching.with(i);
-            } else {
-                return false;
-            }
-        }
-    }
-    next_.held = held;
-    return true;
-}
-
-// Whether a contact with h = hdot = hddot = 0 stays so along the motion that holds these: where hddot is 0 everywhere, or
-// the whole system is at rest for ever.
-bool Execution::stays_closed(std::size_t contact, ContactSet held) {
-    return (surfaces_->count() > 1 && model_->is_carried(contact, held)) || is_at_rest(held);
-}
-
-// What merely touches must go on to do so.
-void Execution::check_touching() {
-    if (next_.touching.empty()) return;
-    constexpr double closed = 1e-9;
-    const double size = 1.0 + next_.state.q.cwiseAbs().maxCoeff();
-    for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (next_.touching.contains(i) && !(std::abs(surfaces_->of(i).at(next_.state).h) <= closed * size))
-            return stop(
-                Outcome::Kind::redundant_contacts,
-                fmt::format("{} was closed with {}, and is so no more: which of them carry cannot be decided, at {}",
-                            names_of(ContactSet::of(i)), names_of(next_.held), where(next_.state)));
-}
-
-// Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.
-bool Execution::is_at_rest(ContactSet held) {
-    if (!model_->equations().autonomous || next_.state.v != Vector::Zero(next_.state.v.size())) return false;
-    const Closed closed = surfaces_->at(next_.state, held);
-    ContactSet places;
-    for (std::size_t i = 0; i < closed.which.size(); ++i) places = places.with(i);
-    if (!held.empty() && !HeldBlock<double>::of(closed.W, places)) return false;
-    auto motion = model_->evaluator(model_->motion(held).program, run_.parameters);
-    MotionTerms<Evaluator<double>> terms(std::move(motion), static_cast<std::size_t>(model_->dof()),
-                                         model_->contacts());
-    set_state(terms, next_.state);
-    terms.run();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(model_->dof()); ++i)
-        if (terms.acceleration(i) != 0.0) return false;
-    return true;
 }
 
 }  // namespace achilles
