@@ -18,6 +18,9 @@ class ContactSet {
 
     constexpr bool empty() const { return bits_ == 0; }
     constexpr int count() const { return std::popcount(bits_); }
+    // Its only contact, where it has just one.
+    constexpr bool has_one() const { return bits_ != 0 && (bits_ & (bits_ - 1)) == 0; }
+    constexpr std::size_t only() const { return static_cast<std::size_t>(std::countr_zero(bits_)); }
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
     constexpr ContactSet with(std::size_t contact) const { return ContactSet(bits_ | 1u << contact); }
     constexpr ContactSet without(std::size_t contact) const { return ContactSet(bits_ & ~(1u << contact)); }

@@ -126,6 +126,8 @@ struct Event {
     };
     std::optional<Truncation> truncation;
     std::optional<Certificate> certificate;  // zeno
+
+    Event() {}  // the room for the two that most events have not need not be zero
 };
 
 // A Zeno event without bouncing: restitution 0 ends the fall in contact at once, exactly.

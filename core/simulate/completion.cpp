@@ -101,10 +101,10 @@ std::optional<Certificate> Execution::prove(
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
     record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
-    const Vector v_before = next_.state.v;
-    next_.state.v = v_after;
     const double hdot = -e * contact.hdot;
     next_.starts[which_] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+    const Vector v_before = next_.state.v;
+    next_.state.v = v_after;
     change_rates(v_before, ContactSet::of(which_));
     begin_stretch(next_.held, run_.options.end_time);
     if (run_.options.method == Method::taylor) return;  // a series tells its length itself

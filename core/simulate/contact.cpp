@@ -51,7 +51,8 @@ StepResult::End EventStepper::doubt_force(double theta) {
 Descent EventStepper::force_descent() {
     if (flow_->stays_negative(contact_)) return {};
     const int multiplicity = start_of(contact_).multiplicity;
-    Polynomial force = flow_->event_function(contact_);
+    Polynomial force;
+    flow_->event_function(contact_, force);
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow_->is_expansion()) {
         State end = flow_->end();

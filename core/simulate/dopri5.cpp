@@ -44,7 +44,7 @@ class Dopri5 : public Stepper {
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override { return to_; }
-    Polynomial event_function(std::size_t contact) const override { return component(event(contact)); }
+    void event_function(std::size_t contact, Polynomial& p) const override { p = component(event(contact)); }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;

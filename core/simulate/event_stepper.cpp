@@ -5,7 +5,14 @@
 namespace achilles {
 
 EventStepper::EventStepper(const Model& model, const Run& run, Surfaces& surfaces)
-    : model_(&model), run_(run), surfaces_(&surfaces), usual_(model, run), along_(surfaces.count()) {}
+    : model_(&model),
+      run_(run),
+      surfaces_(&surfaces),
+      usual_(model, run),
+      gaps_(surfaces.count()),
+      along_(surfaces.count()) {
+    result_.starts.resize(surfaces.count());
+}
 
 const StepResult& EventStepper::step(const StepRequest& request) {
     request_ = &request;
@@ -16,14 +23,12 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
     if (request.begins) {
-        gaps_.clear();
-        for (const EventStart& start : request.starts) gaps_.push_back(start.gap);
+        for (std::size_t i = 0; i < gaps_.size(); ++i) gaps_[i] = request.starts[i].gap;
         flow_->start(request.held, request.state, gaps_, request.first_step);
     }
     result_.flow = flow_;
     result_.steps = 0;
     result_.state = &request.state;
-    result_.starts = request.starts;
     asked_again_ = known_ = {};
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
@@ -67,8 +72,6 @@ StepResult::End EventStepper::end_without_event() {
     if (!held().empty()) {
         if (!end_on_surface()) return End::off_surface;
         least = result_.gap;
-        for (std::size_t i = 0; i < result_.starts.size(); ++i)
-            if (held().contains(i)) result_.starts[i] = {{}, 0, asked_again_.contains(i)};
     }
     if (!settle_gaps({}, least)) return land_under();
     end_step(least);

@@ -37,7 +37,7 @@ class EventStepper {
     Descent gap_descent();
     std::optional<End> meet_gap(Descent descent);
     const Polynomial& gap_along(std::size_t contact);
-    Polynomial make_gap(std::size_t contact);
+    void make_gap(std::size_t contact, Polynomial& h);
     End doubt_gap(double theta);
     End land_here();
     End land_under();

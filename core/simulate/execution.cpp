@@ -171,14 +171,11 @@ void Execution::accept(const StepResult& result) {
     next_.state = *result.state;
     switch (result.end) {
         case End::no_event:
-            next_.starts = result.starts;
             next_.begins = false;
             return check_touching();
         case End::impact:
-            next_.starts = result.starts;
             return land(result.which, result.contact);
         case End::force_vanishes:
-            next_.starts = result.starts;
             return release(result.which);
         case End::doubt:
             return stop(Outcome::Kind::undecided, doubt(result));
@@ -198,6 +195,7 @@ void Execution::advance(const StepResult& result) {
     }
     stalled_ = result.state->t - next_.state.t > 0x1p-51 * std::abs(next_.state.t) ? 0 : stalled_ + 1;
     last_step_ = result.duration;
+    for (std::size_t i = 0; i < next_.starts.size(); ++i) next_.starts[i] = result.starts[i];
 }
 
 // A motion that ends at `until` at the latest.
@@ -210,7 +208,7 @@ void Execution::begin_stretch(ContactSet held, double until) {
 }
 
 // The velocity has jumped: the rates of open gaps, but of these, have too.
-void Execution::change_rates(const Vector& v_before, ContactSet but) {
+void Execution::change_other_rates(const Vector& v_before, ContactSet but) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (!next_.held.contains(i) && !but.contains(i) && !next_.touching.contains(i))
             next_.starts[i].gap.hdot += surfaces_->of(i).at(next_.state).g.dot(next_.state.v - v_before);

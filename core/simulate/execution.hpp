@@ -78,7 +78,10 @@ class Execution {
     double state_error() const;
     void advance(const StepResult& result);
     void begin_stretch(ContactSet held, double until);
-    void change_rates(const Vector& v_before, ContactSet but);
+    void change_rates(const Vector& v_before, ContactSet but) {
+        if (surfaces_->count() > 1) change_other_rates(v_before, but);
+    }
+    void change_other_rates(const Vector& v_before, ContactSet but);
     bool may_ask_exactly() const;
     void ask_exactly();
     std::string doubt(const StepResult& result) const;
@@ -89,7 +92,12 @@ class Execution {
     // At events.
     void land(std::size_t which, const Contact& contact);
     void land_alone(const Contact& contact);
-    Exchange exchange_of(const Contact& contact, double e);
+    // What the impact does to the energy, also by what it passes on to held contacts.
+    Exchange exchange_of(const Contact& contact, double e) {
+        const Exchange own = exchange(contact, e);
+        return next_.held.empty() ? own : exchange_beside(contact, e, own);
+    }
+    Exchange exchange_beside(const Contact& contact, double e, Exchange own);
     ContactKinematics& kinematics() { return surfaces_->of(which_, next_.held); }
     // What some work gives; its time counts as that of proofs.
     template <class Work>

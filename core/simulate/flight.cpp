@@ -8,19 +8,20 @@ namespace achilles {
 
 // Made once for a step as it stands.
 const Polynomial& EventStepper::gap_along(std::size_t contact) {
-    if (!known_.contains(contact)) along_[contact] = make_gap(contact);
+    Polynomial& h = along_[contact];
+    if (!known_.contains(contact)) make_gap(contact, h);
     known_ = known_.with(contact);
-    return along_[contact];
+    return h;
 }
 
 // The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
 // leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
 // better (the difference is above its rounding), the polynomial is made to end there.
-Polynomial EventStepper::make_gap(std::size_t contact) {
+void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     const int multiplicity = start_of(contact).multiplicity;
-    Polynomial h = flow_->event_function(contact);
+    flow_->event_function(contact, h);
     for (int j = 0; j < multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
-    if (flow_->is_expansion()) return h;
+    if (flow_->is_expansion()) return;
     ContactKinematics& surface = surfaces_->of(contact);
     const Contact end = surface.at(flow_->end());
     const double value = end.h - h(1.0), slope = end.hdot * flow_->duration() - h.slope(1.0);
@@ -31,7 +32,6 @@ Polynomial EventStepper::make_gap(std::size_t contact) {
         h.c[static_cast<std::size_t>(m)] += value - b;
         h.c[static_cast<std::size_t>(m + 1)] += b;
     }
-    return h;
 }
 
 Descent EventStepper::gap_descent() {
@@ -67,11 +67,15 @@ std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
     return std::nullopt;
 }
 
-// How the open gaps, but for these, go on from the end of the step. False, and contact_ is the one, where one has closed
+// How the contacts, but for these, go on from the end of the step. False, and contact_ is the one, where one has closed
 // there by h(q), though its series stays open. The least of them is taken note of.
 bool EventStepper::settle_gaps(ContactSet but, double& least) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (held().contains(i) || but.contains(i)) continue;
+        if (but.contains(i)) continue;
+        if (held().contains(i)) {
+            result_.starts[i] = {{}, 0, asked_again_.contains(i)};
+            continue;
+        }
         if (!is_watched(i)) {
             result_.starts[i] = {{0.0, 0.0}, 1, false};
             continue;
@@ -97,7 +101,9 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
 
 // Whether the gap closes cannot be told from theta on: the step ends there.
 StepResult::End EventStepper::doubt_gap(double theta) {
-    result_.remainder = flow_->remainder(contact_, flow_->event_function(contact_));
+    Polynomial h;
+    flow_->event_function(contact_, h);
+    result_.remainder = flow_->remainder(contact_, h);
     if (end_step_at(theta) && (held().empty() || end_on_surface()))
         end_step(surfaces_->of(contact_).at(flow_->end()).h);
     return End::doubt;
@@ -107,10 +113,8 @@ StepResult::End EventStepper::doubt_gap(double theta) {
 StepResult::End EventStepper::land_here() {
     landed_ = request_->state;
     result_.state = &landed_;
-    const auto landed = surfaces_->land(landed_, contact_, held());
-    if (!landed) return End::off_surface;
-    if (!(landed->hdot < 0.0)) return doubt_gap(0.0);
-    result_.contact = *landed;
+    if (!surfaces_->land(landed_, contact_, held(), result_.contact)) return End::off_surface;
+    if (!(result_.contact.hdot < 0.0)) return doubt_gap(0.0);
     return End::impact;
 }
 
@@ -154,11 +158,11 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
 // The flow's last step ends on the surface.
 StepResult::End EventStepper::end_flight() {
     const std::size_t contact = contact_;
-    const auto landed = surfaces_->land(flow_->edit_end(), contact, held());
-    double least = landed ? landed->h : surfaces_->of(contact).at(flow_->end()).h;
+    const bool landed = surfaces_->land(flow_->edit_end(), contact, held(), result_.contact);
+    double least = landed ? result_.contact.h : surfaces_->of(contact).at(flow_->end()).h;
     if (landed) {
-        result_.contact = *landed;
-        settle_gaps(ContactSet::of(contact), least);  // one that has closed as well lands in the same instant
+        if (surfaces_->count() > 1)
+            settle_gaps(ContactSet::of(contact), least);  // what has closed as well lands then, too
         contact_ = contact;
     }
     end_step(least);

@@ -44,7 +44,7 @@ class Flow {
         return to_;
     }
     // Of a contact along the last step: h where it is open, hddot of the free motion where it is held (Stepper).
-    Polynomial event_function(std::size_t contact) const { return stepper_->event_function(contact); }
+    void event_function(std::size_t contact, Polynomial& p) const { stepper_->event_function(contact, p); }
     bool stays_negative(std::size_t contact) const { return stepper_->stays_negative(contact); }
     bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder(std::size_t contact, const Polynomial& p) const { return stepper_->remainder(contact, p); }

@@ -32,11 +32,6 @@ Vector impact(const Contact& contact, const Vector& v_before, double e) {
     return v;
 }
 
-Exchange exchange(const Contact& contact, double e) {
-    const double speed = -contact.hdot, impulse = (1.0 + e) * speed / contact.W;
-    return {-impulse * contact.gap_t, 0.5 * impulse * (1.0 - e) * speed};
-}
-
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind) {
     if (kind == Reinitialization::kinetic) return impact(contact, v_before, 0.0);
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
@@ -95,11 +90,9 @@ double ContactKinematics::hdot_error(const State& state) {
 // Newton's method along n. Near the surface h may be exact far below the rounding of q, as (2 + sin x) y is near y = 0:
 // then the last correction alone sets its rounding. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
 // where dh vanishes on the surface it falls by a constant factor instead.
-std::optional<Contact> ContactKinematics::project(State& state, bool keep_velocity) {
+bool ContactKinematics::project(State& state, bool keep_velocity, Contact& contact) {
     constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
     double before = std::numeric_limits<double>::infinity();
-    std::optional<Contact> result(std::in_place);
-    Contact& contact = *result;
     for (int round = 0;; ++round) {
         look(state, contact);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) break;
@@ -113,14 +106,13 @@ std::optional<Contact> ContactKinematics::project(State& state, bool keep_veloci
                 move_along(state.v, contact.hdot, contact.impulse_direction);
                 contact.hdot = 0.0;
             }
-            return result;
+            return true;
         }
         if (round == rounds) break;
         before = std::abs(contact.h);
         move_along(state.q, contact.h, contact.impulse_direction);
     }
-    result.reset();
-    return result;
+    return false;
 }
 
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {

@@ -26,7 +26,10 @@ Vector impact(const Contact& contact, const Vector& v_before, double e);
 struct Exchange {
     double work = 0.0, loss = 0.0;
 };
-Exchange exchange(const Contact& contact, double e);
+inline Exchange exchange(const Contact& contact, double e) {
+    const double speed = -contact.hdot, impulse = (1.0 + e) * speed / contact.W;
+    return {-impulse * contact.gap_t, 0.5 * impulse * (1.0 - e) * speed};
+}
 
 // Where the constrained execution restarts.  kinetic: s = v - n hdot;  euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);
@@ -44,9 +47,9 @@ class ContactKinematics {
     bool within_gap_error(double value, double times, const Contact& contact, const State& state);
     // The bound for hdot.
     double hdot_error(const State& state);
-    // Moves q along n until |h| is at rounding level, then v to s (keep_velocity = false) or not at all. The contact
-    // there; nothing where that fails: dh = 0, or h cannot be brought to zero.
-    std::optional<Contact> project(State& state, bool keep_velocity);
+    // Moves q along n until |h| is at rounding level, then v to s (keep_velocity = false) or not at all. Gives the contact
+    // there; false where that fails: dh = 0, or h cannot be brought to zero.
+    bool project(State& state, bool keep_velocity, Contact& contact);
     // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
     struct Normal {
         Interval hddot, jerk;

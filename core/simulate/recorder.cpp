@@ -108,7 +108,7 @@ void Recorder::step(const Flow& flow, double gap) {
     Piece& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
-    trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
+    if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
     set_state(energy_, flow.end());
     energy_.run();
     // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
@@ -140,7 +140,8 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
     if (keep_ == Keep::end) return;
-    Event event;
+    make_room(trajectory_.events, 1, trajectory_.run.options.memory);
+    Event& event = trajectory_.events.emplace_back();
     event.kind = Event::Kind::impact;
     event.t = before.t;
     event.q = before.q;
@@ -153,8 +154,6 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.joint = std::move(joint);
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
-    make_room(trajectory_.events, 1, trajectory_.run.options.memory);
-    trajectory_.events.push_back(std::move(event));
 }
 
 void Recorder::after_impact(ContactSet opened, ContactSet held) {

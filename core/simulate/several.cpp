@@ -62,19 +62,18 @@ bool Execution::passes_on(std::size_t which) {
 }
 
 // What an impact does to the energy, with what is passed on to held contacts that move.
-Exchange Execution::exchange_of(const Contact& contact, double e) {
-    Exchange result = exchange(contact, e);
-    if (next_.held.empty() || !model_->equations().has_power()) return result;
+Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange own) {
+    if (!model_->equations().has_power()) return own;
     const Closed closed = surfaces_->at(next_.state, next_.held.with(which_));
     const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.held));
-    if (!block) return result;
+    if (!block) return own;
     const auto place = std::find(closed.which.begin(), closed.which.end(), which_) - closed.which.begin();
     const ContactVector<double> kappa = block->transmission(closed.W, place).kappa;
     const double impulse = -(1.0 + e) * contact.hdot / contact.W;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (next_.held.contains(closed.which[i]))
-            result.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
-    return result;
+            own.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
+    return own;
 }
 
 // An impact of several at once, by Newton's law in Moreau's form.

@@ -39,7 +39,7 @@ class Stepper {
 
     // Along the last step, polynomials in theta = t/current_time: a contact's event function, and (q, v) as blocks of
     // ascending powers, appended to `coefficients`; their degree is returned.
-    virtual Polynomial event_function(std::size_t contact) const = 0;
+    virtual void event_function(std::size_t contact, Polynomial& p) const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
     // Whether it is known to stay below zero along the last step, by more than its remainder. False says nothing.
     virtual bool stays_negative(std::size_t) const { return false; }

@@ -51,6 +51,7 @@ Vector Closed::after(const Vector& v, const ContactVector<double>& impulses) con
 }
 
 Surfaces::Surfaces(const Model& model, const Run& run) : model_(&model), run_(run) {
+    free_.reserve(model.contacts());
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
 }
 
@@ -81,14 +82,8 @@ Closed Surfaces::at(const State& state, ContactSet contacts) {
 }
 
 // Newton's method, as ContactKinematics::project().
-std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSet still) {
+std::optional<double> Surfaces::project_several(State& state, ContactSet onto, ContactSet still) {
     if (onto.count() > most_contacts) return std::nullopt;
-    if (onto.count() == 1)
-        for (std::size_t i = 0; i < count(); ++i) {
-            if (onto != ContactSet::of(i)) continue;
-            const auto contact = free_[i].project(state, still.empty());
-            return contact ? std::optional(contact->h) : std::nullopt;
-        }
     constexpr int rounds = 8;
     double before = std::numeric_limits<double>::infinity();
     ContactVector<double> p = ContactVector<double>::Zero(onto.count());  // of the last correction
@@ -123,10 +118,10 @@ std::optional<double> Surfaces::project(State& state, ContactSet onto, ContactSe
     }
 }
 
-std::optional<Contact> Surfaces::land(State& state, std::size_t contact, ContactSet held) {
-    if (held.empty()) return free_[contact].project(state, true);
-    if (!project(state, held.with(contact), held)) return std::nullopt;
-    return of(contact, held).at(state);
+bool Surfaces::land_beside(State& state, std::size_t contact, ContactSet held, Contact& landed) {
+    if (!project(state, held.with(contact), held)) return false;
+    landed = of(contact, held).at(state);
+    return true;
 }
 
 }  // namespace achilles

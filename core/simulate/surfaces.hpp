@@ -39,11 +39,21 @@ class Surfaces {
     // Moves q onto the surfaces of all these contacts in one solve, until every |h| is at rounding level, and v so that
     // hdot = 0 of those that are still. The least gap of these; nothing where that fails: dh = 0, gaps that contradict one
     // another, or more than most_contacts.
-    std::optional<double> project(State& state, ContactSet onto, ContactSet still);
-    // Lands a contact while others are held: on all of their surfaces, its hdot kept. The contact as that motion sees it.
-    std::optional<Contact> land(State& state, std::size_t contact, ContactSet held);
+    std::optional<double> project(State& state, ContactSet onto, ContactSet still) {
+        if (!onto.has_one()) return project_several(state, onto, still);
+        Contact contact;
+        return free_[onto.only()].project(state, still.empty(), contact) ? std::optional(contact.h) : std::nullopt;
+    }
+    // Lands a contact while others are held: on all of their surfaces, its hdot kept. Gives it as that motion sees it; false
+    // where that fails.
+    bool land(State& state, std::size_t contact, ContactSet held, Contact& landed) {
+        return held.empty() ? free_[contact].project(state, true, landed) : land_beside(state, contact, held, landed);
+    }
 
  private:
+    std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
+    bool land_beside(State& state, std::size_t contact, ContactSet held, Contact& landed);
+
     const Model* model_;
     Run run_;
     std::vector<ContactKinematics> free_;

@@ -125,15 +125,13 @@ StepFailure Taylor::redo_step(double duration, double least) {
     return StepFailure::none;
 }
 
-Polynomial Taylor::event_function(std::size_t contact) const {
-    Polynomial p;
+void Taylor::event_function(std::size_t contact, Polynomial& p) const {
     p.degree = step_.order();
     if (span_ > longest_near) {
         for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, 2 * dof_ + contact, span_);
     } else {
         step_.event_terms(contact, span_, p.c.data());
     }
-    return p;
 }
 
 std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
@@ -147,7 +145,11 @@ std::uint32_t Taylor::coefficients(std::vector<double>& coefficients) const {
     const double* c = step_.row(0);
     double power = 1.0;
     for (int k = 0; k <= degree; ++k, c += step_.width(), to += block, power *= span_)
-        for (std::size_t i = 0; i < block; ++i) to[i] = c[i] * power;
+        for (std::size_t i = 0; i < block; i += 2) {
+            const double even = c[i] * power, odd = c[i + 1] * power;
+            to[i] = even;
+            to[i + 1] = odd;
+        }
     return static_cast<std::uint32_t>(degree);
 }
 

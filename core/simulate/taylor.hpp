@@ -20,7 +20,7 @@ class Taylor : public Stepper {
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override;
-    Polynomial event_function(std::size_t contact) const override;
+    void event_function(std::size_t contact, Polynomial& p) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     bool stays_negative(std::size_t contact) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
