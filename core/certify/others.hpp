@@ -9,11 +9,8 @@
 
 namespace achilles {
 
-// What a program of Neighbours or PairPrograms proves, which has run: of every held contact hddot, W and a kappa for each of
-// the `bouncing` ones, then of so many open ones the gap. Nothing where one is not proved pressed, or open.
-std::optional<Certificate::Others> others_proved(const Evaluator<Interval>& program,
-                                                 const std::vector<std::size_t>& held, std::size_t open,
-                                                 std::size_t bouncing);
+// What the program of these neighbours proves, which has run. Nothing where one is not proved pressed, or open.
+std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program);
 
 class OthersStay {
  public:

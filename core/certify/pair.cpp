@@ -120,7 +120,7 @@ PairConditions::PairConditions(const Model& model, const Run& run, std::size_t f
       programs_(&model.pair(first, second, held)),
       terms_(model.evaluator<Interval>(programs_->terms, run.parameters)),
       point_(model.evaluator(programs_->terms, run.parameters)),
-      others_(model.evaluator<Interval>(programs_->others, run.parameters)) {}
+      others_(model.evaluator<Interval>(programs_->others.program, run.parameters)) {}
 
 // The terms over a box of q, s, the two sigma and t.
 bool PairConditions::look(const std::vector<Interval>& box) {
@@ -139,7 +139,7 @@ std::optional<Certificate::Others> PairConditions::others_stay(const std::vector
     others_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
     others_.clock() = box[2 * dof_ + 2];
     others_.run();
-    return others_proved(others_, programs_->held, programs_->open.size(), 2);
+    return others_proved(programs_->others, others_);
 }
 
 // What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.

@@ -11,7 +11,6 @@ using Vector = ContactVector<double>;
 using Eigen::Index;
 
 constexpr double tolerance = 5e-13;
-constexpr double rounded_zero = 64 * 0x1p-52;
 
 // The power of two nearest to 1/sqrt(w): scaled by it, numbers keep their bits.
 double scale_for(double w) { return w > 0.0 ? std::exp2(-std::round(0.5 * std::log2(w))) : 1.0; }

@@ -23,6 +23,14 @@ inline ContactSet without(ContactSet set, Eigen::Index contact) {
     return set.without(static_cast<std::size_t>(contact));
 }
 
+// What is 0 only within its rounding counts as 0 (theory-gaps.md 8): so small beside the number that is natural for it, as
+// sqrt(W_ii W_kk) is for W_ik and sqrt(W_ii/W_jj) for kappa_ji. Intervals cannot decide it: an enclosure of 0 counts that is so
+// narrow.
+inline constexpr double rounded_zero = 64 * 0x1p-52;
+inline bool counts_as_zero(const Interval& x, double natural) {
+    return x.contains(0.0) && width(x) <= rounded_zero * natural;
+}
+
 // W +- radius, entry by entry: for a matrix that was computed and the bound on its error.
 ContactMatrix<Interval> enclosure(const ContactMatrix<double>& W, const ContactMatrix<double>& radius);
 

@@ -200,8 +200,7 @@ class Signs {
  public:
     // `natural` is the number whose ulp is meant.
     Interval judged(const Interval& x, double natural) {
-        if (!x.contains(0.0) || !(width(x) > 0.0)) return x;
-        if (!(width(x) <= 64 * rounding::epsilon * natural)) return x;
+        if (!(width(x) > 0.0) || !counts_as_zero(x, natural)) return x;
         rounded_ = true;
         return 0.0;
     }
@@ -243,10 +242,6 @@ OrderDependence order_dependence(const ContactMatrix<Interval>& W_given, const V
     }
     result.rounded_zero = signs.rounded();
     return result;
-}
-
-bool order_matters(const Matrix& W, const Matrix& radius, const Vector& e, ContactSet held, ContactSet landing) {
-    return order_dependence(enclosure(W, radius), e, held, landing).matters();
 }
 
 }  // namespace achilles

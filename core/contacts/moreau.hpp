@@ -71,14 +71,9 @@ struct OrderDependence {
 // Landings do not depend on their order where all kappa_ji >= 0, j held and i landing, and for every two landings
 // W_ik^A = 0, or W_ik^A <= 0 if they have e = 0, all of them (theory-gaps.md 2.4); that is what is to be proved.
 // Landing is who is closed, not held and not moving away: one that merely touches too.
-// An enclosure that contains 0 and is narrower than 64 ulp (of sqrt(W_ii W_kk); of sqrt(W_ii/W_jj) for kappa_ji) counts as
-// 0; [0, 0] is 0 without doubt. Where W over the held contacts is not proved positive definite, nothing else is proved.
+// What counts as 0 (counts_as_zero) is flagged; [0, 0] is 0 without doubt. Where W over the held contacts is not proved positive definite, nothing else is proved.
 // For one landing alone by_landings is false, and by_transmission says that nearly held contacts would do otherwise.
 OrderDependence order_dependence(const ContactMatrix<Interval>& W, const ContactVector<double>& e, ContactSet held,
                                  ContactSet landing);
-
-// Of a matrix that was computed, with the bound on the error of each entry.
-bool order_matters(const ContactMatrix<double>& W, const ContactMatrix<double>& radius, const ContactVector<double>& e,
-                   ContactSet held, ContactSet landing);
 
 }  // namespace achilles

@@ -1,5 +1,7 @@
 #include "model/bouncing.hpp"
 
+#include <algorithm>
+
 #include "model/rows.hpp"
 
 namespace achilles {
@@ -56,33 +58,36 @@ Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equat
             Program(joined({slope_of_hddot, shadow}), slots)};
 }
 
-Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout) {
-    const HeldEquations& motion = motions.of(held);
-    Graph& graph = motions.graph();
-    const Row& n = motion.contacts.at(contact).direction;
+Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSet held, const Expressions& velocity,
+                             HeldMotions& motions, const Layout& layout) {
+    const std::vector<ContactEquations>& contacts = motions.of(held).contacts;
     std::vector<std::uint32_t> v;
-    Row velocity;
-    for (std::size_t i = 0; i < layout.dof; ++i) {
-        v.push_back(layout.v(i));
-        velocity.push_back(graph.symbol(layout.v(i)) + n[i] * graph.symbol(layout.sigma()));
-    }
+    for (std::size_t i = 0; i < layout.dof; ++i) v.push_back(layout.v(i));
     Neighbours result;
-    Row outputs;
-    for (std::size_t j = 0; j < motion.contacts.size(); ++j) {
-        if (!held.contains(j)) continue;
-        const ContactEquations& other = motion.contacts[j];
-        result.held.push_back(j);
-        outputs.push_back(substitute(other.hddot, v, velocity));
-        outputs.push_back(other.W);
-        outputs.push_back(-(other.delassus[contact] / other.W));
+    result.bouncing = bouncing;
+    Row outputs, gaps;
+    for (const std::size_t k : bouncing) outputs.push_back(contacts[k].W);
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+        if (held.contains(j)) {
+            result.held.push_back(j);
+            outputs.push_back(substitute(contacts[j].hddot, v, velocity));
+            outputs.push_back(contacts[j].W);
+            for (const std::size_t k : bouncing) outputs.push_back(-(contacts[j].delassus[k] / contacts[j].W));
+        } else if (std::find(bouncing.begin(), bouncing.end(), j) == bouncing.end()) {
+            result.open.push_back(j);
+            gaps.push_back(contacts[j].gap);
+        }
     }
-    for (std::size_t j = 0; j < motion.contacts.size(); ++j) {
-        if (held.contains(j) || j == contact) continue;
-        result.open.push_back(j);
-        outputs.push_back(motion.contacts[j].gap);
-    }
-    result.program = Program(outputs, layout.slots());
+    result.program = Program(joined({outputs, gaps}), layout.slots());
     return result;
+}
+
+Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout) {
+    const Row& n = motions.of(held).contacts.at(contact).direction;
+    Row velocity;
+    for (std::size_t i = 0; i < layout.dof; ++i)
+        velocity.push_back(motions.graph().symbol(layout.v(i)) + n[i] * motions.graph().symbol(layout.sigma()));
+    return derive_neighbours({contact}, held, velocity, motions, layout);
 }
 
 }  // namespace achilles

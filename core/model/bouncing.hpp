@@ -76,13 +76,16 @@ struct Bouncing {
     Program shadow;  // the gradient again (it shares most of its work with what follows), then ShadowTerms
 };
 
-// What must stay as it is around a contact that bounces (theory-gaps.md 2.3), over the same variables: of every held
-// contact hddot of the motion that holds the others (negative: it is pressed), W of that motion, and kappa, what an impulse on the
-// bouncing one is passed on by; of every open one its gap.
+// What must stay as it is around contacts that bounce, one (theory-gaps.md 2.3) or two together (3), where all others but the
+// held ones are open, at this velocity, an expression for each slot of v. The program has W of every bouncing contact; of every
+// held one hddot of the motion that holds the others (negative: it is pressed), W of that motion, and for each bouncing contact
+// kappa, what an impulse on that is passed on by; of every open one its gap.
 struct Neighbours {
-    std::vector<std::size_t> held, open;
-    Program program;  // three outputs for each that is held, one for each that is open
+    std::vector<std::size_t> bouncing, held, open;
+    Program program;
 };
+Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSet held, const Expressions& velocity,
+                             HeldMotions& motions, const Layout& layout);
 Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout);
 
 // Derives and compiles the programs of a contact, in a copy of its graph.

@@ -58,21 +58,7 @@ PairPrograms derive_pair(std::size_t first, std::size_t second, ContactSet held,
         ProgramOf<PairTerms>::of(layout.slots(), Row{hddot(0), hddot(1)}, delassus, A, joined({N[0], N[1]}),
                                  joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
                                  joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
-    Row outputs;
-    for (std::size_t j = 0; j < open.contacts.size(); ++j) {
-        if (!held.contains(j)) continue;
-        const ContactEquations& other = open.contacts[j];
-        result.held.push_back(j);
-        outputs.push_back(substitute(other.hddot, v, velocity));
-        outputs.push_back(other.W);
-        for (const std::size_t k : pair) outputs.push_back(-(other.delassus[k] / other.W));
-    }
-    for (std::size_t j = 0; j < open.contacts.size(); ++j) {
-        if (held.contains(j) || j == first || j == second) continue;
-        result.open.push_back(j);
-        outputs.push_back(open.contacts[j].gap);
-    }
-    result.others = Program(outputs, layout.slots());
+    result.others = derive_neighbours({first, second}, held, velocity, motions, layout);
     return result;
 }
 

@@ -36,10 +36,7 @@ class PairTerms : public Terms<Base> {
 
 struct PairPrograms {
     ProgramOf<PairTerms> terms;
-    // What must stay as it is around the pair, as in Neighbours, with a kappa for each of the two: of every held contact hddot,
-    // W and two kappas; of every open one its gap.
-    std::vector<std::size_t> held, open;
-    Program others;
+    Neighbours others;
 };
 
 // Two contacts while others are held. Throws std::domain_error where the two cannot be held at once with these.

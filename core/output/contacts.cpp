@@ -69,6 +69,14 @@ std::string others_told(const Model& model, const Certificate::Others& others) {
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+std::string given(const Trajectory& trajectory, std::size_t event) {
+    const auto& events = trajectory.events;
+    for (std::size_t i = 0; i < event; ++i)
+        if (events[i].joint && events[i].joint->order_matters)
+            return fmt::format("Moreau's law at event {}, t = {:.10g}", i + 1, events[i].t);
+    return "";
+}
+
 std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     std::vector<std::size_t> ends;
     std::size_t next = 0;

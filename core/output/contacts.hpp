@@ -35,6 +35,10 @@ class Impulses {
 // What is proved of the other contacts, one part of a sentence after the other.
 std::string others_told(const Model& model, const Certificate::Others& others);
 
+// "Moreau's law at event k": the first before this one whose order matters and could not be told, which all that is proved
+// later stands on (theory-gaps.md 2.4). Empty where there is none.
+std::string given(const Trajectory& trajectory, std::size_t event);
+
 // Of each phase, the event after its last one: a phase ends with that which changes what is held.
 std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory);
 

@@ -96,6 +96,7 @@ void add_others(Json& result, const Trajectory& trajectory, const Certificate::O
     result["least_force"] = by_contact(
         trajectory, others.held, [](const Held& held) { return std::pair(held.contact, number(held.least_force)); });
     result["least_other_gap"] = number(others.least_gap);
+    if (others.rounded_zero) result["rounded_zero"] = true;
 }
 
 Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
@@ -136,6 +137,7 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
 void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
     result["order_matters"] = joint.order_matters;
     result["not_unique"] = joint.not_unique;
+    if (joint.rounded_zero) result["rounded_zero"] = true;
     if (!joint.order_matters) return;
     Json& alternatives = result["alternatives"] = Json::array();
     for (const Joint::Alternative& other : joint.alternatives) {
@@ -172,7 +174,11 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
                                 {"v_before", list(event.truncation->v_before)},
                                 {"v", list(event.truncation->v)},
                                 {"impact_speed", number(event.truncation->impact_speed)}};
-    if (event.certificate) result["certificate"] = certificate_of(trajectory, *event.certificate);
+    if (event.certificate) {
+        Json& certificate = result["certificate"] = certificate_of(trajectory, *event.certificate);
+        if (const std::string convention = given(trajectory, index); !convention.empty())
+            certificate["given"] = convention;
+    }
     return result;
 }
 

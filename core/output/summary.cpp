@@ -144,12 +144,8 @@ class Course {
         const auto& others = event.certificate->others;
         if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);
-        const auto before = trajectory_.events.begin() + static_cast<std::ptrdiff_t>(index);
-        const auto by_convention = std::find_if(trajectory_.events.begin(), before,
-                                                [](const Event& e) { return e.joint && e.joint->order_matters; });
-        if (by_convention != before)
-            text += indented(fmt::format("given Moreau's law at event {}, t = {:.10g}",
-                                         by_convention - trajectory_.events.begin() + 1, by_convention->t));
+        if (const std::string convention = given(trajectory_, index); !convention.empty())
+            text += indented("given " + convention);
         return text;
     }
 

@@ -80,6 +80,7 @@ struct Certificate {
         };
         std::vector<Held> held;
         std::optional<double> least_gap;
+        bool rounded_zero = false;  // what is passed on is 0 only within its rounding (theory-gaps.md 8)
     };
     std::optional<Others> others;
     // By which it is decided whether the bouncing may be cut. Nothing where that needs no condition.
@@ -101,6 +102,7 @@ struct Joint {
     // Landings that cannot be ordered, and whose order matters: what was done is Moreau's law, all at once. The rates of
     // the gaps that would follow if one contact was first, and together.
     bool order_matters = false;
+    bool rounded_zero = false;  // for the order something counted as 0 that is 0 only within its rounding
     struct Alternative {
         std::optional<std::size_t> first;                         // nothing: all at once
         std::vector<std::pair<std::size_t, double>> rates_after;  // of the gaps

@@ -106,7 +106,11 @@ void Execution::collide(ContactSet landing) {
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
     const ContactSet open = closed.places_of(all.without(held));
-    joint->order_matters = open.count() > 1 && order_matters(closed.W, radius_of(closed.W), e, places, open);
+    if (open.count() > 1) {
+        const auto order = order_dependence(enclosure(closed.W, radius_of(closed.W)), e, places, open);
+        joint->order_matters = order.matters();
+        joint->rounded_zero = order.rounded_zero;
+    }
     if (joint->order_matters && run_.options.simultaneous == Simultaneous::stop)
         return stop(
             Outcome::Kind::simultaneous_impacts,

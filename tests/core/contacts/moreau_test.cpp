@@ -18,6 +18,10 @@ using End = ImpactSequence::End;
 
 constexpr ContactSet nobody;
 
+bool order_matters(const Matrix& W, const Matrix& radius, const Vector& e, ContactSet held, ContactSet landing) {
+    return order_dependence(enclosure(W, radius), e, held, landing).matters();
+}
+
 void expect_near(const Vector& x, const Vector& expected) {
     ASSERT_EQ(x.size(), expected.size());
     for (Index j = 0; j < x.size(); ++j) EXPECT_NEAR(x[j], expected[j], 4e-16) << j;
