@@ -59,6 +59,10 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
     }
     std::error_code problem;
     if (fs::is_directory(path, problem)) return path;  // which the reader tells
+    const fs::path beside = fs::path(path) += extension;
+    if (fs::is_regular_file(beside, problem))
+        throw InputError({}, {},
+                         fmt::format("there is no {} '{}'; did you mean the file {}?", kind, wanted, beside.string()));
     throw InputError({}, {}, fmt::format("there is no {} '{}'{}", kind, wanted, did_you_mean(wanted, names)),
                      fmt::format("a {} is a path to a {} file or one of: {}", kind, extension, fmt::join(names, ", ")));
 }

@@ -81,6 +81,11 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
 std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
+    if (is_plastic_landing(event)) {
+        lines.emplace_back("it comes to rest without a bounce");
+        lines.push_back(with_minus(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min)));
+        return lines;
+    }
     lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
     lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
                                 bound_text(c.velocity_bound)));
@@ -118,17 +123,16 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     const Certificate& certificate = *event.certificate;
     const bool is_plastic = is_plastic_landing(event);
     const std::string contacts = contacts_told(session.trajectory(), event);
-    const bool close =
-        show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Plastic landing" : "Zeno point",
-                                    contacts.empty() ? "" : " of ", contacts, index + 1,
-                                    is_plastic              ? "exact"
-                                    : certificate.certified ? "certified"
-                                                            : "not certified"),
-                        fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
-                                    to_text(certificate.reinitialization)),
-                        state);
+    const bool close = show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
+                                                   contacts.empty() ? "" : " of ", contacts, index + 1,
+                                                   is_plastic              ? "plastic"
+                                                   : certificate.certified ? "certified"
+                                                                           : "not certified"),
+                                       fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
+                                                   to_text(certificate.reinitialization)),
+                                       state);
     if (close) commands.emplace_back(command::Select{0});
-    lens_button(session, state, commands);
+    if (!is_plastic) lens_button(session, state, commands);
     show_certificate(event);
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";
@@ -150,7 +154,9 @@ void show_certificate(const Event& event) {
     ImGui::EndGroup();
     ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
     ImGui::PushTextWrapPos(0.0F);
-    quiet("Not covered: integration and rounding errors before the cut, and how several cuts add up.");
+    quiet(is_plastic_landing(event)
+              ? "Not covered: integration and rounding errors before it."
+              : "Not covered: integration and rounding errors before the cut, and how several cuts add up.");
     ImGui::PopTextWrapPos();
 }
 

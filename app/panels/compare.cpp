@@ -22,6 +22,12 @@ std::vector<double> times_of(const Trajectory& trajectory, Event::Kind kind) {
     return times;
 }
 
+// What begins contact in a run is called so where it is nothing else.
+bool only_lands(const Trajectory& trajectory) {
+    return std::all_of(trajectory.events.begin(), trajectory.events.end(),
+                       [](const Event& event) { return event.kind != Event::Kind::zeno || is_plastic_landing(event); });
+}
+
 void row(const std::string& name, const std::string& pinned, const std::string& present, const std::string& change,
          bool is_head = false) {
     constexpr float column = 130.0F, first = 110.0F;
@@ -97,8 +103,9 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
     const auto left_before = times_of(pinned, Event::Kind::release),
                left_after = times_of(present, Event::Kind::release);
     const std::size_t most = std::max({zeno_before.size(), zeno_after.size(), left_before.size(), left_after.size()});
+    const char* const beginning = only_lands(pinned) && only_lands(present) ? "landing" : "Zeno point";
     for (std::size_t i = 0; i < most; ++i) {
-        row_of_times(fmt::format("Zeno point {}", i + 1), zeno_before, zeno_after, i);
+        row_of_times(fmt::format("{} {}", beginning, i + 1), zeno_before, zeno_after, i);
         row_of_times(fmt::format("release {}", i + 1), left_before, left_after, i);
     }
     row("impacts", std::to_string(pinned.statistics.impacts), std::to_string(present.statistics.impacts),

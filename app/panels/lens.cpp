@@ -77,8 +77,8 @@ void show_interval(const Session& session, const Event& zeno, float width) {
                   width, text_color());
     if (!zeno.certificate || !zeno.certificate->certified) return;
     const Certificate& c = *zeno.certificate;
-    paragraph(fmt::format("Proved: \u03c4\u221e lies in {}, {:.2g} s wide.", interval_text(c.zeno_low, c.zeno_high),
-                          c.zeno_high - c.zeno_low),
+    paragraph(fmt::format("Proved from the computed state at the cut:\n\u03c4\u221e lies in {}, {:.2g} s wide.",
+                          interval_text(c.zeno_low, c.zeno_high), c.zeno_high - c.zeno_low),
               width, event_markers(session.theme(), Event::Kind::zeno).fill);
 }
 
@@ -99,13 +99,17 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
     if (width < units(80.0F) || card.height < units(120.0F)) return;
     ImGui::SetCursorScreenPos({card.x + edge, card.y + edge});
     ImGui::BeginGroup();
-    if (show_card_title("Zeno lens", fmt::format("event {}, \u03c4\u221e = {} s", index + 1, number(zeno.t, "{:.10g}")),
+    if (show_card_title("Zeno lens",
+                        fmt::format("event {}, {} = {} s", index + 1, is_plastic_landing(zeno) ? "t" : "\u03c4\u221e",
+                                    number(zeno.t, "{:.10g}")),
                         state, 2.0F * edge))
         commands.emplace_back(command::Show{"lens", false});
     const auto lens = Lens::at(session.trajectory(), index);
     if (!lens) {
-        paragraph(zeno.contacts.count() > 1 ? "Several contacts come to rest together: there is no row of equal arcs."
-                                            : "One impact and no bouncing: there is no row to look at.",
+        paragraph(is_plastic_landing(zeno)
+                      ? "A plastic landing: restitution 0 leaves no bounces, and no row to look at."
+                  : zeno.contacts.count() > 1 ? "Several contacts come to rest together: there is no row of equal arcs."
+                                              : "One impact and no bouncing: there is no row to look at.",
                   width, faint_color());
     } else {
         paragraph(explanation(*lens), width, faint_color());

@@ -46,13 +46,17 @@ std::string explanation(const Trajectory& trajectory, const Event& event) {
     if (event.kind == Event::Kind::impact)
         return fmt::format("impact{} at t = {:.10g} s opens {}. Click: why", of, event.t,
                            joined_names(*trajectory.model, event.opened));
+    if (is_plastic_landing(event))
+        return fmt::format("landing{} at t = {:.10g} s\n{}", of, event.t, typeset_sentence(*event.certificate));
     const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
-    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}", event_name(event), of, event.t, event.impacts, proof);
+    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}", event_name(event), of, event.t, event.impacts,
+                       proof);
 }
 
-// "Zeno 2", "knee released", "wall opens knee".
+// "Zeno 2", "landing", "release knee", "wall opens knee".
 std::string name_of(const Trajectory& trajectory, const Event& event, int& zeno) {
     const std::string contacts = contacts_told(trajectory, event), space = contacts.empty() ? "" : " ";
+    if (is_plastic_landing(event)) return "landing" + space + contacts;
     if (event.kind == Event::Kind::zeno) return fmt::format("Zeno {}{}{}", ++zeno, space, contacts);
     if (event.kind == Event::Kind::release) return "release" + space + contacts;
     return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
@@ -72,7 +76,7 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
         while (chatter != chatters.end() && turn >= chatter->last_event) ++chatter;
         // Of contacts that come to rest and are opened again and again only how it ends.
         if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) {
-            zeno += event.kind == Event::Kind::zeno ? 1 : 0;
+            zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
             continue;
         }
         Result result{turn, name_of(trajectory, event, zeno) + "  " + time_text(event)};

@@ -152,7 +152,8 @@ bool clicked(Slider& slider, PanelState& state) {
 // ParseError.
 double meant(const Slider& slider, const std::string& text) {
     const bool is_angle = slider.factor != 1.0;
-    const GivenNumber given = read_number(text, is_angle ? "rad" : slider.unit);
+    const bool is_rate = is_angle && slider.unit.ends_with("/s");
+    const GivenNumber given = read_number(text, is_rate ? "rad/s" : is_angle ? "rad" : slider.unit);
     return given.has_unit || given.has_pi ? given.value : given.value / slider.factor;
 }
 

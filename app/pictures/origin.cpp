@@ -81,6 +81,7 @@ std::string options_text(const Options& options) {
 
 std::string certificates_text(const Trajectory& trajectory) {
     std::string text;
+    for (const Remark& remark : remarks(trajectory)) text += remark.sentence + "\n";
     for (const Event& event : trajectory.events)
         if (event.certificate)
             text += fmt::format("{} at t = {}: {}\n", event_name(event), event.t, sentence(*event.certificate));

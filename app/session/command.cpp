@@ -94,9 +94,12 @@ void read(Given& value, const How&, Reading& from) {
     const Reading begin = from;
     std::string text = from.word();
     ++from.at;
-    if (!from.at_end() && (from.word() == "deg" || from.word() == "rad")) text += " " + from.line.word(from.at++).text;
+    const auto is_unit = [](const std::string& word) {
+        return word == "deg" || word == "rad" || word == "deg/s" || word == "rad/s";
+    };
+    if (!from.at_end() && is_unit(from.word())) text += " " + from.line.word(from.at++).text;
     try {
-        const GivenNumber number = read_number(text, "rad");
+        const GivenNumber number = read_number(text, "rad/s");  // whose it is says Session
         value = {number.value, number.has_unit ? text : ""};
     } catch (const ParseError& problem) {
         throw begin.error(problem.what());

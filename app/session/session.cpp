@@ -14,6 +14,7 @@
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "session/refusal.hpp"
+#include "simulate/least_gap.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -31,6 +32,8 @@ Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, 
       sampler(trajectory),
       samples(plot_samples(trajectory)),
       scale(scale_of(trajectory)),
+      least_gap(achilles::least_gap(trajectory)),
+      remarks(achilles::remarks(trajectory)),
       limits(system->mechanism.limits(trajectory, samples)),
       trail(trail_of(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
@@ -204,7 +207,7 @@ namespace {
 void check_unit(const SystemDescription& description, const std::string& name, const command::Given& given) {
     if (given.text.empty()) return;
     try {
-        read_number(given.text, unit_given(description, name));
+        read_number(given.text, unit_of(description, name));
     } catch (const ParseError& problem) {
         throw refusal(fmt::format("{}: {}", name, problem.what()));
     }

@@ -11,6 +11,7 @@
 #include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
+#include "output/output.hpp"
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
@@ -91,6 +92,8 @@ class Session {
     const Trail& trail() const { return simulated_->trail; }
     std::span<const Sample> samples() const { return simulated_->samples; }
     const State& scale() const { return simulated_->scale; }  // scale_of() the run
+    double least_gap() const { return simulated_->least_gap; }
+    std::span<const Remark> remarks() const { return simulated_->remarks; }
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return simulated_->limits; }
     // What is plotted, and the plots, composed.
@@ -133,6 +136,8 @@ class Session {
         Sampler sampler;
         std::vector<Sample> samples;
         State scale;
+        double least_gap;
+        std::vector<Remark> remarks;
         Drawing limits;
         Trail trail;
         int revision = 0;   // of what is plotted

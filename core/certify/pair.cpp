@@ -252,8 +252,8 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
     c.a_min = std::min(pair.a[0].lo(), pair.a[1].lo());
     c.a_max = std::max(pair.a[0].hi(), pair.a[1].hi());
     c.decision = {{"time bound", 0.5 * bound.T.hi(), truncation_.eps_t},
-                  {"position bound", *c.uniform_position, truncation_.eps_q},
-                  {"velocity bound", *c.shadowing_velocity, truncation_.eps_v}};
+                  {"uniform position", *c.uniform_position, truncation_.eps_q},
+                  {"shadowing velocity", *c.shadowing_velocity, truncation_.eps_v}};
     c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0}, {"normal acceleration", -c.a_min, 0.0}};
     c.decisive = c.decision->closest().name;
     return c;

@@ -274,8 +274,8 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
     c.decision = {{"time bound", time.half_width(), truncation_.eps_t},
-                  {"position bound", c.uniform_position.value_or(none), truncation_.eps_q},
-                  {"velocity bound", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
+                  {"uniform position", c.uniform_position.value_or(none), truncation_.eps_q},
+                  {"shadowing velocity", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
     c.assumptions = {{"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
     c.decisive = c.decision->closest().name;
     return c;

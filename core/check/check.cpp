@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "algebra/writer.hpp"
+#include "check/flat_gap.hpp"
 #include "check/simplified.hpp"
 #include "model/derived_values.hpp"
+#include "model/flat.hpp"
 #include "output/contacts.hpp"
 #include "output/page.hpp"
 #include "output/wrap.hpp"
@@ -105,6 +107,7 @@ class Report {
         const bool moves = !model_.equations().free.contacts[index].gap_t.is_zero();
         page_.heading("Contact" + of(" {}", index));
         matrix({"dh", "\\mathrm{d}h"}, c.dh, model_.layout().dof);
+        flat(index);
         formula({"hdot", "\\dot{h}"}, c.hdot,
                 {moves ? "dh q' + h_t" : "dh q'", moves ? "\\mathrm{d}h\\,\\dot{q} + h_t" : "\\mathrm{d}h\\,\\dot{q}"});
         formula({"hddot", "\\ddot{h}"}, c.hddot,
@@ -115,6 +118,19 @@ class Report {
                              forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
         formula({"lambda", "\\lambda"}, c.lambda,
                 {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
+    }
+
+    // A gap that no run can land on.
+    void flat(std::size_t index) {
+        const std::optional<State> place = flat_place(model_, run_, index);
+        if (!place) return;
+        std::string at;
+        for (int i = 0; i < model_.dof(); ++i)
+            at += fmt::format("{}{} = {:.2g}", at.empty() ? "" : ", ", model_.slot_names()[static_cast<std::size_t>(i)],
+                              place->q[i]);
+        const std::string told = fmt::format("dh = 0 where h = 0, near {}: no impact can be computed there", at);
+        for (const std::string& sentence : {told, std::string(flat_hint)})
+            page_.sentence({sentence, Page::escaped(sentence)});
     }
 
     void while_held() {

@@ -73,7 +73,7 @@ std::string spelled_out(std::string_view text) {
 
 std::string rates_are_written(std::string_view word, std::span<const std::string> names) {
     for (const std::string& rate : names) {
-        if (!rate.ends_with('\'') || rate.ends_with("\'\'")) continue;
+        if (!rate.ends_with('\'') || rate.ends_with("\'\'") || rate.starts_with("gap")) continue;
         const std::string x = rate.substr(0, rate.size() - 1);
         const std::string others[] = {x + "dot", x + "_dot", "d" + x, "v" + x, "v_" + x};
         if (word == "v" || std::find(std::begin(others), std::end(others), word) != std::end(others))

@@ -7,6 +7,7 @@
 
 #include "expression/functions.hpp"
 #include "expression/greek.hpp"
+#include "expression/habits.hpp"
 #include "expression/nearest.hpp"
 
 namespace achilles {
@@ -163,11 +164,11 @@ class Parser {
 
     // The unit that follows a value; null where none does.
     const Expression* take_unit() {
-        for (const auto& [word, factor] : scope_.units) {
-            if (!begins_with(word)) continue;
-            at_ += word.size();
+        for (auto unit = scope_.units.rbegin(); unit != scope_.units.rend(); ++unit) {  // deg/s before deg
+            if (!begins_with(unit->first)) continue;
+            at_ += unit->first.size();
             skip_space();
-            return &factor;
+            return &unit->second;
         }
         return nullptr;
     }
@@ -206,7 +207,8 @@ class Parser {
         }
         refuse_greek();
         refuse_bar();
-        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + " where a value is expected");
+        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + " where a value is expected" +
+                                  instead_of_sign(text_.substr(at_)));
     }
 
     // θ, and θ1 as a whole.
@@ -244,12 +246,27 @@ class Parser {
                 throw ParseError(at_,
                                  "degrees may stand in a number that is given, start = \"30 deg\"; here write pi/180*");
         }
-        const bool value_follows = is_name_part(peek()) || peek() == '(' || peek() == '.';
-        if (value_follows) throw ParseError(at_, "an operator is missing here; write '*' for a product");
+        refuse_unit();
+        const bool number_follows = peek() == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]);
+        if (is_name_part(peek()) || peek() == '(' || number_follows)
+            throw ParseError(at_, "an operator is missing here; write '*' for a product");
         refuse_greek();
         refuse_bar();
         if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");
-        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)));
+        throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + instead_of_sign(text_.substr(at_)));
+    }
+
+    // 1.0 m, where m is no name.
+    void refuse_unit() const {
+        const std::size_t last = text_.find_last_not_of(" \t\r\n", at_ - 1);
+        if (!is_letter(peek()) || !(is_digit(text_[last]) || text_[last] == '.')) return;
+        std::size_t end = at_;
+        while (end < text_.size() && is_name_part(text_[end])) ++end;
+        const std::string_view word = text_.substr(at_, end - at_);
+        if (scope_.allowed.find(word) != scope_.allowed.end() || is_reserved(word)) return;
+        throw ParseError(at_, in_quotes(word) +
+                                  " may not follow a number: a unit stands in the key unit, and a product "
+                                  "is written with '*'");
     }
 
     Expression number() {
@@ -283,9 +300,9 @@ class Parser {
         skip_space();
         for (const Function& function : functions)
             if (function.name == full) return call(function.name, function.operation, begin);
-        if (full == "pi") return graph_.pi();
+        if (full == "pi" && peek() != '(') return graph_.pi();
         const auto found = scope_.allowed.find(full);
-        if (found != scope_.allowed.end()) {
+        if (found != scope_.allowed.end() || full == "pi") {
             if (peek() == '(') throw ParseError(begin, in_quotes(full) + " is not a function; write '*' for a product");
             return found->second;
         }
@@ -314,8 +331,9 @@ class Parser {
         std::vector<std::string> known;
         for (const Function& function : functions) known.emplace_back(function.name);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
-            const std::string hint = bare == "ln" ? "; did you mean 'log'?" : did_you_mean(bare, known);
-            throw ParseError(begin, "unknown function " + in_quotes(full) + hint);
+            const std::string habit = instead_of_name(bare, [](std::string_view) { return false; });
+            throw ParseError(
+                begin, "unknown function " + in_quotes(full) + (habit.empty() ? did_you_mean(bare, known) : habit));
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
@@ -324,7 +342,10 @@ class Parser {
             if (reason.starts_with("the rate ")) rates.push_back(word);
         if (const std::string hint = rates_are_written(full, rates); !hint.empty())
             throw ParseError(begin, "unknown name " + in_quotes(full) + hint, full);
-        throw ParseError(begin, "unknown name " + in_quotes(full) + did_you_mean(full, known), full);
+        const std::string habit = instead_of_name(
+            full, [&](std::string_view word) { return scope_.allowed.find(word) != scope_.allowed.end(); });
+        throw ParseError(begin, "unknown name " + in_quotes(full) + (habit.empty() ? did_you_mean(full, known) : habit),
+                         full);
     }
 
     std::string_view text_;

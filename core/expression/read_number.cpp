@@ -58,13 +58,15 @@ std::string shown(std::string_view text) {
 
 void allow_units(Scope& scope, std::string_view unit, Graph& graph) {
     const Expression degree = graph.pi() / graph.number(180);
-    for (const char* word : {"deg", "\u00b0", "rad"}) {
-        const bool is_radian = word == std::string_view("rad");
-        if (unit == "rad")
-            scope.units.emplace(word, is_radian ? graph.number(1) : degree);
+    const bool is_rate = unit == "rad/s" && scope.allowed.find("s") == scope.allowed.end();  // else it is divided by s
+    for (const std::string word : {"deg", "\u00b0", "rad"}) {
+        const Expression factor = word == "rad" ? graph.number(1) : degree;
+        if (unit == "rad" || unit == "rad/s")
+            scope.units.emplace(word, factor);
         else
             scope.forbidden.emplace(word, in_quotes(word) + " may follow a number where the unit is rad, and here it " +
                                               (unit.empty() ? "is not" : "is " + std::string(unit)));
+        if (is_rate) scope.units.emplace(word + "/s", factor);
     }
 }
 

@@ -14,12 +14,13 @@ struct GivenNumber {
     bool has_pi = false;
 };
 
-// Lets deg, ° and rad follow a value in an expression whose unit this is.
+// Lets deg, ° and rad follow a value in an expression whose unit is rad or rad/s, and where it is rad/s deg/s, °/s and rad/s.
 void allow_units(Scope& scope, std::string_view unit, Graph& graph);
 // Whether a text is an expression in names that stand for something else than a number, as "m*L^2/12".
 bool has_names(std::string_view text);
 
-// Reads the whole text. deg, ° (both pi/180) and rad (1) may follow a value where `unit`, that of the quantity, is rad.
+// Reads the whole text. deg, ° (both pi/180) and rad (1) may follow a value where `unit`, that of the quantity, is rad; the same
+// and deg/s, °/s and rad/s where it is rad/s.
 // Throws ParseError, whose message begins with the text: "'0,4' is not a finite number: ...".
 GivenNumber read_number(std::string_view text, std::string_view unit = {});
 

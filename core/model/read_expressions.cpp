@@ -264,17 +264,20 @@ void read_pictures(const SystemDescription& system, const Layout& layout, Graph&
 
 }  // namespace
 
-void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
+bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
     const Layout layout = layout_of(system);
     Graph graph;
     Equations equations;
+    const std::size_t before = mistakes.count();
     read_equations(system, layout, graph, names, equations, mistakes);
+    const bool has_equations = mistakes.count() == before;
     const Expression any_value = graph.symbol(layout.t());
     equations.energy = equations.power = any_value;
     equations.free.contacts.resize(system.constraints.size());
     for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
     Reader reader(graph, names, mistakes);
     attempt_within_limits(mistakes, system.kinetic, [&] { read_pictures(system, layout, graph, equations, reader); });
+    return has_equations;
 }
 
 }  // namespace achilles

@@ -16,7 +16,7 @@ namespace achilles {
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
                     Equations& equations, Mistakes& mistakes);
 
-// Adds what is wrong with any expression of the file: the above, drawings and views.
-void check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
+// Adds what is wrong with any expression of the file: the above, drawings and views. Whether the above had nothing wrong.
+bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
 
 }  // namespace achilles

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "model/model.hpp"
 #include "model/read_expressions.hpp"
 #include "number/ground.hpp"
 #include "system/read_tables.hpp"
@@ -12,10 +13,29 @@ SystemDescription read_system(const std::filesystem::path& file) {
     return parse_system(read_text(file), file.string());
 }
 
+namespace {
+
+// What is wrong with the start of a system whose drawings and views alone have mistakes: all is to be told at once.
+void check_start(SystemDescription system, Mistakes& mistakes) {
+    system.drawings.clear();
+    system.views.clear();
+    for (ConstraintDescription& constraint : system.constraints) constraint.drawings.clear();
+    try {
+        const Model model(std::move(system));
+        model.check(model.default_run());
+    } catch (const InputError& error) {
+        for (const InputError& each : each_of(error))
+            mistakes.add({each.at, each.message, each.hint, each.at.line > 0});
+    }
+}
+
+}  // namespace
+
 SystemDescription parse_system(std::string text, std::string name) {
     const Ground ground;  // constants become intervals, too
     FileReading read = read_tables(std::move(text), std::move(name));
-    check_expressions(read.system, std::move(read.names), read.mistakes);
+    const bool has_equations = check_expressions(read.system, std::move(read.names), read.mistakes);
+    if (read.mistakes.count() > 0 && read.has_system && has_equations) check_start(read.system, read.mistakes);
     read.mistakes.raise(read.system);
     return std::move(read.system);
 }

@@ -6,6 +6,7 @@
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "simulate/least_gap.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -54,6 +55,7 @@ Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) 
         samples.push_back({{"t", number(sample.t)},
                            {"j", sample.j},
                            {"phase", to_text(sample.phase)},
+                           {"held", contact_names(*trajectory.model, sample.held)},
                            {"q", list(sample.state.q)},
                            {"v", list(sample.state.v)}});
     return samples;
@@ -68,6 +70,17 @@ Json options_of(const Options& options) {
             x ? number(*x) : std::visit([](const auto& other) { return Json(other); }, value);
     }
     return result;
+}
+
+// How the run ended, and by which tolerances it was made where those that were asked for left it undecided.
+Json outcome_of(const Trajectory& trajectory) {
+    Json again = nullptr;
+    if (trajectory.made_again_by)
+        for (const Option& option : all_options())
+            if (option.is_tolerance)
+                again[std::string(option.key)] = number(std::get<double>(option.get(*trajectory.made_again_by)));
+    return {
+        {"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}, {"made_again_by", again}};
 }
 
 Json names(const Trajectory& trajectory, ContactSet contacts) { return contact_names(*trajectory.model, contacts); }
@@ -212,7 +225,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"work", number(trajectory.work)},
                      {"loss", number(trajectory.loss)},
                      {"by_convention", trajectory.by_convention}}},
-                   {"outcome", {{"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}}},
+                   {"outcome", outcome_of(trajectory)},
                    {"start",
                     {{"t", number(trajectory.run.options.start_time)},
                      {"q", list(trajectory.run.q)},
@@ -223,7 +236,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"evaluations", s.evaluations},
                      {"impacts", s.impacts},
                      {"energy_drift", number(s.energy_drift)},
-                     {"least_gap", number(s.least_gap)}}},
+                     {"least_gap", number(least_gap(trajectory))}}},
                    {"assumed",  // by the certificates
                     {{"arithmetic", "IEEE 754 double, round to nearest"},
                      {"ulps", rounding::libm},

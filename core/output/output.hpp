@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "output/sampling.hpp"
 #include "run/trajectory.hpp"
@@ -21,12 +22,19 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
 std::string summary(const Trajectory& trajectory);
 // Phases, events and end, 9 significant digits: what golden tests compare first.
 std::string to_text(const Trajectory& trajectory);
+// What a person should know of how a run was made, and may not expect: in a word or two for a line about the run, and in full.
+struct Remark {
+    std::string label, sentence;
+};
+std::vector<Remark> remarks(const Trajectory& trajectory);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate);
 // "[low, high]" with as many digits as tell the ends apart, and two more.
 std::string interval_text(double low, double high);
 // A bound, to two digits; what is below 1e-30 is not told further.
 std::string bound_text(double bound);
+// The energy drift, to two digits; one of rounding alone is "below 1e-14", which is not nothing.
+std::string drift_text(double drift);
 std::string version();
 
 }  // namespace achilles

@@ -6,6 +6,7 @@
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "simulate/least_gap.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -134,7 +135,7 @@ class Course {
         std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
                                        event.t, contacts, named(model_, 0, event.q, scale_.q));
         if (is_plastic)
-            text += "            plastic: it comes to rest on the surface by its first impact, without a bounce\n";
+            text += "            plastic: it comes to rest on the surface by its first impact, without a bounce;\n";
         else if (event.kind == Event::Kind::zeno)
             text += fmt::format(
                 "            after {} impacts, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
@@ -188,21 +189,24 @@ std::string interval_text(double low, double high) {
 
 std::string bound_text(double bound) { return fmt::format("{:.2g}", std::max(bound, 1e-30)); }
 
+std::string drift_text(double drift) {
+    return drift < noise ? fmt::format("below {}", noise) : fmt::format("{:.2g}", drift);
+}
+
 std::string sentence(const Certificate& c) {
     if (!c.certified) return "not certified";
     std::string text = fmt::format(
-        "tau_inf in {} s, the Zeno time; the true Zeno point is within {} of the position at the cut, its velocity "
-        "within {} "
-        "of that after the cut: |q_inf - q*|, |v_inf - v*|",
+        "from the computed state at the cut: tau_inf in {} s, the Zeno time; its Zeno point is within {} of the "
+        "position at the cut, its velocity within {} of that after the cut: |q_inf - q*|, |v_inf - v*|",
         interval_text(c.zeno_low, c.zeno_high), bound_text(c.position_bound), bound_text(c.velocity_bound));
-    if (c.position_bound == 0.0 && c.velocity_bound == 0.0) text = fmt::format("tau_inf = {:.10g} s", c.zeno_low);
+    if (c.position_bound == 0.0 && c.velocity_bound == 0.0) return std::string(c.decisive);
     if (c.uniform_position && *c.uniform_position > 0.0)
         text += fmt::format(
             "; from the cut to tau_inf what is drawn is within {} of the true position (the bounces not drawn are no "
-            "higher); at tau_inf it is within {} (position) and {} (velocity) of the true motion",
+            "higher): uniform position; at tau_inf it is within {} and {} of the true motion: shadowing position and "
+            "velocity",
             bound_text(*c.uniform_position), bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity));
-    const char* link = c.position_bound == 0.0 ? "; " : c.paper ? "; decided by the condition " : "; decided by the ";
-    text += link;
+    text += c.paper ? "; decided by the condition " : "; decided by the ";
     text += c.decisive;
     if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
     return text;
@@ -216,7 +220,9 @@ std::string summary(const Trajectory& trajectory) {
     text += fmt::format("  {}", to_text(o.method));
     for (const Option* option : told_options())
         if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
-    text += "\n\n";
+    text += "\n";
+    for (const Remark& remark : remarks(trajectory)) text += "  " + remark.sentence + "\n";
+    text += "\n";
     const State scale = scale_of(trajectory);
     text += Course(trajectory).told();
     const Statistics& s = trajectory.statistics;
@@ -226,14 +232,15 @@ std::string summary(const Trajectory& trajectory) {
                         named(model, n, trajectory.end.v, scale.v));
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {:.2g}, least gap {:.2g}\n", s.impacts,
-                        s.steps, s.evaluations, has_power ? " beside the work" : "", without_noise(s.energy_drift, 1.0),
-                        without_noise(s.least_gap, scale.q.maxCoeff()));
+    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {}, least gap {:.2g}\n", s.impacts,
+                        s.steps, s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
+                        without_noise(least_gap(trajectory), scale.q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
-    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(),
-                                       [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
+        return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
+    });
     if (completed)
         text +=
             "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"

@@ -39,7 +39,7 @@ State scale_of(const Trajectory& trajectory) {
     return scale;
 }
 
-double without_noise(double value, double scale) { return std::abs(value) < 1e-14 * scale ? 0.0 : value; }
+double without_noise(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }
 
 std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 

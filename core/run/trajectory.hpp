@@ -132,7 +132,8 @@ struct Event {
     Event() {}  // the room for the two that most events have not need not be zero
 };
 
-// A Zeno event without bouncing: restitution 0 ends the fall in contact at once, exactly.
+// A Zeno event without bouncing: restitution 0 ends the fall in contact at once. Nothing is cut short, so nothing is to be
+// bounded but the integration before it.
 bool is_plastic_landing(const Event& event);
 
 struct Outcome {
@@ -156,7 +157,7 @@ struct Outcome {
 struct Statistics {
     long steps = 0, evaluations = 0, impacts = 0;
     double energy_drift = 0.0;  // largest relative change of energy less work inside a smooth stretch, at step ends
-    double least_gap = 0.0;     // at step ends
+    double least_gap = 0.0;     // at step ends alone; of the whole run: least_gap(trajectory)
     // Wall clock: the only values that may differ between two runs.
     double seconds = 0.0;
     double certificate_seconds = 0.0;  // of these, for the truncation conditions' proofs
@@ -179,11 +180,15 @@ struct Trajectory {
     double work = 0.0, loss = 0.0;
     Outcome outcome;
     Statistics statistics;
+    // Where the options of `run` left it undecided: those that it was made again by, as exactly as double precision allows.
+    std::optional<Options> made_again_by;
 };
 
 // The largest |q| and |v|, coordinate by coordinate, at the start, the events and the end: what is much smaller is noise.
 State scale_of(const Trajectory& trajectory);
-// For a person, 0 where a value is rounding noise beside such a scale: below 1e-14 of it.
+// What is rounding noise beside a scale: below so much of it.
+inline constexpr double noise = 1e-14;
+// For a person, 0 where a value is noise beside such a scale.
 double without_noise(double value, double scale);
 
 std::string_view to_text(Phase::Kind);

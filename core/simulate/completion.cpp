@@ -129,7 +129,7 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
            2.0 * u / a < 4.0 * ulp(collision.before.t);
 }
 
-// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and the completion is exact.
+// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and nothing is cut short.
 void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
@@ -143,7 +143,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
         certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
-        certificate.decisive = "exact: restitution 0";
+        certificate.decisive = "restitution 0: nothing is cut short";
         certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(contact, collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {

@@ -42,6 +42,7 @@ Trajectory simulate(const std::shared_ptr<const Model>& model, const Run& run, W
             *eps = std::min(*eps, 1e-12);
         trajectory = execute(model, exact, watch, keep);
         trajectory.run = used;
+        trajectory.made_again_by = exact.options;
     }
     trajectory.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return trajectory;

@@ -10,6 +10,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "number/angle.hpp"
 #include "number/subnormal.hpp"
 #include "system/input_error.hpp"
 
@@ -76,34 +77,52 @@ std::string why_not_settable(const SystemDescription& description, std::string_v
         if (derived.name == name)
             return fmt::format("'{}' follows from other parameters, it is {}: set those", name,
                                shown(derived.definition.text));
+    for (const Option& option : all_options())
+        if (name == option.key || name == option.command)
+            return fmt::format("'{}' is an option of the run, {} on the command line", name, option.flag);
     return fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name),
                        did_you_mean(name, settable_names(description)));
 }
 
-std::string unit_given(const SystemDescription& description, std::string_view name) {
+std::string rate_unit(const std::string& unit) { return unit.empty() ? unit : unit + "/s"; }
+
+std::string unit_of(const SystemDescription& description, std::string_view name) {
     for (const ParameterDescription& p : description.parameters)
         if (p.name == name) return p.unit;
     for (const DerivedDescription& derived : description.derived)
         if (derived.name == name) return derived.unit;
-    for (const CoordinateDescription& c : description.coordinates)
-        if (name == c.name || name == c.name + "'") return c.unit;
+    for (const CoordinateDescription& c : description.coordinates) {
+        if (name == c.name) return c.unit;
+        if (name == c.name + "'") return rate_unit(c.unit);
+    }
     return {};
 }
 
-std::string unit_of(const SystemDescription& description, std::string_view name) {
-    const std::string unit = unit_given(description, name);
-    return unit.empty() || !name.ends_with('\'') ? unit : unit + "/s";
+namespace {
+
+// "8.2 rad"; an angle that no one has typed in radians, 400 deg or 3*pi, in degrees.
+std::string with_unit(double value, const std::string& unit) {
+    const bool is_angle = unit == "rad" || unit == "rad/s";
+    constexpr double few_decimals = 1e4;
+    if (!is_angle || std::round(value * few_decimals) == value * few_decimals)
+        return fmt::format("{}{}{}", value, unit.empty() ? "" : " ", unit);
+    return fmt::format("{:.6g} deg{}", degrees(value), unit.substr(3));
 }
+
+}  // namespace
 
 std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run) {
     std::vector<std::string> told;
     const auto look = [&](const std::string& name, double value, const std::array<double, 2>& range, bool is_written) {
         if (!is_written || (value >= range[0] && value <= range[1])) return;
-        const std::string unit = unit_of(description, name), space = unit.empty() ? "" : " ";
-        const bool is_in_degrees = unit_given(description, name) == "rad" && std::abs(value) > 6.5;  // it seems
-        told.push_back(fmt::format("{} = {}{}{} is outside its range, {:.6g} to {:.6g}{}", name, value, space, unit,
-                                   range[0], range[1],
-                                   is_in_degrees ? fmt::format(": an angle in degrees is written {} deg", value) : ""));
+        const std::string unit = unit_of(description, name), shown_value = with_unit(value, unit);
+        const bool is_angle = unit == "rad" || unit == "rad/s",
+                   is_shown_in_degrees = shown_value.find(" deg") != shown_value.npos;
+        const bool seems_degrees = is_angle && !is_shown_in_degrees && std::abs(value) > 6.5;
+        const double factor = is_shown_in_degrees ? degrees(1.0) : 1.0;
+        told.push_back(fmt::format(
+            "{} = {} is outside its range, {:.6g} to {:.6g}{}", name, shown_value, factor * range[0], factor * range[1],
+            seems_degrees ? fmt::format(": an angle in degrees is written {} deg{}", value, unit.substr(3)) : ""));
     };
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const CoordinateDescription& c = description.coordinates[i];
@@ -130,7 +149,7 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
     if (place == nullptr) throw refuse(why_not_settable(description, name));
     std::optional<double> value;
     try {
-        value = read_number(written, unit_given(description, name)).value;
+        value = read_number(written, unit_of(description, name)).value;
     } catch (const ParseError& error) {
         throw refuse(error.what());
     }

@@ -163,8 +163,8 @@ std::vector<std::string> settable_names(const SystemDescription& description);
 double* find_value(const SystemDescription& description, Run& run, std::string_view name);
 // Why there is none for another name: it is derived, or nothing; with what was probably meant.
 std::string why_not_settable(const SystemDescription& description, std::string_view name);
-// The unit in which the value of such a name is given: rad for a rate in rad/s, too; "" where there is none.
-std::string unit_given(const SystemDescription& description, std::string_view name);
+// The unit of a coordinate's rate; "" where there is none.
+std::string rate_unit(const std::string& unit);
 // The unit of such a name's value, a rate's with its "/s"; "" where it is not known.
 std::string unit_of(const SystemDescription& description, std::string_view name);
 // A sentence for each value outside the range that the file gives it: no mistake, but perhaps not what was meant.

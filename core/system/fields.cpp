@@ -10,6 +10,7 @@
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
 #include "system/input_error.hpp"
+#include "system/keys.hpp"
 
 namespace achilles {
 
@@ -18,13 +19,27 @@ Fields::Fields(const TomlValue& table, std::string where) : table_(table), where
         throw Mistake{table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)), {}};
 }
 
+namespace {
+
+bool is_array_of_tables(const std::string& key) {
+    const auto all = file_tables();
+    return std::any_of(all.begin(), all.end(),
+                       [&](const FileTable& table) { return table.heading == "[[" + key + "]]"; });
+}
+
+}  // namespace
+
 void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
     for (const TomlEntry& entry : table_.entries) {
         if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
-        misspelt_.push_back(nearest(entry.key, keys));
-        mistakes.add({entry.at,
-                      fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, did_you_mean(entry.key, keys)),
-                      fmt::format("known here: {}", listed(keys))});
+        const std::string other = other_key(entry.key, keys), meant = other.empty() ? nearest(entry.key, keys) : other;
+        misspelt_.push_back(meant);
+        const std::string question =
+            other.empty() ? did_you_mean(entry.key, keys) : fmt::format("; did you mean '{}'?", other);
+        mistakes.add({entry.at, fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, question),
+                      entry.value.kind == TomlValue::Kind::table && is_array_of_tables(meant)
+                          ? fmt::format("write [[{}]], once for each", meant)
+                          : fmt::format("known here: {}", listed(keys))});
     }
 }
 
@@ -147,11 +162,13 @@ void read_unit(const Fields& fields, std::string& unit) {
         const std::size_t end = std::min(unit.find_first_of(" */^().", at), unit.size());
         const std::string word = unit.substr(at, end - at);
         at = end;
-        if (word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
+        const bool is_radian = word == "radian" || word == "radians";
+        if (!is_radian && word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
         const std::string right = std::string(unit).replace(end - word.size(), word.size(), "rad");
-        const Mistake mistake{fields.string("unit").at,
-                              fmt::format("the unit '{}' is not one to compute in", shown(unit)),
-                              fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
+        const Mistake mistake{
+            fields.string("unit").at,
+            fmt::format("the unit '{}' is not {}", shown(unit), is_radian ? "known" : "one to compute in"),
+            fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
         unit = right;
         throw mistake;
     }

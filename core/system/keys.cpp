@@ -26,7 +26,7 @@ std::span<const FileTable> file_tables() {
           {"start", "number, 0", "q(0)"},
           {"rate", "number, 0", "q'(0)"},
           {"force", "expression, 0", "the generalised force on it, of coordinates, rates, t and parameters"},
-          {"unit", "text", "\"rad\" is shown in degrees, and takes values as \"30 deg\""},
+          {"unit", "text", "of \"rad\" the explorer and the figures show degrees; values may be \"30 deg\", rates \"20 deg/s\""},
           {"range", "[low, high]", "of the slider; a value outside of it gets a warning"},
           {"rate_range", "[low, high]", "the same of the rate"}}},
         {"[[parameter]]",
@@ -83,6 +83,58 @@ std::span<const FileTable> file_tables() {
         {"polyline", {{"points", "[[x, y], ...], needed", ""}}},
         {"text", {{"at", "[x, y], needed", ""}, {"text", "text, needed", ""}}}};
     return tables;
+}
+
+std::string other_key(std::string_view word, const std::vector<std::string>& keys) {
+    struct Other {
+        std::string_view word, key;
+    };
+    static constexpr Other others[] = {{"h", "gap"},
+                                       {"distance", "gap"},
+                                       {"e", "restitution"},
+                                       {"T", "kinetic"},
+                                       {"V", "potential"},
+                                       {"U", "potential"},
+                                       {"R", "dissipation"},
+                                       {"Q", "force"},
+                                       {"velocity", "rate"},
+                                       {"speed", "rate"},
+                                       {"v", "rate"},
+                                       {"v0", "rate"},
+                                       {"q0", "start"},
+                                       {"x0", "start"},
+                                       {"initial", "start"},
+                                       {"init", "start"},
+                                       {"default", "value"},
+                                       {"min", "range"},
+                                       {"max", "range"},
+
+                                       {"description", "about"},
+                                       {"name", "title"},
+                                       {"t_end", "end_time"},
+                                       {"tend", "end_time"},
+                                       {"T", "end_time"},
+                                       {"t_final", "end_time"},
+                                       {"duration", "end_time"},
+                                       {"tmax", "end_time"},
+                                       {"t_start", "start_time"},
+                                       {"t0", "start_time"},
+                                       {"rtol", "tolerance"},
+                                       {"atol", "tolerance"},
+
+                                       {"eps", "eps_q"},
+                                       {"options", "run"},
+                                       {"simulation", "run"},
+                                       {"settings", "run"},
+                                       {"params", "parameter"},
+                                       {"variable", "coordinate"},
+                                       {"contact", "constraint"},
+                                       {"plot", "view"},
+                                       {"energy", "lagrangian"}};
+    for (const Other& other : others)
+        if (other.word == word && std::find(keys.begin(), keys.end(), other.key) != keys.end())
+            return std::string(other.key);
+    return "";
 }
 
 std::vector<std::string> keys_of(std::string_view heading) {

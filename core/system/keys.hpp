@@ -25,4 +25,7 @@ std::span<const FileTable> file_tables();
 // The names in one of them. There must be such a table.
 std::vector<std::string> keys_of(std::string_view heading);
 
+// Which of some keys is meant by another word, of those that people write who know other programs: restitution by e; "" where none is.
+std::string other_key(std::string_view word, const std::vector<std::string>& keys);
+
 }  // namespace achilles

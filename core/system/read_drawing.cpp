@@ -33,15 +33,22 @@ bool is_between_two(Shape shape) {
     return shape == Shape::segment || shape == Shape::spring || shape == Shape::damper || shape == Shape::ground;
 }
 
-const NamedShape& shape_of(const Fields& fields) {
+// One that is misspelt is told, and read on as what it was meant to be. Throws Mistake where that cannot be guessed.
+const NamedShape& shape_of(const Fields& fields, Mistakes& mistakes) {
     const Text name = fields.string("shape");
     std::vector<std::string> names;
-    for (const NamedShape& shape : shapes()) {
-        if (shape.name == name.text) return shape;
-        names.push_back(shape.name);
-    }
-    throw Mistake{name.at, fmt::format("unknown shape '{}'{}", shown(name.text), did_you_mean(name.text, names)),
-                  fmt::format("shapes are: {}", listed(names))};
+    for (const NamedShape& shape : shapes()) names.push_back(shape.name);
+    const auto called = [&](const std::string& wanted) {
+        return std::find_if(shapes().begin(), shapes().end(), [&](const NamedShape& s) { return s.name == wanted; });
+    };
+    if (const auto known = called(name.text); known != shapes().end()) return *known;
+    const Mistake unknown{name.at,
+                          fmt::format("unknown shape '{}'{}", shown(name.text), did_you_mean(name.text, names)),
+                          fmt::format("shapes are: {}", listed(names))};
+    const auto meant = called(nearest(name.text, names));
+    if (meant == shapes().end()) throw unknown;
+    mistakes.add(unknown);
+    return *meant;
 }
 
 void read_over(const SystemDescription& system, const Fields& fields, DrawingDescription& drawing) {
@@ -64,20 +71,23 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
     drawing.over_limits = {fields.expression("over", over.items[1]), fields.expression("over", over.items[2])};
 }
 
-void read_points(const Fields& fields, DrawingDescription& drawing) {
+void read_points(const Fields& fields, DrawingDescription& drawing, Mistakes& mistakes) {
     const TomlValue& points = fields.need("points");
     if (points.kind != TomlValue::Kind::array) throw fields.wrong_type("points", points, "an array of points");
     if (points.items.size() < 2) throw Mistake{points.at, "a polyline needs at least two points", {}};
-    for (const TomlValue& item : points.items) drawing.points.push_back(fields.point("points", item));
+    for (const TomlValue& item : points.items)
+        mistakes.attempt([&] { drawing.points.push_back(fields.point("points", item)); });
 }
 
 // The numbers of a shape's own, besides its points. 0 is as large as fits: what has a size of its own need not say it.
-void read_sizes(const Fields& fields, DrawingDescription& drawing) {
+void read_sizes(const Fields& fields, DrawingDescription& drawing, Mistakes& mistakes) {
     const auto size = [&](const char* key) {
-        drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}});
+        mistakes.attempt([&] { drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}}); });
     };
     if (drawing.shape == Shape::box) {
-        for (const Text& text : fields.point("size")) drawing.sizes.push_back(text);
+        mistakes.attempt([&] {
+            for (const Text& text : fields.point("size")) drawing.sizes.push_back(text);
+        });
         size("angle");
     }
     if (drawing.shape == Shape::spring) size("coils");
@@ -95,7 +105,7 @@ std::string read_color(const Fields& fields) {
 }  // namespace
 
 DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes) {
-    const NamedShape& shape = shape_of(fields);
+    const NamedShape& shape = shape_of(fields, mistakes);
     std::vector<std::string> keys = keys_of("[[drawing]]"), own = keys_of(shape.name);
     keys.insert(keys.end(), own.begin(), own.end());
     Fields of_shape(fields.table(), fmt::format("[[drawing]] of shape {}", shape.name));
@@ -109,7 +119,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
         mistakes.attempt([&] { drawing.points.push_back(of_shape.point(key)); });
     };
     if (shape.shape == Shape::polyline) {
-        mistakes.attempt([&] { read_points(of_shape, drawing); });
+        mistakes.attempt([&] { read_points(of_shape, drawing, mistakes); });
     } else if (is_between_two(shape.shape)) {
         point("from");
         point("to");
@@ -117,7 +127,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
         point("at");
     }
     if (is_round(shape.shape)) mistakes.attempt([&] { drawing.radius = of_shape.expression("radius"); });
-    mistakes.attempt([&] { read_sizes(of_shape, drawing); });
+    read_sizes(of_shape, drawing, mistakes);
     if (shape.shape == Shape::curve) mistakes.attempt([&] { read_over(system, of_shape, drawing); });
     if (shape.shape == Shape::text) mistakes.attempt([&] { drawing.text = of_shape.string("text").text; });
     mistakes.attempt([&] { drawing.color = read_color(of_shape); });

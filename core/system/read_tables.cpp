@@ -103,13 +103,14 @@ void read_coordinates(Reading& reading, const Fields& root) {
         const std::string& unit = coordinate.unit;
         mistakes.attempt([&] { read_unit(fields, coordinate.unit); });
         mistakes.attempt([&] { coordinate.start = fields.number_or("start", 0.0, unit); });
-        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0, unit); });
+        mistakes.attempt([&] { coordinate.rate = fields.number_or("rate", 0.0, rate_unit(unit)); });
         mistakes.attempt([&] { coordinate.force = fields.expression_or_none("force"); });
         coordinate.has_range = fields.find("range") != nullptr;
         coordinate.has_rate_range = fields.find("rate_range") != nullptr;
         mistakes.attempt([&] { coordinate.range = fields.range_or("range", range_around(coordinate.start), unit); });
-        mistakes.attempt(
-            [&] { coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate), unit); });
+        mistakes.attempt([&] {
+            coordinate.rate_range = fields.range_or("rate_range", range_around(coordinate.rate), rate_unit(unit));
+        });
         if (!is_named) continue;
         if (reading.system.coordinates.size() == max_coordinates) {
             mistakes.add({coordinate.at, fmt::format("more than {} coordinates", max_coordinates), {}});
@@ -309,6 +310,7 @@ FileReading read_tables(std::string text, std::string name) {
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
+    read.has_system = mistakes.count() == 0;
     read_pictures(reading);
     return read;
 }

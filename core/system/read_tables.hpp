@@ -24,6 +24,7 @@ struct FileReading {
     SystemDescription system;
     Names names;
     Mistakes mistakes;
+    bool has_system = false;  // what is wrong so far is wrong with drawings and views alone
 };
 
 // Reads the tables of a system file from its text; `name` stands for the file in messages. Throws InputError where

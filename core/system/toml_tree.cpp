@@ -173,27 +173,81 @@ TomlValue convert(const toml::node& node, Source source) {
     return value;
 }
 
+std::string trimmed(std::string part) {
+    part.erase(0, std::min(part.find_first_not_of(" \t"), part.size()));
+    part.erase(part.find_last_not_of(" \t\r") + 1);
+    return part;
+}
+
+// The number that a text was meant to be, as TOML has it: 0,4 is 0.4, .5 is 0.5, 1. is 1, −1 has another minus; "" for what is none.
+std::string number_meant(std::string text) {
+    constexpr std::string_view other_minus = "\u2212";
+    if (text.starts_with(other_minus)) text.replace(0, other_minus.size(), "-");
+    if (text.ends_with(';') || text.ends_with(',')) text.pop_back();
+    std::replace(text.begin(), text.end(), ',', '.');
+    if (text.find_first_not_of("+-.0123456789eE") != text.npos || text.find_first_of("0123456789") == text.npos)
+        return "";
+    const std::size_t first = text.find_first_not_of("+-");
+    if (text[first] == '.') text.insert(first, "0");
+    if (text.ends_with('.')) text.pop_back();
+    return text;
+}
+
+// What would be right in a value with quotes that do not fit; "" where that is not what is wrong.
+std::string right_quotes(const std::string& key, const std::string& value) {
+    const auto count = std::count(value.begin(), value.end(), '"');
+    if (value[0] == '\'' && value.find('\'', 1) < value.size() - 1)
+        return fmt::format("a text with a prime in it stands in double quotes: {} = \"{}\"", key,
+                           shown(value.substr(1, value.size() - (value.ends_with('\'') ? 2 : 1))));
+    for (const std::string_view curly : {"\u201c", "\u201d", "\u201e"})
+        if (value.find(curly) != value.npos) return "write the quotes of the keyboard, \"";
+    if (count == 1)
+        return fmt::format("a text ends with a quote: {} = \"{}\"", key,
+                           shown(value.substr(value[0] == '"' ? 1 : 0, value.size() - 1)));
+    if (count > 2 && value[0] == '"') return "a quote inside a text is written \\\"";
+    return "";
+}
+
 // What would be right in a line like gap = y - sin(x), or start = 0,4; "" where that is not what is wrong.
 std::string right_value(const std::string& line) {
     const std::size_t equals = line.find('=');
-    if (equals == std::string::npos) return "";
-    const auto trimmed = [](std::string part) {
-        part.erase(0, std::min(part.find_first_not_of(" \t"), part.size()));
-        part.erase(part.find_last_not_of(" \t\r") + 1);
-        return part;
-    };
+    if (equals == std::string::npos) {
+        const std::string words = trimmed(line.substr(0, line.find('#')));
+        const std::size_t end = std::min(words.find_first_of(" \t:"), words.size());
+        const std::string value = trimmed(words.substr(std::min(words.find_first_not_of(" \t:", end), words.size())));
+        return is_name(words.substr(0, end)) && !value.empty()
+                   ? fmt::format("write an equals sign: {} = {}", words.substr(0, end), shown(value))
+                   : "";
+    }
     const std::string key = trimmed(line.substr(0, equals)), rest = line.substr(equals + 1);
     const std::string value = trimmed(rest.substr(0, rest.find('#')));
-    if (!is_name(key) || value.empty() || value.find('"') != std::string::npos) return "";
-    if (value[0] == '[' || value[0] == '{')
-        return value.find_first_of("ghijklmnopqrsuvwxyz") == std::string::npos
-                   ? ""
-                   : "names and expressions stand in quotes, at = [\"x\", \"y\"]";
-    std::string with_point = value;
-    std::replace(with_point.begin(), with_point.end(), ',', '.');
-    const bool is_number = with_point.find_first_not_of("+-.0123456789eE") == std::string::npos;
-    if (is_number) return with_point == value ? "" : fmt::format("decimals have a point: {} = {}", key, with_point);
+    if (!is_name(key) || value.empty()) return "";
+    if (const std::string quotes = right_quotes(key, value); !quotes.empty()) return quotes;
+    if (value.find('"') != std::string::npos) return "";
+    if (value[0] == '[' || value[0] == '{') {
+        const std::vector<std::string> names = names_in(value);
+        const bool has_names = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+            return name != "true" && name != "false" && name != "inf" && name != "nan";
+        });
+        return has_names ? "names and expressions stand in quotes, at = [\"x\", \"y\"]" : "";
+    }
+    if (const std::string number = number_meant(value); !number.empty()) {
+        if (number == value) return "";
+        return fmt::format("{}: {} = {}",
+                           value.find(',') < value.size() - 1 ? "decimals have a point" : "write the number alone", key,
+                           number);
+    }
     return fmt::format("put it in quotes: {} = \"{}\"", key, shown(value));
+}
+
+// The same of a table that stands twice, or of which there may be several.
+std::string right_heading(std::string_view message, const std::string& line) {
+    if (!message.starts_with("cannot redefine existing")) return "";
+    const std::string heading = trimmed(line.substr(0, line.find('#')));
+    if (heading.starts_with("[["))
+        return fmt::format("write {} each time: one above has single brackets", shown(heading));
+    if (heading.starts_with("[")) return "its keys stand in one table: put them together";
+    return "a key stands once in a table: one of the two goes";
 }
 
 }  // namespace
@@ -229,8 +283,9 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
             if (const auto colon = message.find(": "); colon != message.npos) message.remove_prefix(colon + 2);
         }
         const Location at = location(error.source().begin);
-        const std::string line = line_of(text, at.line);
-        throw InputError(name, at, fmt::format("not valid TOML: {}", message), right_value(line), line);
+        const std::string line = line_of(text, at.line), hint = right_heading(message, line);
+        throw InputError(name, at, fmt::format("not valid TOML: {}", message), hint.empty() ? right_value(line) : hint,
+                         line);
     }
 }
 

@@ -193,8 +193,8 @@ void find_faults(const json& value, const json& schema, const std::string& at, s
         } else if (word == "enum") {
             if (std::find(said.begin(), said.end(), value) == said.end()) fault(value.dump() + " is none of these");
         } else if (word == "required") {
-            for (const json& key : said)
-                if (!value.contains(key.get<std::string>())) fault("lacks " + key.dump());
+            for (const json& key : said)  // of objects: what may be null has no keys
+                if (value.is_object() && !value.contains(key.get<std::string>())) fault("lacks " + key.dump());
         } else if (word == "additionalProperties") {
             for (const auto& [key, member] : value.items()) {
                 if (schema.contains("properties") && schema["properties"].contains(key)) continue;
@@ -247,6 +247,29 @@ TEST(Schema, HoldsForForcesMovingAndSeveralGaps) {
         ++systems;
     }
     EXPECT_EQ(systems, 6);
+}
+
+// A ball nearly touches a post, and a loose tolerance cannot tell: options are as asked, and what was done instead is said.
+TEST(Schema, HoldsForARunThatWasMadeAgain) {
+    const Folder folder;
+    folder.put(
+        "post.toml",
+        "title = \"post\"\n[[coordinate]]\nname = \"a\"\nrate = 1\n[[coordinate]]\nname = \"b\"\nstart = "
+        "0.5\n[lagrangian]\nkinetic = \"(a'^2 + b'^2)/2\"\npotential = \"b + 0.3*cos(2*a)\"\n[[constraint]]\ngap = "
+        "\"b - 0.395*exp(-40*(a - 2.6)^2)\"\nrestitution = 0.9\n[run]\nend_time = 2.4\ntolerance = 1e-4\n");
+    const std::string told =
+        "undecided at tolerance 0.0001: the whole run was made again, at tolerance 1e-14, eps_q 1e-12, eps_v 1e-12\n";
+    const Answer data = folder.run("simulate post.toml --json -");
+    EXPECT_EQ(data.status, 0);
+    EXPECT_EQ(data.err, "achilles: warning: " + told);
+    const json run = json::parse(data.out);
+    EXPECT_EQ(faults_of(run), std::vector<std::string>());
+    EXPECT_EQ(run["options"]["tolerance"], 1e-4);
+    EXPECT_EQ(run["outcome"]["made_again_by"]["tolerance"], 1e-14);
+    const Answer summary = folder.run("simulate post.toml");
+    EXPECT_NE(summary.out.find("tolerance 0.0001, sharp"), std::string::npos) << summary.out;
+    EXPECT_NE(summary.out.find("\n  " + told), std::string::npos) << summary.out;
+    EXPECT_EQ(summary.err, "") << "once";
 }
 
 TEST(Schema, NoticesWhatIsOtherwise) {

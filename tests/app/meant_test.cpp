@@ -111,6 +111,10 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         {"figure drop.toml --do \"plot 1 t y,e\" --out a.svg",
          "plot 1 t y,e: unexpected ','\n    y,e\n     ^\nwrite: plot NUMBER X Y..., expressions with spaces in double "
          "quotes\n"},
+        {"simulate drop", "achilles: there is no system 'drop'; did you mean the file drop.toml?\n"},
+        {"simulate drop.toml --set end=3", "--set end=3: 'end' is an option of the run, --end on the command line\n"},
+        {"simulate drop.toml --set tolerance=1e-6",
+         "--set tolerance=1e-6: 'tolerance' is an option of the run, --tolerance on the command line\n"},
         {"simulate .", ".: cannot read the file: it is a directory\n"}};
     for (const auto& [arguments, message] : mistakes) {
         const Answer answer = folder.run(arguments);
@@ -118,6 +122,22 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         EXPECT_EQ(answer.err, message) << arguments;
         EXPECT_EQ(folder.files().size(), 3u) << arguments;
     }
+}
+
+// In the unit in which it was typed; what has all its decimals was not typed in radians.
+TEST(Meant, AnAngleInDegreesIsToldInDegrees) {
+    const Folder folder;
+    const std::pair<const char*, const char*> told[] = {
+        {"'theta1=400 deg'", "theta1 = 400 deg is outside its range, -90 to 90\n"},
+        {"'theta1=3*pi'", "theta1 = 540 deg is outside its range, -90 to 90\n"},
+        {"theta1=2", "theta1 = 2 rad is outside its range, -1.5708 to 1.5708\n"},
+        {"theta1=30",
+         "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg\n"}};
+    for (const auto& [setting, warning] : told)
+        EXPECT_EQ(folder.run("simulate double_pendulum --end 0.1 --json a.json --set " + std::string(setting)).err,
+                  std::string("achilles: warning: ") + warning);
+    const Answer rate = folder.run("simulate double_pendulum --end 0.1 --set \"theta1'=20 deg/s\" --json -");
+    EXPECT_NEAR(json::parse(rate.out)["start"]["v"][0].get<double>(), 0.349065850398866, 1e-15) << rate.err;
 }
 
 TEST(Meant, StepsWarnAsOptionsDo) {

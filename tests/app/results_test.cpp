@@ -55,6 +55,24 @@ TEST(Results, select_and_show_the_proof) {
     EXPECT_EQ(hands.session.selected(), 0);
 }
 
+// Restitution 0 ends the fall at once: no proof, and no row of bounces to look at.
+TEST(Results, call_a_landing_so_and_offer_no_lens) {
+    for (const bool is_plastic : {false, true}) {
+        Hands hands("ball_on_floor");
+        if (is_plastic) hands.session.apply(command::Set{"e", {0.0, {}}});
+        hands.rest(3);
+        const auto& events = hands.session.trajectory().events;
+        std::size_t rest = 0;
+        while (events[rest].kind != Event::Kind::zeno) ++rest;
+        ASSERT_EQ(is_plastic_landing(events[rest]), is_plastic);
+        hands.click("result " + std::to_string(rest + 1));
+        hands.rest(2);
+        EXPECT_EQ(hands.state.places.contains("open lens"), !is_plastic);
+        const std::string first = certificate_lines(events[rest]).front();
+        EXPECT_EQ(first == "it comes to rest without a bounce", is_plastic) << first;
+    }
+}
+
 TEST(EventList, folds_impacts_until_a_click_opens_them) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("event 1"));

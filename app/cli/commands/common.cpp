@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <charconv>
 
+#include "cli/commands/commands.hpp"
+#include "cli/terminal.hpp"
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "output/output.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -61,6 +64,15 @@ double number_from(const std::string& option, std::string_view text) {
     } catch (const ParseError& error) {
         throw InputError(fmt::format("{} {}", option, shown(text)), {}, error.what());
     }
+}
+
+int told_of(const Trajectory& trajectory, bool with_remarks) {
+    if (with_remarks)
+        for (const Remark& remark : remarks(trajectory))
+            print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
+    if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
+    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    return stopped_early;
 }
 
 void add_system_argument(CLI::App& command, std::string& system) {

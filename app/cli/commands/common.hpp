@@ -13,6 +13,8 @@ class App;
 
 namespace achilles {
 
+struct Trajectory;
+
 // SYSTEM, which must be given.
 void add_system_argument(CLI::App& command, std::string& system);
 
@@ -35,6 +37,10 @@ void add_scale_option(CLI::App& command, double& scale, const std::string& about
 
 // --size WxH and --scale S. `about` replaces what they say of themselves.
 void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});
+
+// Tells on standard error what a person may not expect of a finished run: its remarks, unless they stand elsewhere, and why it
+// stopped early. The exit status.
+int told_of(const Trajectory& trajectory, bool with_remarks = true);
 
 // A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
 double number_from(const std::string& option, std::string_view text);

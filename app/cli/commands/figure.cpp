@@ -50,9 +50,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Fi
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
             [&](const Notes& notes) { return picture_of(figure, size, notes, format); });
     job.commit();
-    if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
-    return stopped_early;
+    return told_of(trajectory);
 }
 
 // The plots of the explorer after a journal and some commands more. What is refused there is bad input here.

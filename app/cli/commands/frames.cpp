@@ -139,9 +139,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
         status = draw_into(folder, arguments, clock, animation,
                            [&](const std::string& name) { return job.notes_of(name, shown); });
     }
-    if (status != reached_end || trajectory.outcome.kind == Outcome::Kind::end_time) return status;
-    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
-    return stopped_early;
+    return status == reached_end ? told_of(trajectory) : status;
 }
 
 int jobs_from(const std::string& text) {

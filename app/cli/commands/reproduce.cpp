@@ -63,7 +63,10 @@ int reproduce(const std::string& picture, const std::string& out) {
     if (!out.empty()) files.put(out, after);
     files.commit();
     if (out != "-") print_clean(stdout, "{}\n", origin.command);
-    if (after == before) return status;
+    if (after == before) {
+        print_clean(stderr, "achilles: {}: made again it has the same bytes\n", picture);
+        return status;
+    }
     const std::string here = "Achilles " + version();
     print_clean(stderr, "achilles: {}: made again it has other bytes{}\n", picture,
                 origin.software == here ? "" : fmt::format(" (it was made by {}, this is {})", origin.software, here));

@@ -53,13 +53,13 @@ void check_files(const SimulateArguments& arguments) {
 }
 
 Instants instants_of(const SimulateArguments& arguments, const Run& run) {
-    const double end = run.options.end_time;
-    if (arguments.samples) return equidistant(*arguments.samples, 0.0, end);
+    const double start = run.options.start_time, end = run.options.end_time;
+    if (arguments.samples) return equidistant(*arguments.samples, start, end);
     if (arguments.times.empty()) return {};
     const std::string text = read_text(arguments.times);
     if (text.size() > largest_file)
         throw InputError(arguments.times, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
-    return read_instants(text, arguments.times, 0.0, end);
+    return read_instants(text, arguments.times, start, end);
 }
 
 int run(const SimulateArguments& arguments) {
@@ -81,7 +81,8 @@ int run(const SimulateArguments& arguments) {
     if (!arguments.json.empty()) files.put(arguments.json, to_json(trajectory, instants));
     if (!arguments.csv.empty())
         files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
-    if (arguments.json.empty() && arguments.csv.empty()) {
+    const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
+    if (is_summed_up) {
         files.add("-");
         files.put("-", printable(summary(trajectory)));
     }
@@ -90,9 +91,7 @@ int run(const SimulateArguments& arguments) {
     if (arguments.verbose)
         print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
                     trajectory.statistics.certificate_seconds);
-    if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
-    return stopped_early;
+    return told_of(trajectory, !is_summed_up);
 }
 
 }  // namespace
@@ -103,9 +102,9 @@ void add_simulate(CLI::App& program, int& status) {
     command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
         ->required()
         ->type_name("");
-    command->add_option("--json", arguments->json, "where to write the trajectory as JSON; - is standard output")
+    command->add_option("--json", arguments->json, "where to write the trajectory as JSON, instead of the summary; - is standard output")
         ->type_name("F");
-    command->add_option("--csv", arguments->csv, "where to write it as CSV: times in s, angles in rad")->type_name("F");
+    command->add_option("--csv", arguments->csv, "the same as CSV: times in s, angles in rad")->type_name("F");
     command
         ->add_option_function<std::string>(
             "--samples", [arguments](const std::string& text) { arguments->samples = samples_from(text); },

@@ -288,6 +288,27 @@ restitution = 0.5
     EXPECT_EQ(report.find("1 - 1"), std::string::npos);
 }
 
+// Where dh = 0 with h = 0 no impact can be computed; a gap that is only steep or bent, or that never closes, is none of these.
+TEST(CheckReport, TellsOfAGapThatComesToZeroWithoutCrossingIt) {
+    const auto told = [](const std::string& gap) {
+        const auto model = test::typed(
+            "title = \"a\"\n[[coordinate]]\nname = \"x\"\nstart = 0.5\n[[coordinate]]\nname = "
+            "\"y\"\nstart = 2\n[lagrangian]\nkinetic = \"x'^2 + y'^2\"\npotential = "
+            "\"y\"\n[[constraint]]\ngap = \"" +
+            gap + "\"\nrestitution = 0.5\n");
+        double disagreement = 1.0;
+        const std::string report = check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
+        return report.find("dh = 0 where h = 0, near ") != std::string::npos &&
+               report.find("as x in place of x^2") != std::string::npos;
+    };
+    for (const char* flat :
+         {"y^2", "(y - x)^2", "y^3", "1 - cos(y - 1)", "x^2 + y^2", "1e-6*y^4", "1 + y^2 - sqrt(1 + y^4)"})
+        EXPECT_TRUE(told(flat)) << flat;
+    for (const char* steep : {"y", "y - sin(x)", "x^2 + y^2 - 1", "1 + y^2", "y*(1 + y^2)", "1e-9*y", "exp(y) - 1",
+                              "exp(y)", "y + 100*x^2", "1 - x^2/9 - y^2/9"})
+        EXPECT_FALSE(told(steep)) << steep;
+}
+
 // A lie: forces that are not those of the file must show, and so must a wrong condition while another is held.
 TEST(CheckReport, SeesWrongForces) {
     const auto model = test::load_gaps("pendulum_two_stops");

@@ -45,6 +45,21 @@ TEST(ReadNumber, degrees_are_a_factor_where_the_unit_is_rad) {
     EXPECT_FALSE(read_number("1/3", "rad").has_pi);
 }
 
+// Of a rate.
+TEST(ReadNumber, degrees_a_second_are_a_factor_where_the_unit_is_rad_per_second) {
+    for (const char* text : {"20 deg/s", "20\u00b0/s", "20 deg", "20 rad/s*pi/180", "40 deg/s/2"}) {
+        EXPECT_NEAR(read_number(text, "rad/s").value, pi / 9.0, 1e-16) << text;
+        EXPECT_TRUE(read_number(text, "rad/s").has_unit) << text;
+    }
+    EXPECT_THROW(read_number("20 deg/s", "rad"), ParseError);
+    EXPECT_THROW(read_number("20 deg/sec", "rad/s"), ParseError);
+    // Where s has a value it is that.
+    Graph graph;
+    Scope scope{{{"s", graph.number(4)}}, {}};
+    allow_units(scope, "rad/s", graph);
+    EXPECT_NEAR(value_of_constant(parse("20 deg/s", scope, graph)), pi / 36.0, 1e-16);
+}
+
 std::string told(const std::string& text, const std::string& unit = {}) {
     try {
         read_number(text, unit);
@@ -66,8 +81,16 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
     EXPECT_EQ(told("1e999"), "0 '1e999' is not a finite number");
     EXPECT_EQ(told("log(0)"), "0 'log(0)' is not a finite number");
     EXPECT_EQ(told("1/0"), "1 '1/0' is not a finite number: division by zero");
-    EXPECT_EQ(told("0x10"), "1 '0x10' is not a finite number: an operator is missing here; write '*' for a product");
-    EXPECT_EQ(told("3 m", "m"), "2 '3 m' is not a finite number: an operator is missing here; write '*' for a product");
+    EXPECT_EQ(
+        told("0x10"),
+        "1 '0x10' is not a finite number: 'x10' may not follow a number: a unit stands in the key unit, and a product "
+        "is written with '*'");
+    for (const char* unit : {"", "m", "rad"})
+        EXPECT_EQ(
+            told("1.0 m/s^2", unit),
+            "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: a unit stands in the key unit, and "
+            "a product is written with '*'");
+    EXPECT_EQ(told("2pi"), "1 '2pi' is not a finite number: an operator is missing here; write '*' for a product");
     EXPECT_EQ(told("30 deg", "m"),
               "3 '30 deg' is not a finite number: 'deg' may follow a number where the unit is rad, and here it is m");
     EXPECT_EQ(told("30\u00b0"),

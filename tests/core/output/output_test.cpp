@@ -101,12 +101,16 @@ TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
         EXPECT_LE(c["shadowing_velocity"].get<double>(), 1e-6);
         EXPECT_LE(c["uniform_position"].get<double>(), 1e-6);
         EXPECT_GT(c["uniform_position"].get<double>(), c["shadowing_position"].get<double>());
-        EXPECT_EQ(c["decisive"], "position bound");
+        EXPECT_EQ(c["decisive"], "uniform position");
         EXPECT_FALSE(c.contains("e1"));
         EXPECT_EQ(c["inequalities"].size(), 5u);
     }
     const std::string text = summary(sharp);
-    EXPECT_NE(text.find("of the true motion;\n            decided by the position bound"), std::string::npos) << text;
+    // One name for each number, in the sentence, in what decided, and in the keys of JSON.
+    EXPECT_NE(text.find(": uniform position;\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(": shadowing position and velocity;\n            decided by the uniform position"),
+              std::string::npos)
+        << text;
     EXPECT_NE(text.find("of the true position (the bounces not drawn are no higher)"), std::string::npos) << text;
 }
 
@@ -245,10 +249,10 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
 TEST_F(Outputs, TheSummarySaysUnitsAndInWordsWhatIsBounded) {
     const std::string text = summary(simulate(model, with(Conditions::sharp)));
     for (const char* words :
-         {"hybrid phase, t = 0 to 2.72514216 s", "x = 4.6088", " m, y = -0.99", " s, the Zeno time;",
-          "the true Zeno point is within ", " of the position at the cut, its velocity within ",
-          "from the cut to tau_inf what is drawn is within ", "gap speed 0.456469",
-          "x' = ", " m/s, y' = ", "Gap speeds are |hdot|"})
+         {"hybrid phase, t = 0 to 2.72514216 s", "x = 4.6088", " m, y = -0.99",
+          "from the computed state at the cut: tau_inf in [", " s, the Zeno time;", "its Zeno point is within ",
+          " of the position at the cut, its velocity within ", "from the cut to tau_inf what is drawn is within ",
+          "gap speed 0.456469", "x' = ", " m/s, y' = ", "Gap speeds are |hdot|"})
         EXPECT_NE(text.find(words), std::string::npos) << words << "\n" << text;
 }
 
@@ -261,7 +265,9 @@ TEST(Summary, APlasticLandingIsCalledSo) {
     EXPECT_NE(text.find("  landing   t = 0.437768"), std::string::npos) << text;
     EXPECT_NE(text.find("plastic: it comes to rest"), std::string::npos);
     EXPECT_EQ(text.find("zeno "), std::string::npos);
-    EXPECT_EQ(text.find("cut short"), std::string::npos);
+    EXPECT_NE(text.find("restitution 0: nothing is cut short\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("exact"), std::string::npos) << "its time is as exact as the integration: " << text;
+    EXPECT_EQ(text.find("ertificates"), std::string::npos) << "there is none: " << text;
     EXPECT_TRUE(is_plastic_landing(test::events_of(trajectory, Event::Kind::zeno)[0]));
     const Trajectory bouncing = simulate(floor, floor->default_run());
     EXPECT_FALSE(is_plastic_landing(test::events_of(bouncing, Event::Kind::zeno)[0]));
@@ -282,6 +288,72 @@ TEST(Summary, RoundingNoiseIsZeroForPeople) {
     const State scale = scale_of(trajectory);
     EXPECT_GT(scale.q[0], 0.5);
     EXPECT_GT(scale.v[0], 0.5);
+}
+
+TEST(Summary, EnergyThatDriftsByRoundingAloneIsNotExact) {
+    EXPECT_EQ(drift_text(0.0), "below 1e-14");
+    EXPECT_EQ(drift_text(9e-15), "below 1e-14");
+    EXPECT_EQ(drift_text(1.234e-14), "1.2e-14");
+}
+
+TEST_F(Outputs, SayThatTheRunStarted) {
+    // Where a run begins the gap may be as small as it ever is.
+    const auto hills = test::load("ball_on_hills");
+    auto run = hills->default_run();
+    run.options.end_time = 0.3;
+    const Trajectory rising = simulate(hills, run);
+    EXPECT_NE(summary(rising).find("least gap 0\n"), std::string::npos) << summary(rising);
+    EXPECT_LT(std::abs(nlohmann::json::parse(to_json(rising))["statistics"]["least_gap"].get<double>()), 1e-14);
+}
+
+TEST_F(Outputs, SayByWhichTolerancesAnUndecidedRunWasMadeAgain) {
+    EXPECT_TRUE(nlohmann::json::parse(to_json(trajectory))["outcome"]["made_again_by"].is_null());
+    EXPECT_TRUE(remarks(trajectory).empty());
+    trajectory.made_again_by = trajectory.run.options;
+    trajectory.made_again_by->tolerance = 1e-14;
+    trajectory.made_again_by->truncation.eps_q = 1e-12;
+    const auto again = nlohmann::json::parse(to_json(trajectory))["outcome"]["made_again_by"];
+    EXPECT_EQ(again, (nlohmann::json{{"tolerance", 1e-14}, {"eps_q", 1e-12}, {"eps_v", 1e-6}, {"eps_t", 1e-6}}));
+    const std::string told =
+        "undecided at tolerance 1e-10: the whole run was made again, at tolerance 1e-14, eps_q 1e-12";
+    EXPECT_EQ(remarks(trajectory).at(0).sentence, told);
+    EXPECT_NE(summary(trajectory).find("\n  " + told + "\n\n"), std::string::npos) << summary(trajectory);
+}
+
+// A drop from 2e-7 m: the first impact is below eps_q = 1e-6 already, and nothing is left of the bouncing.
+TEST(Summary, ABoundAsLargeAsTheMotionIsARemark) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "y=0.0600002");
+    assign(run, floor->description(), "y'=0");
+    run.options.end_time = 0.1;
+    const std::vector<Remark> large = remarks(simulate(floor, run));
+    ASSERT_EQ(large.size(), 1u);
+    EXPECT_NE(large[0].sentence.find("eps_q = 1e-06 is large beside this motion: the bouncing was cut at its first "
+                                     "impact, t = 0.000201"),
+              std::string::npos)
+        << large[0].sentence;
+    EXPECT_NE(large[0].sentence.find("the gap is never above 2e-07: try --eps 1e-11"), std::string::npos)
+        << large[0].sentence;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-11;
+    const Trajectory better = simulate(floor, run);
+    EXPECT_GT(better.statistics.impacts, 3);
+    EXPECT_TRUE(remarks(better).empty());
+}
+
+// Samples from the cut to the Zeno point are in the hybrid phase, as the contract has it, and say what they hold.
+TEST_F(Outputs, SamplesOfTheRestartedMotionAreMarked) {
+    const Event zeno = test::events_of(trajectory, Event::Kind::zeno)[0];
+    const double between = 0.5 * (zeno.truncation->t + zeno.t);
+    const std::vector<double> times{0.1, between, zeno.t};
+    const auto samples = nlohmann::json::parse(to_json(trajectory, times))["samples"];
+    EXPECT_EQ(samples[0]["held"], nlohmann::json::array());
+    EXPECT_EQ(samples[1]["held"], nlohmann::json{"contact"});
+    EXPECT_EQ(samples[1]["phase"], "hybrid");
+    EXPECT_EQ(samples[2]["held"], nlohmann::json{"contact"});
+    const auto rows = split(to_csv(trajectory, {times, false, false}), '\n');
+    EXPECT_EQ(split(rows[1], ',')[8], "0");
+    EXPECT_GT(std::stod(split(rows[2], ',')[8]), 0.1) << "the force that holds it there";
 }
 
 TEST_F(Outputs, TextIsForGoldens) {

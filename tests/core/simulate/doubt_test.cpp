@@ -184,6 +184,7 @@ TEST(Doubt, WhatEarlierStepsMadeWrongDecidesNothing) {
         const double middle = 0.5 * (clear + touched);
         (past_the_post(middle, 1e-14).statistics.impacts > 1 ? touched : clear) = middle;
     }
+    int made_again = 0;
     for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8})
         for (double off = 1e-5; off > 5e-11; off *= 0.3)
             for (const double sign : {-1.0, 1.0}) {
@@ -191,7 +192,12 @@ TEST(Doubt, WhatEarlierStepsMadeWrongDecidesNothing) {
                 EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time)
                     << tolerance << ", " << sign * off << ": " << trajectory.outcome.message;
                 EXPECT_EQ(trajectory.statistics.impacts > 1, sign > 0.0) << tolerance << ", " << sign * off;
+                EXPECT_EQ(trajectory.run.options.tolerance, tolerance);
+                if (!trajectory.made_again_by) continue;
+                ++made_again;
+                EXPECT_EQ(trajectory.made_again_by->tolerance, 1e-14);
             }
+    EXPECT_GT(made_again, 10);  // and it is said
 }
 
 // ---- time at its resolution ----

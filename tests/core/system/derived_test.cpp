@@ -201,11 +201,15 @@ TEST(Degrees, may_stand_wherever_the_unit_is_rad) {
     EXPECT_NEAR(run.parameters[2], 60 * degree, 1e-15);
     EXPECT_EQ(told(changed(good, {{"rate = 0.5", "rate = \"30 deg\"\nunit = \"m\""}})),
               "f.toml:5:12: 'rate' in [[coordinate]]: '30 deg' is not a finite number: 'deg' may follow a number where "
-              "the unit is rad, and here it is m\n    rate = \"30 deg\"\n               ^");
+              "the unit is rad, and here it is m/s\n    rate = \"30 deg\"\n               ^");
+    for (const char* range : {"90 deg", "90 deg/s", "90\u00b0/s"})
+        EXPECT_EQ(told(changed(
+                      good, {{"value = 2", fmt::format("value = 2\nrange = [0, \"{}\"]\nunit = \"rad/s\"", range)}})),
+                  "");
     EXPECT_EQ(
-        told(changed(good, {{"value = 2", "value = 2\nrange = [0, \"90 deg\"]\nunit = \"rad/s\""}})),
+        told(changed(good, {{"value = 2", "value = 2\nrange = [0, \"90 deg\"]\nunit = \"rad/s^2\""}})),
         "f.toml:11:17: 'range' in [[parameter]]: '90 deg' is not a finite number: 'deg' may follow a number where "
-        "the unit is rad, and here it is rad/s\n    range = [0, \"90 deg\"]\n                    ^");
+        "the unit is rad, and here it is rad/s^2\n    range = [0, \"90 deg\"]\n                    ^");
 }
 
 }  // namespace

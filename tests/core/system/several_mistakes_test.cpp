@@ -55,6 +55,17 @@ TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
               "                   ^");
 }
 
+// What is drawn has no say in how a run starts: both are told.
+TEST(SeveralMistakes, OfADrawingAndOfTheStartAreToldTogether) {
+    const std::vector<InputError> all =
+        all_of(changed(good, {{"start = 1\n", "start = -1\n"}, {"\"s^2\"", "\"r^2\""}, {"[\"gap'\"]", "[\"lamda\"]"}}));
+    ASSERT_EQ(all.size(), 3u);
+    EXPECT_EQ(all[0].message, "the gap is negative at the start: h = -1");
+    EXPECT_EQ(all[0].at.line, 18);
+    EXPECT_EQ(all[1].message, "unknown name 'r'");
+    EXPECT_EQ(all[2].at.line, 31);
+}
+
 TEST(SeveralMistakes, CarryTheirPlacesAsData) {
     const std::vector<InputError> all = all_of(changed(good, {{"rate = 0.5", "rate = inf"}, {"\"m*x\"", "\"m*\""}}));
     ASSERT_EQ(all.size(), 2u);

@@ -1,0 +1,79 @@
+#include "expression/habits.hpp"
+
+namespace achilles {
+
+namespace {
+
+struct Habit {
+    std::string_view written, instead;
+};
+
+constexpr std::string_view product = "write '*' for a product", power = "write '^' for a power",
+                           minus = "write the minus sign of the keyboard, -",
+                           prime = "write the apostrophe of the keyboard, ' as in x'",
+                           round = "write round parentheses, ( and )",
+                           comparison = "an expression stands alone: a gap is open where it is positive";
+
+// The longer ones first.
+constexpr Habit signs[] = {
+    {".*", "write '*'"},    {"./", "write '/'"},
+    {".^", "write '^'"},    {"\u00b7", product},
+    {"\u00d7", product},    {"\u2219", product},
+    {"\u22c5", product},    {"\u2212", minus},
+    {"\u2013", minus},      {"\u2014", minus},
+    {"\u00b9", power},      {"\u00b2", "write ^2"},
+    {"\u00b3", "write ^3"}, {"\u2019", prime},
+    {"\u2032", prime},      {"\u00b4", prime},
+    {"`", prime},           {"\u221a", "write sqrt(...)"},
+    {"[", round},           {"{", round},
+    {"<", comparison},      {">", comparison},
+    {"=", comparison},      {"\u2264", comparison},
+    {"\u2265", comparison}, {";", "nothing ends an expression"},
+};
+
+struct OtherName {
+    std::string_view written, known, told;
+};
+
+// Said where the second name has a meaning; where that is empty, always.
+constexpr OtherName names[] = {
+    {"h", "gap", "the gap is called gap"},
+    {"hdot", "gap'", "the rate of the gap is called gap'"},
+    {"dh", "gap'", "the rate of the gap is called gap'"},
+    {"hddot", "gap''", "the acceleration of the gap is called gap''"},
+    {"force", "lambda", "the contact force is called lambda"},
+    {"F", "lambda", "the contact force is called lambda"},
+    {"E", "energy", "it is called energy"},
+    {"time", "t", "time is called t"},
+    {"np", "", "functions stand alone: sin(x)"},
+    {"numpy", "", "functions stand alone: sin(x)"},
+    {"math", "", "functions stand alone: sin(x)"},
+    {"Math", "", "functions stand alone: sin(x)"},
+    {"ln", "", "did you mean 'log'?"},
+    {"log10", "", "log is the natural logarithm: log(x)/log(10)"},
+    {"log2", "", "log is the natural logarithm: log(x)/log(2)"},
+    {"pow", "", "a power is written x^2"},
+    {"atan2", "", "atan takes one argument: atan(y/x), where x > 0"},
+    {"sec", "", "write 1/cos(x)"},
+    {"csc", "", "write 1/sin(x)"},
+    {"cot", "", "write cos(x)/sin(x)"},
+    {"if", "", "what jumps is not smooth: a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w"},
+};
+
+}  // namespace
+
+std::string instead_of_sign(std::string_view rest) {
+    if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') return "; decimals have a point";
+    for (const Habit& habit : signs)
+        if (rest.starts_with(habit.written)) return "; " + std::string(habit.instead);
+    return "";
+}
+
+std::string instead_of_name(std::string_view name, const std::function<bool(std::string_view)>& is_known) {
+    for (const OtherName& other : names)
+        if (name == other.written && (other.known.empty() || is_known(other.known)))
+            return "; " + std::string(other.told);
+    return "";
+}
+
+}  // namespace achilles

@@ -1,0 +1,15 @@
+// What people write who know other languages, and what stands for it here. Endings of messages; "" where there is nothing to say.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace achilles {
+
+// Of a sign that has no meaning here, at the start of the rest of a text: "; write '*' for a product" of a dot.
+std::string instead_of_sign(std::string_view rest);
+// Of a name that has none: "; the gap is called gap" of h, where that is known.
+std::string instead_of_name(std::string_view name, const std::function<bool(std::string_view)>& is_known);
+
+}  // namespace achilles
