@@ -165,6 +165,16 @@ TEST(Data, HoldsTheInstantsThatWereAskedFor) {
     EXPECT_EQ(json::parse(answer.out)["samples"][1]["t"], 1.0);
 }
 
+// From where the run starts, which need not be 0.
+TEST(Data, EquidistantInstantsBeginWithTheRun) {
+    const Answer answer =
+        Folder().run("simulate ball_on_vibrating_table --start-time 0.5 --end 1 --samples 3 --json -");
+    std::vector<double> times;
+    const json run = json::parse(answer.out);
+    for (const json& sample : run["samples"]) times.push_back(sample["t"]);
+    EXPECT_EQ(times, (std::vector{0.5, 0.75, 1.0})) << answer.err;
+}
+
 TEST(Data, InstantsThatCannotBeAreBadInput) {
     const Folder folder;
     folder.put("t.txt", "3\n21\n");

@@ -102,7 +102,9 @@ void add_simulate(CLI::App& program, int& status) {
     command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
         ->required()
         ->type_name("");
-    command->add_option("--json", arguments->json, "where to write the trajectory as JSON, instead of the summary; - is standard output")
+    command
+        ->add_option("--json", arguments->json,
+                     "where to write the trajectory as JSON, instead of the summary; - is standard output")
         ->type_name("F");
     command->add_option("--csv", arguments->csv, "the same as CSV: times in s, angles in rad")->type_name("F");
     command

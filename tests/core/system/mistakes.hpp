@@ -1,6 +1,7 @@
 // A system file without a mistake, into which tests put some.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,5 +50,12 @@ inline std::string changed(std::string text, const std::vector<std::pair<std::st
     }
     return text;
 }
+
+// One change of the good text, and all that is told about it.
+struct Change {
+    std::string from, to, message;
+};
+
+inline void PrintTo(const Change& change, std::ostream* out) { *out << change.to; }
 
 }  // namespace achilles::test

@@ -1,24 +1,15 @@
 // Every kind of mistake in a system file, alone: the exact text, its place and its caret.
 #include <gtest/gtest.h>
 
-#include <ostream>
-
 #include "core/system/mistakes.hpp"
 #include "core/systems.hpp"
 
 namespace achilles {
 namespace {
 
-using test::changed, test::good, test::told;
+using test::Change, test::changed, test::good, test::told;
 
 TEST(GoodText, HasNoMistake) { EXPECT_EQ(told(good), ""); }
-
-// One change of the good text, and all that is told about it.
-struct Change {
-    std::string from, to, message;
-};
-
-void PrintTo(const Change& change, std::ostream* out) { *out << change.to; }
 
 class Mistakes : public testing::TestWithParam<Change> {};
 
@@ -40,73 +31,6 @@ const Change in_toml[] = {
     {"start = 1\n", "start = 1e\n",
      "f.toml:4:11: not valid TOML: expected decimal digit, saw '\\n'\n    start = 1e\n              ^"},
 };
-// What would be right, in a line of its own.
-const Change with_advice[] = {
-    {"\"m*x\"\n", "\"m*x\n",
-     "f.toml:16:17: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly prohibited\n   "
-     " potential = \"m*x\n                    ^\na text ends with a quote: potential = \"m*x\""},
-    {"\"drop\"", "\u201cdrop\u201d",
-     "f.toml:1:9: not valid TOML: could not determine value type\n    title = \u201cdrop\u201d\n            ^\nwrite "
-     "the "
-     "quotes of the keyboard, \""},
-    {"\"drop\"", "\"a \"big\" drop\"",
-     "f.toml:1:13: not valid TOML: expected a comment or whitespace, saw 'b'\n    title = \"a \"big\" drop\"\n         "
-     "  "
-     "     ^\na quote inside a text is written \\\""},
-    {"\"m/2*(x'^2 + theta'^2)\"", "'m/2*x'^2'",
-     "f.toml:15:18: not valid TOML: expected a comment or whitespace, saw '^'\n    kinetic = 'm/2*x'^2'\n              "
-     " "
-     "      ^\na text with a prime in it stands in double quotes: kinetic = \"m/2*x'^2\""},
-    {"restitution = \"e\"", "restitution = e",
-     "f.toml:19:15: not valid TOML: could not determine value type\n    restitution = e\n                  ^\nput it "
-     "in "
-     "quotes: restitution = \"e\""},
-    {"start = 1\n", "start = .5\n",
-     "f.toml:4:9: not valid TOML: expected decimal digit, saw '.'\n    start = .5\n            ^\nwrite the number "
-     "alone: "
-     "start = 0.5"},
-    {"start = 1\n", "start = \u22121\n",
-     "f.toml:4:9: not valid TOML: could not determine value type\n    start = \u22121\n            ^\nwrite the number "
-     "alone: start = -1"},
-    {"start = 1\n", "start: 1\n",
-     "f.toml:4:6: not valid TOML: expected '=', saw ':'\n    start: 1\n         ^\nwrite an equals sign: start = 1"},
-    {"[truncation]", "[run]",
-     "f.toml:22:1: not valid TOML: cannot redefine existing table 'run'\n    [run]\n    ^\nits keys stand in one "
-     "table: put "
-     "them together"},
-    {"[[coordinate]]", "[coordinate]",
-     "f.toml:6:1: not valid TOML: cannot redefine existing table 'coordinate' as array-of-tables\n    [[coordinate]]\n "
-     "   "
-     "^\nwrite [[coordinate]] each time: one above has single brackets"},
-    {"[[constraint]]", "[constraints]",
-     "f.toml:17:2: unknown key 'constraints' in a system file; did you mean 'constraint'?\n    [constraints]\n     "
-     "^\nwrite "
-     "[[constraint]], once for each"},
-    {"gap = \"x", "h = \"x",
-     "f.toml:18:1: unknown key 'h' in [[constraint]]; did you mean 'gap'?\n    h = \"x - sin(theta)/9\"\n    ^\nknown "
-     "here: "
-     "name, gap, restitution, drawing"},
-    {"rate = 0.5", "velocity = 0.5",
-     "f.toml:5:1: unknown key 'velocity' in [[coordinate]]; did you mean 'rate'?\n    velocity = 0.5\n    ^\nknown "
-     "here: "
-     "name, start, rate, force, unit, range, rate_range"},
-    {"name = \"theta\"", "name = \"theta\"\nunit = \"radians\"",
-     "f.toml:8:9: the unit 'radians' is not known\n    unit = \"radians\"\n            ^\nwrite unit = \"rad\", and "
-     "values "
-     "in degrees as \"30 deg\""},
-    {"start = 1\n", "start = \"1.0 m\"\n",
-     "f.toml:4:14: 'start' in [[coordinate]]: '1.0 m' is not a finite number: 'm' may not follow a number: a unit "
-     "stands in "
-     "the key unit, and a product is written with '*'\n    start = \"1.0 m\"\n                 ^"},
-    {"value = 2\n", "value = \"5 s\"\n",
-     "f.toml:10:12: 's' may not follow a number: a unit stands in the key unit, and a product is written with '*'\n    "
-     "value = \"5 s\"\n               ^"},
-    {"rate = 0.5", "rate = \"20 deg\"\nunit = \"m\"",
-     "f.toml:5:12: 'rate' in [[coordinate]]: '20 deg' is not a finite number: 'deg' may follow a number where the unit "
-     "is "
-     "rad, and here it is m/s\n    rate = \"20 deg\"\n               ^"},
-};
-INSTANTIATE_TEST_SUITE_P(Advice, Mistakes, testing::ValuesIn(with_advice));
 INSTANTIATE_TEST_SUITE_P(Toml, Mistakes, testing::ValuesIn(in_toml));
 
 const Change in_keys[] = {
@@ -338,32 +262,6 @@ const Change in_expression[] = {
      "f.toml:16:15: an operator is missing here; write '*' for a product\n    potential = \"2x\"\n                  ^"},
     {"\"m*x\"", "\"m*x +\"",
      "f.toml:16:19: the expression ends where a value is expected\n    potential = \"m*x +\"\n                      ^"},
-    {"\"m*x\"", "\"m\u00b7x\"",
-     "f.toml:16:15: unexpected '\u00b7'; write '*' for a product\n    potential = \"m\u00b7x\"\n                  ^"},
-    {"\"m*x\"", "\"m*x\u00b2\"",
-     "f.toml:16:17: unexpected '\u00b2'; write ^2\n    potential = \"m*x\u00b2\"\n                    ^"},
-    {"\"m*x\"", "\"m*x \u2212 1\"",
-     "f.toml:16:18: unexpected '\u2212'; write the minus sign of the keyboard, -\n    potential = \"m*x \u2212 1\"\n   "
-     "     "
-     "             ^"},
-    {"\"m*x\"", "\"m.*x\"", "f.toml:16:15: unexpected '.'; write '*'\n    potential = \"m.*x\"\n                  ^"},
-    {"\"m*x\"", "\"pi()*x\"",
-     "f.toml:16:14: 'pi' is not a function; write '*' for a product\n    potential = \"pi()*x\"\n                 ^"},
-    {"\"m*x\"", "\"pow(x, 2)\"",
-     "f.toml:16:14: unknown function 'pow'; a power is written x^2\n    potential = \"pow(x, 2)\"\n                 ^"},
-    {"\"m*x\"", "\"np.sin(x)\"",
-     "f.toml:16:14: unknown name 'np'; functions stand alone: sin(x)\n    potential = \"np.sin(x)\"\n                 "
-     "^"},
-    {"\"x - sin(theta)/9\"", "\"x >= 0\"",
-     "f.toml:18:10: unexpected '>'; an expression stands alone: a gap is open where it is positive\n    gap = \"x >= "
-     "0\"\n    "
-     "         ^"},
-    {"y = [\"gap'\"]", "y = [\"h\", \"v\", \"E\"]",
-     "f.toml:31:7: unknown name 'h'; the gap is called gap\n    y = [\"h\", \"v\", \"E\"]\n          "
-     "^\n\nf.toml:31:12: "
-     "unknown name 'v'; rates are written theta'\n    y = [\"h\", \"v\", \"E\"]\n               ^\n\nf.toml:31:17: "
-     "unknown "
-     "name 'E'; it is called energy\n    y = [\"h\", \"v\", \"E\"]\n                    ^"},
     {"\"m*x\"", "\"m**x\"",
      "f.toml:16:15: unknown operator '**'; write '^' for a power\n    potential = \"m**x\"\n                  ^"},
     {"\"m*x\"", "\"m*x^theta\"",
