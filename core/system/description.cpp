@@ -136,6 +136,25 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
     return told;
 }
 
+std::vector<std::string> unseen_lines(const SystemDescription& description) {
+    constexpr double least = 0.25;  // pixels: fainter than a tenth of what is usual
+    std::vector<std::string> told;
+    for (const DrawingDescription& drawing : description.drawings) {
+        double width = 0.0;
+        try {
+            width = read_number(drawing.width.text).value;
+        } catch (const ParseError&) {  // none is written, or one that follows from parameters
+            continue;
+        }
+        if (width > 0.0 && width < least)
+            told.push_back(
+                fmt::format("line {}: a width of {} cannot be seen: it is in pixels, not in the units of "
+                            "the points; without one it is 2",
+                            drawing.width.at.line, width));
+    }
+    return told;
+}
+
 void assign(Run& run, const SystemDescription& description, std::string_view name_value) {
     const auto refuse = [&](const std::string& why, const std::string& hint = {}) {
         return InputError("--set " + shown(name_value), {}, why, hint);

@@ -169,6 +169,8 @@ std::string rate_unit(const std::string& unit);
 std::string unit_of(const SystemDescription& description, std::string_view name);
 // A sentence for each value outside the range that the file gives it: no mistake, but perhaps not what was meant.
 std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run);
+// A sentence for each line that is drawn too thin to be seen: its width was probably meant in the units of the world.
+std::vector<std::string> unseen_lines(const SystemDescription& description);
 // Assigns "NAME=VALUE" as --set does. Throws InputError without a location, and leaves the run as it is.
 void assign(Run& run, const SystemDescription& description, std::string_view name_value);
 

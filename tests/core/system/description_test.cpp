@@ -371,6 +371,19 @@ TEST(Description, values_outside_a_range_of_the_file_are_told) {
                                         "L = 2 m is outside its range, 0.1 to 1"}));
 }
 
+TEST(Description, lines_too_thin_to_be_seen_are_told) {
+    std::string text = arm;
+    text += "\n[[drawing]]\nshape = \"segment\"\nfrom = [\"0\", \"0\"]\nto = [\"1\", \"0\"]\nwidth = ";
+    const auto line = std::count(text.begin(), text.end(), '\n') + 1;
+    for (const char* width : {"0.02", "\"1/50\""})
+        EXPECT_EQ(unseen_lines(parse_system(text + width + "\n")),
+                  (std::vector<std::string>{"line " + std::to_string(line) +
+                                            ": a width of 0.02 cannot be seen: it is in pixels, not in the units of "
+                                            "the points; without one it is 2"}));
+    for (const char* width : {"0", "0.5", "\"L/50\""})  // no line is meant; a fine one; what a slider moves
+        EXPECT_TRUE(unseen_lines(parse_system(text + width + "\n")).empty()) << width;
+}
+
 std::string reading_error(const std::filesystem::path& file) {
     try {
         read_system(file);
