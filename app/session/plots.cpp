@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "figure/ticks.hpp"
 #include "session/refusal.hpp"
@@ -24,13 +25,6 @@ ViewDescription view_of(const std::string& name, const std::string& x, const std
 bool same_expressions(const ViewDescription& a, const ViewDescription& b) {
     return a.x.text == b.x.text && std::equal(a.y.begin(), a.y.end(), b.y.begin(), b.y.end(),
                                               [](const Text& p, const Text& q) { return p.text == q.text; });
-}
-
-// What a plot is called that no file names.
-std::string name_of(const ViewDescription& view) {
-    std::string name;
-    for (const Text& y : view.y) name += (name.empty() ? "" : ", ") + y.text;
-    return view.x.text == "t" ? name : name + " over " + view.x.text;
 }
 
 // What any system can be looked at by: every coordinate and rate over time, the phase planes, the planes of two
@@ -248,6 +242,13 @@ Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, cons
         curve.stroke = pinned_stroke(theme, curve.stroke);
     }
     panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
+    // Each knows what it cannot cross as far as its own limits.
+    if (!panel.boundary.points.empty() && !pinned.boundary.points.empty()) {
+        constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+        panel.boundary.points.push_back({gap, gap});
+        panel.boundary.points.insert(panel.boundary.points.end(), pinned.boundary.points.begin(),
+                                     pinned.boundary.points.end());
+    }
     if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
     if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
     return panel;

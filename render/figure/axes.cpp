@@ -37,7 +37,8 @@ struct Placed {
     bool labelled;  // false also where its label would touch another
 };
 
-// Of ticks with labels `length` long only every second, third, ... keeps its label, as room demands; zero always does.
+// Of ticks with labels `length` long only every second, third, ... keeps its label, as room demands; zero does, unless it
+// would be the only one: two tell the scale.
 void drop_labels(std::vector<Placed>& ticks, float length) {
     std::vector<Placed*> labelled;
     for (Placed& p : ticks)
@@ -50,7 +51,9 @@ void drop_labels(std::vector<Placed>& ticks, float length) {
     }
     const auto every = static_cast<std::size_t>(std::clamp(std::ceil(length / std::max(nearest, 1.0F)), 1.0F,
                                                            std::max(static_cast<float>(labelled.size()), 1.0F)));
-    for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == zero % every;
+    std::size_t first = zero % every;
+    if (first + every >= labelled.size() && every < labelled.size()) first = 0;
+    for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == first;
 }
 
 // Ticks without labels go where they would be a comb.
@@ -63,9 +66,9 @@ void drop_minor(std::vector<Placed>& ticks, float closest) {
 }
 
 // The ticks within the plot's side, which runs from `from` to `to` in pixels.
-// `length`: of the labels along the axis. `closest`: how near ticks may be.
+// `length`: of the labels along the axis. `closest`: how near ticks may be. No label stands beyond `last`.
 std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
-                           float closest) {
+                           float closest, float last = std::numeric_limits<float>::infinity()) {
     std::vector<Placed> result;
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
@@ -73,7 +76,7 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
         // Next to a corner a tick continues the box, rather than lie beside its line.
         const auto first = static_cast<float>(std::round(at - line / 2.0));
         const float snapped = first < from + line ? from - line : first > to - 2.0F * line ? to : first;
-        result.push_back({&tick, snapped, !tick.label.empty()});
+        result.push_back({&tick, snapped, !tick.label.empty() && snapped <= last});
     }
     drop_labels(result, length);
     drop_minor(result, closest);
@@ -85,17 +88,25 @@ std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m
                   widest_label(panel.x, m) + m.text * 0.7F, m.text * closest_ticks);
 }
 
+// Above time bars the lowest numbers keep clear of the first name.
 std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
-    return placed(panel.y, PanelMap(panel, plot).y, plot.y, plot.y + plot.height, m.line, m.text * 1.2F,
-                  m.text * closest_ticks);
+    const float bottom = plot.y + plot.height;
+    return placed(panel.y, PanelMap(panel, plot).y, plot.y, bottom, m.line, m.text * 1.2F, m.text * closest_ticks,
+                  panel.time_bars.empty() ? bottom + m.text : bottom - 0.35F * m.text);
 }
 
 // Of the names of time bars: smaller than what is on the axes.
 float name_size(const Metrics& m) { return std::max(std::round(0.9F * m.text), m.smallest_text); }
 
+// Long ones are cut: the plot is what the room is for.
+std::string bar_name(const TimeBar& one, const Metrics& m) {
+    const float most = 6.0F * m.text;
+    return shortened(one.label, [&](const std::string& label) { return m.width(label, name_size(m)) <= most; });
+}
+
 float widest_name(const Panel& panel, const Metrics& m) {
     float width = 0.0F;
-    for (const TimeBar& one : panel.time_bars) width = std::max(width, m.width(one.label, name_size(m)));
+    for (const TimeBar& one : panel.time_bars) width = std::max(width, m.width(bar_name(one, m), name_size(m)));
     return width;
 }
 
@@ -106,20 +117,13 @@ struct Fitted {
 };
 
 // Smaller, if need be: the size of indices, for which there are letters, and other sizes, for which letters are
-// stretched, only below it. What is too long at the smallest size loses its last words, but not its unit.
+// stretched, only below it. What is too long at the smallest size is shortened.
 Fitted fitting(const std::string& label, const Metrics& m, float room) {
     const float width = m.width(label, m.text), small = std::round(m.text * script_size);
     if (width <= room) return {label, m.text};
     if (small >= m.smallest_text && m.width(label, small) <= room) return {label, small};
     const float size = std::max(m.text * room / width, m.smallest_text);
-    const std::size_t open = label.ends_with(')') ? label.rfind(" (") : std::string::npos;
-    const std::string unit = open == std::string::npos ? "" : label.substr(open);
-    std::string words = label.substr(0, open), shorter = label;
-    while (m.width(shorter, size) > room && words.rfind(' ') != std::string::npos) {
-        words.resize(words.rfind(' '));
-        shorter = words + "\u2026" + unit;
-    }
-    return {shorter, size};
+    return {shortened(label, [&](const std::string& text) { return m.width(text, size) <= room; }), size};
 }
 
 void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float strip,
@@ -141,7 +145,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
         TextRun{at, plot.y + plot.height + strip + room.bottom - m.text * 1.1F, 0.5F, label, style.ink, size});
 }
 
-void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float strip,
            const Metrics& m) {
     const float left = plot.x - m.line;
     for (const Placed& p : ticks_y(panel, plot, m)) {
@@ -153,11 +157,11 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
                                        p.tick->label, style.ink, m.text});
     }
     if (panel.y.label.empty() || !panel.y.labelled) return;
-    const auto [label, size] = fitting(panel.y.label, m, plot.height + room.top);
+    const auto [label, size] = fitting(panel.y.label, m, plot.height + strip + room.top);
     const float half = m.width(label, size) / 2.0F;
     // It ends above the line of the x axis' label.
     const bool above = panel.x.label.empty() || !panel.x.labelled;
-    const float lowest = plot.y + plot.height + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
+    const float lowest = plot.y + plot.height + strip + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
     const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
     sheet.emplace_back(TextRun{plot.x - room.left, at, 0.5F, label, style.ink, size, true});
 }
@@ -256,8 +260,8 @@ void lay_time_bars(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
                     mark.color);
         }
         if (row >= 0.75F * size)
-            sheet.emplace_back(
-                TextRun{left - m.line - m.tick - m.gap, y + 0.5F * (row - size), 1.0F, one.label, style.ink, size});
+            sheet.emplace_back(TextRun{left - m.line - m.tick - m.gap, y + 0.5F * (row - size), 1.0F, bar_name(one, m),
+                                       style.ink, size});
         y += row;
     }
 }
@@ -271,7 +275,7 @@ void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     bar(sheet, plot.x - m.line, plot.y, m.line, plot.height + strip, style.ink);
     bar(sheet, plot.x + plot.width, plot.y, m.line, plot.height + strip, style.ink);
     lay_x(panel, style, sheet, plot, room, strip, m);
-    lay_y(panel, style, sheet, plot, room, m);
+    lay_y(panel, style, sheet, plot, room, strip, m);
     if (panel.title.empty()) return;
     const auto [title, size] = fitting(panel.title, m, plot.width + room.right);
     sheet.emplace_back(TextRun{plot.x - m.line, plot.y - m.line - m.gap - m.text - lift, 0.0F, title, style.ink, size});

@@ -10,10 +10,8 @@
 #include "figure/label.hpp"
 #include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
-#include "number/angle.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
-#include "system/units.hpp"
 
 namespace achilles {
 
@@ -59,43 +57,6 @@ Sample sample_at(const Event& event) {
     sample.held = event.held;
     sample.contact = !event.held.empty();
     return sample;
-}
-
-PreparedView::PreparedView(const Model& model, const ViewDescription& view) : name_(view.name), label_(view.label) {
-    std::vector<Text> texts{view.x};
-    texts.insert(texts.end(), view.y.begin(), view.y.end());
-    program_ = model.compile_view(texts);
-    for (const Text& text : texts)
-        quantities_.push_back(quantity(model.description(), text.text, quantities_.empty() ? "" : view.unit));
-    constexpr std::size_t most_names = 3;
-    for (std::size_t i = 1; i < quantities_.size() && view.label.empty() && view.y.size() <= most_names; ++i)
-        label_ += (i > 1 ? ", " : "") + quantities_[i].label;
-    if (!view.label.empty() && view.y.size() == 1) quantities_[1].label = view.label;
-}
-
-std::string PreparedView::unit() const {
-    const auto other = [&](const Quantity& quantity) { return quantity.unit != quantities_[1].unit; };
-    return std::any_of(quantities_.begin() + 1, quantities_.end(), other) ? "" : quantities_[1].unit;
-}
-
-PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written,
-                                              const std::string& unit) {
-    const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
-    const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
-    Quantity result{typeset(text), unit, 1.0, text == "t"};
-    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
-        const CoordinateDescription& c = description.coordinates[i];
-        if (text == c.name) result.coordinate = i;
-        // Whatever the unit is called, a rate's is so much a second.
-        if (unit.empty() && (text == c.name || text == c.name + "'")) result.unit = unit_of(description, text);
-    }
-    if (result.unit.empty()) result.unit = unit_of_expression(description, text);
-    if (result.unit == "rad" || result.unit.starts_with("rad/")) {
-        result.factor = degrees(1.0);
-        result.unit.replace(0, 3, "\u00B0");
-    }
-    result.unit = typeset_unit(result.unit);
-    return result;
 }
 
 std::vector<Sample> plot_samples(const Trajectory& trajectory) {
@@ -236,6 +197,43 @@ std::vector<Point> thinned(const std::vector<Point>& points, const Axis& x, doub
     return result;
 }
 
+// A curve of several is named where it is drawn: one that is in contact all the time is not dashed in the legend.
+void name_drawn(Panel& panel) {
+    for (std::size_t i = 0; i + 1 < panel.curves.size(); i += 2)
+        if (panel.curves[i].points.empty() && panel.curves[i + 1].label.empty())
+            std::swap(panel.curves[i].label, panel.curves[i + 1].label);
+}
+
+// How far the quantities that are drawn upwards are off where coordinates and rates are off by the rounding of their
+// ranges' size: what varies by less is at rest.
+double noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {
+    constexpr double rounding = 1e-14;
+    constexpr std::size_t looked_at = 8;
+    const auto& coordinates = trajectory.model->description().coordinates;
+    const auto size = [](const std::array<double, 2>& range) {
+        return std::max(std::abs(range[0]), std::abs(range[1]));
+    };
+    double most = 0.0;
+    for (std::size_t k = 0; k < std::min(samples.size(), looked_at); ++k) {
+        Sample sample = samples[k * (samples.size() - 1) / std::max<std::size_t>(1, looked_at - 1)];
+        std::vector<double> here(count + 1), off(count + 1);
+        values.set(sample);
+        for (std::size_t i = 1; i <= count; ++i) here[i] = values[i];
+        for (std::size_t c = 0; c < 2 * coordinates.size(); ++c) {
+            const auto at = static_cast<Eigen::Index>(c / 2);
+            double& moved = c % 2 == 0 ? sample.state.q[at] : sample.state.v[at];
+            const double before = moved;
+            moved += rounding * size(c % 2 == 0 ? coordinates[c / 2].range : coordinates[c / 2].rate_range);
+            values.set(sample);
+            moved = before;
+            for (std::size_t i = 1; i <= count; ++i) off[i] += std::abs(values[i] - here[i]);
+        }
+        for (std::size_t i = 1; i <= count; ++i)
+            if (std::isfinite(off[i])) most = std::max(most, off[i]);
+    }
+    return most;
+}
+
 // A run of very many impacts has more points than a screen shows; short runs keep every one.
 void thin(Panel& panel) {
     constexpr std::size_t many_points = 20000, many_markers = 8000;
@@ -315,7 +313,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     const auto& quantities = view.quantities();
     const bool over_time = quantities[0].is_time, single = quantities.size() == 2;
     Panel panel;
-    panel.title = view.name();
+    panel.title = view.title();
     Values values(view, trajectory);
     panel.x.logarithmic = framing.log_x;
     panel.y.logarithmic = framing.log_y;
@@ -324,6 +322,12 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     y_range.positive = framing.log_y;
     add_curves(panel, view, theme);
     trace(panel, samples, values, framing, x_range, y_range);
+    if (!single) name_drawn(panel);
+    if (const double noise = noise_of(trajectory, samples, values, quantities.size() - 1);
+        y_range.high - y_range.low <= noise) {
+        const double middle = 0.5 * (y_range.low + y_range.high);
+        y_range.low = y_range.high = std::abs(middle) <= noise ? 0.0 : middle;
+    }
     const bool several = trajectory.model->contacts() > 1 && !samples.empty();
     if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
     if (several) add_opened(panel, trajectory, samples.back().t, values, framing, theme);

@@ -26,7 +26,7 @@ class PreparedView {
         bool is_time = false;
         std::optional<std::size_t> coordinate{};  // if it is one: its number
     };
-    const std::string& name() const { return name_; }
+    const std::string& title() const { return title_; }
     const Program& program() const { return program_; }
     const std::vector<Quantity>& quantities() const { return quantities_; }  // x, then every y
     // What the y axis is called: as the file says, else a curve's name, or those of two or three.
@@ -37,10 +37,15 @@ class PreparedView {
  private:
     static Quantity quantity(const SystemDescription& description, const std::string& written, const std::string& unit);
 
-    std::string name_, label_;
+    std::string title_, label_;
     Program program_;  // x, then every y
     std::vector<Quantity> quantities_;
 };
+
+// What a view is called that no file names: "y, z over x", as they are written.
+std::string name_of(const ViewDescription& view);
+// What stands over its plot: its name, set as a formula where that is what is plotted.
+std::string title_of(const ViewDescription& view);
 
 // The samples a plot needs: dense enough to look smooth, bounded for any number of impacts. All panels share them.
 std::vector<Sample> plot_samples(const Trajectory& trajectory);

@@ -85,12 +85,19 @@ std::string italic(const std::string& word) {
     return word;
 }
 
-// A name in a label: x_ball has an index of letters.
+// Where the index of letters of x_ball or lambda_knee begins; 0 where there is none. In front of it stands one letter: a
+// word with a bar in it is a word.
+std::size_t bar_of(const Name& name) {
+    const std::size_t bar = name.word.find('_');
+    if (bar == std::string_view::npos || bar + 1 == name.word.size()) return 0;
+    return letters(sign_of(name.word.substr(0, bar))).size() == 1 ? bar : 0;
+}
+
+// A name in a label.
 std::string variable(std::string_view text) {
     const Name name(text);
-    const std::size_t bar = name.word.find('_');
-    if (bar == 0 || bar == std::string_view::npos || bar + 1 == name.word.size())
-        return italic(sign_of(name.word)) + dots_of(name) + index_of(name.digits);
+    const std::size_t bar = bar_of(name);
+    if (bar == 0) return italic(sign_of(name.word)) + dots_of(name) + index_of(name.digits);
     const std::string index = sign_of(name.word.substr(bar + 1)) + std::string(name.digits);
     return italic(sign_of(name.word.substr(0, bar))) + dots_of(name) + "_{" + index + "}";
 }
@@ -119,7 +126,10 @@ std::string utf8(char32_t c) {
 
 std::string typeset_name(std::string_view text) {
     const Name name(text);
-    return sign_of(name.word) + dots_of(name) + index_of(name.digits);
+    const std::size_t bar = bar_of(name);
+    if (bar == 0) return sign_of(name.word) + dots_of(name) + index_of(name.digits);
+    return sign_of(name.word.substr(0, bar)) + dots_of(name) + "_" + std::string(name.word.substr(bar + 1)) +
+           index_of(name.digits);
 }
 
 std::string typeset(std::string_view expression) {
@@ -160,6 +170,38 @@ std::string typeset_unit(std::string_view unit) {
 
 std::string with_unit(const std::string& label, const std::string& unit) {
     return unit.empty() ? label : label + " (" + unit + ")";
+}
+
+namespace {
+
+// The first `size` bytes of a label, with an ellipsis; an index that is cut is closed.
+std::string beginning(const std::string& label, std::size_t size) {
+    std::string text = label.substr(0, size);
+    const std::size_t open = text.rfind('{');
+    const bool inside = open != std::string::npos && text.find('}', open) == std::string::npos;
+    if (inside && open + 1 == text.size()) return text.substr(0, open - 1) + "\u2026";
+    return text + "\u2026" + (inside ? "}" : "");
+}
+
+}  // namespace
+
+std::string shortened(const std::string& label, const std::function<bool(const std::string&)>& fits, Cut cut) {
+    if (fits(label)) return label;
+    const std::size_t open = label.ends_with(')') ? label.rfind(" (") : std::string::npos;
+    const std::string words = label.substr(0, open), unit = open == std::string::npos ? "" : label.substr(open);
+    std::string shorter;
+    for (std::size_t end = words.rfind(' '); cut == Cut::words && end != std::string::npos && end > 0;
+         end = words.rfind(' ', end - 1))
+        if (shorter = beginning(words, end) + unit; fits(shorter)) return shorter;
+    for (std::size_t end = words.size(); end > 0;) {
+        do --end;
+        while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0) == 0x80);
+        if (end == 0) break;
+        const bool in_sign = words[end] == '{' || (end + 1 < words.size() && words[end + 1] == '{');
+        if (in_sign) continue;
+        if (shorter = beginning(words, end) + unit; fits(shorter)) return shorter;
+    }
+    return shorter.empty() ? label : shorter;
 }
 
 char32_t next_code_point(std::string_view text, std::size_t& at) {

@@ -5,6 +5,7 @@
 // _{...}.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +22,12 @@ std::string typeset(std::string_view expression);
 std::string typeset_unit(std::string_view unit);
 // "label (unit)", or the label alone.
 std::string with_unit(const std::string& label, const std::string& unit);
+
+// As much of a label as fits, with an ellipsis where its end is left out: whole words as long as there are some, then letters,
+// or letters at once. A unit in brackets at its end stays.
+enum class Cut { words, letters };
+std::string shortened(const std::string& label, const std::function<bool(const std::string&)>& fits,
+                      Cut cut = Cut::words);
 
 // A label taken apart, for whoever draws it.
 struct Letter {

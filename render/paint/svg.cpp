@@ -64,12 +64,16 @@ class Writer {
         if (points.empty()) return;
         body_ += fmt::format("<g clip-path=\"url(#{})\"{} stroke-width=\"{}\">\n", clip(path.clip),
                              color("stroke", stroke.color), number(stroke.width));
+        // Solid pieces are one path: where they lie on one another, as those of a periodic motion do, the soft edges of
+        // many would add up to hard ones.
+        if (stroke.dash.empty()) body_ += "<path d=\"";
         double length = 0.0;  // so far, along the curve: dashes do not begin anew after a break
         for (auto begin = points.begin(); begin != points.end();) {
             const auto end = std::find_if_not(begin, points.end(), is_finite);
             if (begin != end) write_piece(begin, end, stroke, length);
             begin = end == points.end() ? end : end + 1;
         }
+        if (stroke.dash.empty()) body_ += "\"/>\n";
         body_ += "</g>\n";
     }
 
@@ -125,19 +129,18 @@ class Writer {
         return cut(path.points, {-far, -far, far, far}, {}, 0.0);
     }
 
+    // A part of the path that is open, or a path of its own with its dashes.
     void write_piece(Points begin, Points end, const Stroke& stroke, double& length) {
-        body_ += "<path d=\"M";
+        const bool is_dashed = !stroke.dash.empty();
+        body_ += is_dashed ? "<path d=\"M" : body_.back() == '"' ? "M" : " M";
         for (Points p = begin; p != end; ++p) body_ += (p == begin ? "" : " ") + number(p->x) + "," + number(p->y);
-        body_ += "\"";
-        if (!stroke.dash.empty()) {
-            // Strokes have round ends, which stick out by half their width: the dashes are that much shorter.
-            body_ += " stroke-dasharray=\"";
-            for (std::size_t i = 0; i < stroke.dash.size(); ++i)
-                body_ += (i == 0 ? "" : ",") +
-                         number(std::max(stroke.dash[i] + (i % 2 == 0 ? -1.0 : 1.0) * stroke.width, 0.0));
-            body_ += fmt::format("\" stroke-dashoffset=\"{}\"", number(length - stroke.width / 2.0));
-        }
-        body_ += "/>\n";
+        if (!is_dashed) return;
+        // Strokes have round ends, which stick out by half their width: the dashes are that much shorter.
+        body_ += "\" stroke-dasharray=\"";
+        for (std::size_t i = 0; i < stroke.dash.size(); ++i)
+            body_ +=
+                (i == 0 ? "" : ",") + number(std::max(stroke.dash[i] + (i % 2 == 0 ? -1.0 : 1.0) * stroke.width, 0.0));
+        body_ += fmt::format("\" stroke-dashoffset=\"{}\"/>\n", number(length - stroke.width / 2.0));
         for (Points p = begin; p + 1 < end; ++p) length += std::hypot((p + 1)->x - p->x, (p + 1)->y - p->y);
     }
 

@@ -34,6 +34,10 @@ TEST(Labels, NamesBecomeSymbols) {
     EXPECT_EQ(typeset("2*e"), "2·𝑒");
     EXPECT_EQ(typeset("sin(x_ball)^12/(2*pi) + (x')^2.5"), "sin(𝑥_{ball})¹²/(2·π) + (𝑥\u0307)^2.5");
     EXPECT_EQ(typeset("h + _1*v_max2 - mass"), "ℎ + _1·𝑣_{max2} − mass");
+    // An index of letters belongs to a letter; words with a bar are words, wherever they stand.
+    EXPECT_EQ(typeset("lambda_knee + near_left"), "𝜆_{knee} + near_left");
+    EXPECT_EQ(typeset_name("lambda_knee"), "λ_knee");
+    EXPECT_EQ(typeset_name("near_left"), "near_left");
     EXPECT_EQ(typeset_unit("kg*m^2/s^2"), "kg·m²/s²");
     EXPECT_EQ(typeset_unit("m^0.5^"), "m^0.5^");
     EXPECT_EQ(with_unit("h", ""), "h");
@@ -47,6 +51,23 @@ std::string labels(double low, double high, double margin = 0.0, int most = 6) {
     for (const Tick& tick : axis.ticks)
         if (!tick.label.empty()) text += (text.empty() ? "" : " ") + tick.label;
     return text;
+}
+
+TEST(Label, is_shortened_by_words_then_letters_and_keeps_its_unit) {
+    const auto fitting = [](std::size_t room, Cut cut = Cut::words) {
+        return [room, cut](const std::string& label) {
+            return shortened(
+                label, [room](const std::string& text) { return letters(text).size() <= room; }, cut);
+        };
+    };
+    EXPECT_EQ(fitting(30)("moment of the stop (N)"), "moment of the stop (N)");
+    EXPECT_EQ(fitting(18)("moment of the stop (N)"), "moment of the… (N)");
+    EXPECT_EQ(fitting(18, Cut::letters)("moment of the stop (N)"), "moment of the… (N)");
+    EXPECT_EQ(fitting(12)("displacement (m)"), "displac… (m)");
+    EXPECT_EQ(fitting(8)("𝜆_{near_left} (N)"), "𝜆_{ne…} (N)");
+    EXPECT_EQ(fitting(2)("𝜆_{near_left}"), "𝜆…");
+    EXPECT_EQ(fitting(0)("θθ"), "θ…") << "not less than a letter";
+    EXPECT_EQ(fitting(0)(""), "");
 }
 
 TEST(Label, is_taken_apart_into_letters) {
@@ -219,6 +240,38 @@ TEST(Composing, ALegendHidesNoCurve) {
             }
         }
     }
+}
+
+// What is at rest is drawn so: an axis does not grow until rounding errors fill it, whatever the scale of the system is.
+TEST(Composing, RoundingErrorsAreNoMotion) {
+    const auto drawn = [](const std::string& name, const std::string& y) {
+        const auto system = test::load(name);
+        ViewDescription view;
+        view.x.text = "t";
+        view.y.emplace_back().text = y;
+        const Trajectory run = simulate(system, system->default_run());
+        return compose(run, plot_samples(run), PreparedView(*system, view), light_theme());
+    };
+    for (const char* y : {"phi", "gap_near_left", "phi - psi"}) {
+        const Panel panel = drawn("table_on_legs", y);
+        EXPECT_EQ(panel.y.low, -1.0) << y;
+        EXPECT_EQ(panel.y.high, 1.0) << y;
+    }
+    EXPECT_EQ(drawn("box_dropped_flat", "phi").y.high, 1.0);
+    EXPECT_LT(drawn("ball_on_sine", "1e-9*y").y.high, 3e-9) << "small is not nothing";
+    EXPECT_LT(drawn("ball_on_sine", "1e-30*energy + 1e-30*y").y.high, 3e-30 * 2);
+}
+
+// The name of a curve stands beside what is drawn of it.
+TEST(Composing, ALegendShowsTheCurveAsItIs) {
+    const auto system = test::load("table_on_legs");
+    ViewDescription view;
+    view.x.text = "t";
+    view.y.emplace_back().text = "energy";
+    view.y.emplace_back().text = "loss";
+    const Trajectory run = simulate(system, system->default_run());
+    const Panel panel = compose(run, plot_samples(run), PreparedView(*system, view), light_theme());
+    for (const Curve& curve : panel.curves) EXPECT_EQ(curve.label.empty(), curve.points.empty());
 }
 
 TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {

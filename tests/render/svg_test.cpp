@@ -133,7 +133,7 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
         const Image ours = surface.frame([&] {
             paint(bare, ImGui::GetBackgroundDrawList(), {0, 0, 1200, 800}, publication_scale);
         });
-        EXPECT_LT(worst_tile(read_png(file.string() + ".png"), ours), 0.025) << entry.path();
+        EXPECT_LT(worst_tile(read_png(file.string() + ".png"), ours), 0.015) << entry.path();
         ++systems;
     }
     EXPECT_GE(systems, 15);
