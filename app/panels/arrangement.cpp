@@ -10,7 +10,7 @@ namespace {
 // Lengths at scale 1. Below these widths and heights a panel cannot be read.
 constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
                 least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F,
-                least_plane = 230.0F, least_plot = 110.0F;
+                least_plane = 230.0F, least_world = 90.0F, least_plot = 110.0F;
 
 // What the user asked for, or what fits; whole pixels, at least `least`, and where there is room for both also at most
 // `most`.
@@ -62,7 +62,8 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     };
     const float caption = m.caption ? m.caption(centre) : 0.0F;
     // Above the axes stand the numbers and a heading, below them what is to be shown.
-    const float least = (scene.shows("plane") ? least_plane : least_picture) * u;
+    const float least = std::max((scene.shows("plane") ? least_plane : least_picture) * u,
+                                 (m.state ? m.state(centre) : 0.0F) + least_world * u);
     // The message stands above the picture; where that would be too low then, above the plots, which have the height.
     float error = std::min(m.error ? m.error(centre) : 0.0F, height);
     const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;

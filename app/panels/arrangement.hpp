@@ -32,8 +32,9 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // of the surface
     float unit = 1.0F;                  // a pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
-    // How high a message, what a tour says, and the results are in so much width; 0: there are none.
-    std::function<float(float width)> error, caption, results;
+    // How high a message, what a tour says, the results, and the numbers over the picture are in so much width; 0: there
+    // are none.
+    std::function<float(float width)> error, caption, results, state;
 };
 
 // Panels keep a width that can be read as long as the surface has room for it.

@@ -32,14 +32,12 @@ void row(const std::string& name, const std::string& pinned, const std::string& 
          bool is_head = false) {
     constexpr float column = 130.0F, first = 110.0F;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float room = ImGui::GetContentRegionAvail().x, size = ImGui::GetFontSize();
+    const float room = ImGui::GetContentRegionAvail().x;
     const float step = std::min(1.0F, room / units(first + 3.0F * column));
-    ImDrawList* list = ImGui::GetWindowDrawList();
     const Color color = is_head ? faint_color() : text_color();
     float x = 0.0F, width = step * units(first);
     for (const std::string* text : {&name, &pinned, &present, &change}) {
-        paint_label(list, at.x + x, at.y, fitted(*text, width - units(6.0F)), text == &name ? faint_color() : color,
-                    size);
+        cell({at.x + x, at.y}, *text, width - units(6.0F), text == &name ? faint_color() : color);
         x += width;
         width = step * units(column);
     }

@@ -59,10 +59,9 @@ struct StateColumn {
     bool is_rate = false;
     double factor = 1.0;
     double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
+    double size(const State& scale) const { return (is_rate ? scale.v : scale.q)[coordinate] * factor; }
     // Rounding noise is shown as 0.
-    double shown(const Event& event, const State& scale) const {
-        return without_noise(of(event), (is_rate ? scale.v : scale.q)[coordinate] * factor);
-    }
+    double shown(const Event& event, const State& scale) const { return without_noise(of(event), size(scale)); }
 };
 
 std::vector<StateColumn> state_columns(const Session& session) {
@@ -78,6 +77,14 @@ std::vector<StateColumn> state_columns(const Session& session) {
                                is_angle ? degrees(1.0) : 1.0});
         }
     return columns;
+}
+
+// The speed of the first impact, about as large as any.
+double fastest_gap(const Session& session) {
+    const auto& events = session.trajectory().events;
+    const auto first = std::find_if(events.begin(), events.end(),
+                                    [](const Event& event) { return event.kind == Event::Kind::impact; });
+    return first == events.end() ? 0.0 : first->impact_speed;
 }
 
 bool is_of_several(const Session& session) { return session.model()->contacts() > 1; }
@@ -139,10 +146,10 @@ void show_comparing(const Session& session, float x, PanelState& state, Commands
     tooltip("keep the present run in the plots, in grey, beside those that follow");
 }
 
-// A number that ends at x.
+// A number, or a word over numbers, that ends at x; a long word is cut.
 void number_cell(ImVec2 at, float x, const std::string& text, const Color& color) {
-    const float left = at.x + units(x) - label_width(text, ImGui::GetFontSize());
-    paint_label(ImGui::GetWindowDrawList(), std::floor(left), at.y, text, color, ImGui::GetFontSize());
+    const float room = units(state_width - 8.0F), width = std::min(label_width(text, ImGui::GetFontSize()), room);
+    cell({std::floor(at.x + units(x) - width), at.y}, text, width + 0.5F, color);
 }
 
 // Where the first column of the state ends: before it stands what is held, where there are several contacts.
@@ -193,8 +200,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(session, buttons, state, commands);
 }
 
-void paint_event(const Session& session, std::size_t index, ImVec2 at) {
-    const float width = ImGui::GetContentRegionAvail().x;
+void paint_event(const Session& session, std::size_t index, ImVec2 at, float width) {
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Markers markers = event_markers(session.theme(), event.kind);
@@ -203,23 +209,22 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at) {
     std::string name = event_name(session, event);
     if (!event.opened.empty() && ImGui::CalcTextSize(name.c_str()).x > units(kind_width))
         name = "opens " + joined_names(*session.model(), event.opened);
-    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
-                  fitted(name, units(kind_width)).c_str());
+    cell({std::floor(at.x + units(kind_at)), at.y}, name, units(kind_width), text_color());
     number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
     const std::string proof = event.kind == Event::Kind::zeno ? time_text(event) : "";
     if (const std::size_t sign = proof.find("\u00b1 "); sign != std::string::npos)
         number_cell(at, proof_at, proof.substr(sign + 3), text_color());
     if (event.kind == Event::Kind::impact)
-        number_cell(at, speed_at, number(event.impact_speed, "{:.6f}"), text_color());
+        number_cell(at, speed_at, number_of_size(event.impact_speed, fastest_gap(session), 6), text_color());
     const float first = first_column(session);
-    if (is_of_several(session))
-        number_cell(at, first - state_width,
-                    fitted(joined_names(*session.model(), event.held), units(state_width - 8.0F)), text_color());
+    if (is_of_several(session) && units(first - state_width) <= width)
+        number_cell(at, first - state_width, joined_names(*session.model(), event.held), text_color());
     const std::vector<StateColumn> columns = state_columns(session);
     for (std::size_t i = 0; i < columns_shown(session, width); ++i)
         number_cell(at, first + state_width * static_cast<float>(i),
-                    number(columns[i].shown(event, session.scale()), "{:.5f}"), text_color());
+                    number_of_size(columns[i].shown(event, session.scale()), columns[i].size(session.scale()), 5),
+                    text_color());
 }
 
 // "10 impacts", and when the first and the last of them were.
@@ -266,6 +271,7 @@ void show_impacts(const Session& session, const EventRows::Row& row, int present
 
 void show_event(const Session& session, std::size_t event, int present, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetWindowWidth() - ImGui::GetStyle().ScrollbarSize;
     const int event_number = static_cast<int>(event) + 1;
     const bool is_selected =
         session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(event));
@@ -273,7 +279,7 @@ void show_event(const Session& session, std::size_t event, int present, PanelSta
     if (ImGui::Selectable("##row", is_selected))
         commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
     remember(state, "event " + std::to_string(event_number));
-    paint_event(session, event, at);
+    paint_event(session, event, at, width);
 }
 
 // Scrolls so that the row is seen, once whenever another row is the one to see.
@@ -294,7 +300,9 @@ namespace {
 
 void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
     begin_padded_child("list", size);
-    paint_titles(session, ImGui::GetCursorScreenPos(), ImGui::GetContentRegionAvail().x);
+    // As wide as the rows are where they can be scrolled.
+    paint_titles(session, ImGui::GetCursorScreenPos(),
+                 ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize);
     ImGui::Dummy({1.0F, ImGui::GetTextLineHeight()});
     const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);

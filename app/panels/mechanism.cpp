@@ -9,9 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "figure/label.hpp"
-#include "number/angle.hpp"
-#include "paint/label.hpp"
 #include "paint/mechanism.hpp"
 #include "panels/widgets.hpp"
 
@@ -21,47 +18,24 @@ namespace {
 
 using Holding = HeldMechanism::What;
 
-// The state at this instant in numbers, above the picture: the phase and the coordinates, their rates below. Returns
-// the height it took.
-float show_state(const Session& session, ImVec2 at, float width) {
-    constexpr float first = 130.0F, column = 130.0F;
-    // Where there is little room each coordinate has a line, its rate beside it, below the phase.
-    const bool narrow = width < units(390.0F);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
-    const Phase::Kind phase = session.now().phase;
-    const Color color = phase_color(session.theme(), phase);
-    list->AddRectFilled({at.x, at.y + 0.25F * size}, {at.x + units(10.0F), at.y + 0.25F * size + units(10.0F)},
-                        packed(color), units(2.0F));
-    paint_label(list, at.x + units(16.0F), at.y, legend_text(phase), text_color(), size);
-    const auto& coordinates = session.description().coordinates;
-    const auto columns = static_cast<std::size_t>(std::max(1.0F, (width - units(first)) / units(column)));
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? degrees(1.0) : 1.0;
-        const auto index = static_cast<Eigen::Index>(i);
-        const std::string unit = is_angle ? "\u00b0" : coordinates[i].unit.empty() ? "" : " " + coordinates[i].unit;
-        const std::string rate_unit = unit.empty() ? "" : unit + "/s";
-        const auto place = static_cast<float>(i);
-        const float x = at.x + units(narrow ? 16.0F : first + column * static_cast<float>(i % columns));
-        const std::size_t row = i / columns;
-        const float y = at.y + line * (narrow ? place + 1.0F : 2.0F * static_cast<float>(row));
-        const float rate_x = narrow ? x + units(column) : x, rate_y = narrow ? y : y + line;
-        const auto text = [&](const std::string& name, double value, const std::string& of) {
-            return typeset_name(name) + " = " + number(value * factor, "{:.3f}") + of;
-        };
-        paint_label(list, x, y, text(coordinates[i].name, session.now().state.q[index], unit), text_color(), size);
-        paint_label(list, rate_x, rate_y, text(coordinates[i].name + "'", session.now().state.v[index], rate_unit),
-                    faint_color(), size);
-    }
-    if (narrow) return line * static_cast<float>(coordinates.size() + 1) + units(8.0F);
-    const std::size_t rows = (coordinates.size() + columns - 1) / columns;
-    return 2.0F * line * static_cast<float>(std::max<std::size_t>(rows, 1)) + units(8.0F);
+// The height of the line at the bottom that tells what is drawn.
+float switches_height() { return ImGui::GetTextLineHeight() + units(14.0F); }
+
+// More of the world below, so that what the run needs ends above the lowest `strip` pixels of the picture.
+void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
+    const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
+    const double unit = std::min(double{area.width} / width, double{area.height} / height);
+    const double below = 0.5 * (double{area.height} - unit * height);
+    if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 3.0 * strip) return;
+    double more = 2.0 * (strip - below) / unit;  // as long as the width decides what is seen
+    if (unit * (height + more) > double{area.height}) more = strip * height / (double{area.height} - strip);
+    drawing.y_low -= more;
 }
 
 // What can be seen of the world: all that the run needs, or what the user looks at.
 Drawing world(const Session& session, const Rectangle& area) {
     Drawing drawing = session.limits();
+    keep_clear(drawing, area, double{switches_height()});
     if (const auto& look = session.scene().look()) {
         const double height = look->width * double{area.height} / double{area.width};
         drawing.x_low = look->x - 0.5 * look->width;
@@ -358,13 +332,14 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
     if (area.width < 2.0F || area.height < 2.0F) return;
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
-    const float strip = show_state(session, {area.x + units(12.0F), area.y + units(8.0F)}, area.width - units(24.0F));
+    const float strip = state_height(session, area.width);
+    show_state(session, area);
     const Rectangle rest{area.x, area.y + strip, area.width, area.height - strip};
     if (rest.height < 2.0F) return;
     if (shows_plane(session)) {
         state.held = {};
-        const float line = ImGui::GetTextLineHeight() + units(14.0F);
-        show_plane(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - line)}, state, commands);
+        show_plane(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - switches_height())}, state,
+                   commands);
         return show_switches(session, rest, state, commands);
     }
     const Picture picture = paint_picture(session, rest, state.held);

@@ -172,6 +172,9 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
 // Under the mechanism: every Zeno point and release, with what is proved of its time.
 void show_results(const Session& session, PanelState& state, Commands& commands);
 float results_height(float width);
+// At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
+void show_state(const Session& session, const Rectangle& panel);
+float state_height(const Session& session, float panel_width);
 // "2.7251422 ± 7.4e-7": the time of a Zeno point to the digits that are proved, and how far the true one can be from it;
 // without a proof the time alone.
 std::string time_text(const Event& event);

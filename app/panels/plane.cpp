@@ -123,14 +123,17 @@ void show_heading(const Session& session, const std::vector<Axes>& all, const Re
     PlaneView& plane = state.plane;
     const Axes& axes = all[plane.pair];
     const float size = ImGui::GetFontSize();
-    const std::string title =
-        typeset_name(axes.first.name) + ", " + typeset_name(axes.second.name) + (all.size() > 1 ? "  (next)" : "");
+    const std::string names = typeset_name(axes.first.name) + ", " + typeset_name(axes.second.name),
+                      next = all.size() > 1 ? "  (next)" : "";
+    const std::string title = fitted(names, row.width - label_width(next, size)) + next;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float width = label_width(title, size);
     ImGui::SetCursorScreenPos({row.x, row.y});
     const bool pressed = ImGui::InvisibleButton("axes", {width, row.height}) && all.size() > 1;
     remember(state, "plane axes");
-    if (all.size() > 1) tooltip("a click: the next two coordinates");
+    if (all.size() > 1 || title != names)
+        tooltip((title == names + next ? "" : names + "\n") +
+                (all.size() > 1 ? "a click: the next two coordinates" : ""));
     const bool lit = all.size() > 1 && ImGui::IsItemHovered();
     paint_label(list, row.x, row.y, title, lit ? text_color() : faint_color(), size);
     if (pressed) {

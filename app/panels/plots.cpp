@@ -250,15 +250,15 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
 // The title opens the plot's menu; the legend stands at its right.
 void show_head(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state, Commands& commands) {
     const float right = show_legend(session, plot, row, state, commands);
-    const std::string name = session.plotted().list()[plot].view.name;
     const float arrow = units(14.0F), width = right - row.x - units(4.0F), size = ImGui::GetFontSize();
-    const std::string title = fitted(typeset(name), width - arrow);
+    const std::string whole = title_of(session.plotted().list()[plot].view), title = fitted(whole, width - arrow);
     ImGui::SetCursorScreenPos({row.x, row.y});
     const std::string id = "menu of plot " + std::to_string(plot + 1);
     const bool pressed = ImGui::InvisibleButton(id.c_str(), {label_width(title, size) + arrow, row.height});
     remember(state, id);
     const bool lit = ImGui::IsItemHovered();
-    tooltip("choose what is plotted, or save this plot as a figure");
+    tooltip((title == whole ? "" : session.plotted().list()[plot].view.name + "\n") +
+            "choose what is plotted, or save this plot as a figure");
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_label(list, row.x, row.y + 0.5F * (row.height - 1.2F * size), title, text_color(), size);
     const float x = row.x + label_width(title, size) + units(5.0F), y = std::floor(row.y + 0.5F * row.height);

@@ -21,14 +21,15 @@ namespace {
 
 constexpr float value_at = 150.0F, second_at = 270.0F;
 
+ImVec2 at_right(const ImVec2& at, float by) { return {at.x + units(by), at.y}; }
+
 // A name and its values in columns.
 void row(const std::string& name, const std::string& first, const std::string& second = {}) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const float size = ImGui::GetFontSize();
-    paint_label(list, at.x, at.y, name, faint_color(), size);
-    paint_label(list, at.x + units(value_at), at.y, first, text_color(), size);
-    if (!second.empty()) paint_label(list, at.x + units(second_at), at.y, second, text_color(), size);
+    cell(at, name, units(value_at - 8.0F), faint_color());
+    cell(at_right(at, value_at), first, units((second.empty() ? second_at + 90.0F : second_at) - value_at - 8.0F),
+         text_color());
+    if (!second.empty()) cell(at_right(at, second_at), second, units(90.0F), text_color());
     ImGui::Dummy({units(second_at + 90.0F), ImGui::GetTextLineHeight()});
 }
 

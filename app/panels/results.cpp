@@ -22,7 +22,7 @@ int lines_in(float width) { return width < units(360.0F) ? 3 : 2; }
 
 struct Result {
     std::size_t event = 0;
-    std::string text;
+    std::string text, rest;        // what may be cut, and what may not
     float x = 0.0F, width = 0.0F;  // pixels
     int line = 0;
 };
@@ -79,8 +79,10 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
             zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
             continue;
         }
-        Result result{turn, name_of(trajectory, event, zeno) + "  " + time_text(event)};
-        result.width = units(sign_width) + ImGui::CalcTextSize(result.text.c_str()).x;
+        Result result{turn, name_of(trajectory, event, zeno), "  " + time_text(event)};
+        const auto length = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+        result.text = fitted(result.text, std::max(width - units(sign_width) - length(result.rest), units(40.0F)));
+        result.width = units(sign_width) + length(result.text + result.rest);
         if (x > 0.0F && x + result.width > width) x = 0.0F, ++line;
         result.x = x;
         result.line = line;
@@ -90,16 +92,30 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
     return results;
 }
 
-// The first line to show: that of the chosen event, or of the last one that the present has reached, stands among those
-// that are seen.
-int first_line(const Session& session, const std::vector<Result>& results, int lines_shown) {
-    int line = 0;
-    for (const Result& result : results) {
-        const bool is_chosen = session.selected() == static_cast<int>(result.event) + 1;
-        if (is_chosen || (session.selected() == 0 && session.trajectory().events[result.event].t <= session.time()))
-            line = result.line;
+// What is to be seen: the chosen event, or the last one that the present has reached; else the first.
+std::size_t wanted(const Session& session, const std::vector<Result>& results) {
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        const bool is_chosen = session.selected() == static_cast<int>(results[i].event) + 1;
+        const double time = session.trajectory().events[results[i].event].t;
+        if (is_chosen || (session.selected() == 0 && time <= session.time())) found = i;
     }
-    return std::clamp(line - lines_shown + 1, 0, std::max(0, results.back().line - lines_shown + 1));
+    return found;
+}
+
+// The results that stand in so many lines, from the first line that is shown on.
+struct Shown {
+    std::size_t begin, end;
+    int first;
+};
+Shown shown_in(const std::vector<Result>& results, std::size_t wanted, int lines) {
+    const int first = std::clamp(results[wanted].line - lines + 1, 0, std::max(0, results.back().line - lines + 1));
+    Shown shown{results.size(), results.size(), first};
+    for (std::size_t i = results.size(); i-- > 0;) {
+        if (results[i].line >= first + lines) shown.end = i;
+        if (results[i].line >= first) shown.begin = i;
+    }
+    return shown;
 }
 
 void show_result(const Session& session, const Result& result, ImVec2 at, const Rectangle& strip, PanelState& state,
@@ -120,7 +136,8 @@ void show_result(const Session& session, const Result& result, ImVec2 at, const 
     const float top = at.y + 0.5F * (height - line);
     paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), top + 0.5F * line},
                  units(1.0F));
-    list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()), result.text.c_str());
+    list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()),
+                  (result.text + result.rest).c_str());
     tooltip(explanation(session.trajectory(), event),
             {at.x, strip.y, result.width, strip.height});  // the other results stay in sight
     if (pressed) commands.emplace_back(command::Select{is_chosen ? 0 : number});
@@ -135,6 +152,12 @@ void show_none(const Session& session, ImVec2 at, float width) {
                                                         : fmt::format("{} impacts", impacts),
                                          trajectory.end_time);
     ImGui::GetWindowDrawList()->AddText({at.x, at.y + units(1.0F)}, packed(faint_color()), fitted(text, width).c_str());
+}
+
+// "3 before, 12 more".
+std::string hidden_text(std::size_t before, std::size_t after) {
+    return fmt::format("{}{}{}", before > 0 ? fmt::format("{} before", before) : "",
+                       before > 0 && after > 0 ? ", " : "", after > 0 ? fmt::format("{} more", after) : "");
 }
 
 // To two digits, and not below what it was.
@@ -174,24 +197,30 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     const auto fitting = static_cast<int>((area.height - 2.0F * units(padding)) / height);
     const int lines_shown = std::min(lines_in(area.width), fitting);
     if (lines_shown < 1) return;
-    const int first = first_line(session, results, lines_shown);
-    // Results that are not shown: the last line has a word of them where it has room.
-    std::size_t hidden = turns(session.trajectory(), true).size() - results.size();
-    float end = left;
-    for (const Result& result : results) {
-        if (result.line < first || result.line >= first + lines_shown) {
-            ++hidden;
-            continue;
-        }
-        const float x = left + result.x;
-        show_result(session, result, {x, area.y + units(padding) + height * static_cast<float>(result.line - first)},
-                    area, state, commands);
-        end = x + result.width + units(between);
-    }
-    const std::string more = fmt::format("{} more", hidden);
-    if (hidden == 0 || end + ImGui::CalcTextSize(more.c_str()).x > left + width) return;
-    ImGui::SetCursorScreenPos(
-        {end, area.y + units(padding) + height * static_cast<float>(lines_shown - 1) + units(2.0F)});
+    const std::size_t all = turns(session.trajectory(), true).size();
+    const auto width_of = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    // Where not all are shown the last line ends with a word of the others: what is in its way gives place, but for what
+    // is to be seen, which stands in a line before then.
+    const std::size_t seen = wanted(session, results);
+    Shown shown = shown_in(results, seen, lines_shown);
+    std::string more;
+    const auto has_room = [&] {
+        more = hidden_text(shown.begin, all - (shown.end - shown.begin) - shown.begin);
+        const Result& last = results[shown.end - 1];
+        return more.empty() || last.line - shown.first + 1 < lines_shown ||
+               last.x + last.width + units(between) + width_of(more) <= width;
+    };
+    while (!has_room() && shown.end - 1 > std::max(seen, shown.begin)) --shown.end;
+    if (!has_room() && lines_shown > 1) shown = shown_in(results, seen, lines_shown - 1);
+    const bool is_told = has_room() && !more.empty();
+    for (std::size_t i = shown.begin; i < shown.end; ++i)
+        show_result(
+            session, results[i],
+            {left + results[i].x, area.y + units(padding) + height * static_cast<float>(results[i].line - shown.first)},
+            area, state, commands);
+    if (!is_told) return;
+    ImGui::SetCursorScreenPos({std::floor(left + width - width_of(more)),
+                               area.y + units(padding) + height * static_cast<float>(lines_shown - 1) + units(2.0F)});
     ImGui::TextDisabled("%s", more.c_str());
     tooltip("the list of events has them all");
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "figure/label.hpp"
 #include "paint/label.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
@@ -24,14 +25,27 @@ Color error_color() { return current_theme().error; }
 
 std::string fitted(const std::string& text, float width) {
     const float size = ImGui::GetFontSize();
-    if (label_width(text, size) <= width) return text;
-    std::string shorter = text;
-    while (!shorter.empty() && label_width(shorter + "\u2026", size) > width) {
-        // A letter may be several bytes.
-        while (shorter.size() > 1 && (static_cast<unsigned char>(shorter.back()) & 0xC0) == 0x80) shorter.pop_back();
-        shorter.pop_back();
-    }
-    return shorter + "\u2026";
+    return shortened(
+        text, [&](const std::string& part) { return label_width(part, size) <= width; }, Cut::letters);
+}
+
+void cell(const ImVec2& at, const std::string& name, const std::string& value, float width, const Color& color) {
+    const float size = ImGui::GetFontSize();
+    const std::string whole = name + value;
+    const bool is_cut = label_width(whole, size) > width;
+    const float room = std::max(width - label_width(value, size), label_width("m\u2026", size));
+    paint_label(ImGui::GetWindowDrawList(), at.x, at.y, is_cut ? fitted(fitted(name, room) + value, width) : whole,
+                color, size);
+    if (!is_cut) return;
+    const ImVec2 before = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos(at);
+    ImGui::Dummy({width, ImGui::GetTextLineHeight()});
+    tooltip(whole);
+    ImGui::SetCursorScreenPos(before);
+}
+
+void cell(const ImVec2& at, const std::string& text, float width, const Color& color) {
+    cell(at, text, "", width, color);
 }
 
 void label(const std::string& text, float width) {
@@ -177,6 +191,12 @@ std::string number(double value, const char* format) {
     for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
         text.replace(at, 1, "\u2212");
     return text;
+}
+
+std::string number_of_size(double value, double size, int decimals) {
+    const bool fits = size == 0.0 || (size >= std::pow(10.0, 1 - decimals) && size < 1e6);
+    if (value == 0.0 && !fits) return "0";
+    return number(value, fmt::format("{{:.{}{}}}", decimals, fits ? 'f' : 'e').c_str());
 }
 
 }  // namespace achilles

@@ -21,6 +21,11 @@ Color error_color();
 
 // The text, or as much of it as fits and an ellipsis.
 std::string fitted(const std::string& text, float width);
+// A label that begins at a place, as much of it as is `width` wide; of one that is cut a tooltip tells all. The line that is
+// written on stays the current one.
+void cell(const ImVec2& at, const std::string& text, float width, const Color& color);
+// The same of a name and its value: "= 3.2 m" is not cut while there is room for it, the name is.
+void cell(const ImVec2& at, const std::string& name, const std::string& value, float width, const Color& color);
 // A label with dots over its letters, on the current line, `width` wide however long it is.
 void label(const std::string& text, float width);
 // A quiet heading over a group of widgets; so much at its right end stays free.
@@ -65,5 +70,8 @@ void name_event(const Session& session, int number);
 Vector start_towards(const Session& session, const Vector& q);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
+// One of many numbers of this size below or beside one another, with so many decimals; powers of ten where these would show
+// nothing of it, or where it would be too long.
+std::string number_of_size(double value, double size, int decimals);
 
 }  // namespace achilles

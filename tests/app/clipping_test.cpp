@@ -1,4 +1,5 @@
-// No letter is cut: in the draw data every glyph lies inside its clip rectangle, scrolled text excepted.
+// No letter is cut, and none lies on another: in the draw data every glyph lies inside its clip rectangle, scrolled text
+// excepted, and beside its neighbours.
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -47,6 +48,29 @@ struct Cut {
     std::string window, letters;
 };
 
+// A letter on the screen.
+struct Placed {
+    ImVec2 from, to;
+    ImWchar code;
+};
+
+// Letters of two words that lie on one another. Neighbours of one word touch, and dots stand over theirs.
+bool is_on(const Placed& a, const Placed& b) {
+    const auto width = [](const Placed& letter) { return letter.to.x - letter.from.x; };
+    const auto height = [](const Placed& letter) { return letter.to.y - letter.from.y; };
+    return std::min(a.to.x, b.to.x) - std::max(a.from.x, b.from.x) > 0.6F * std::min(width(a), width(b)) &&
+           std::min(a.to.y, b.to.y) - std::max(a.from.y, b.from.y) > 0.5F * std::max(height(a), height(b));
+}
+
+std::string letters_on_others(std::vector<Placed> letters) {
+    std::string found;
+    std::sort(letters.begin(), letters.end(), [](const Placed& a, const Placed& b) { return a.from.x < b.from.x; });
+    for (std::size_t i = 0; i < letters.size(); ++i)
+        for (std::size_t j = i + 1; j < letters.size() && letters[j].from.x < letters[i].to.x; ++j)
+            if (is_on(letters[i], letters[j])) found += utf8(letters[i].code) + utf8(letters[j].code) + " ";
+    return found;
+}
+
 // A window that can be scrolled shows a part of its text up and down; sideways all the same must be seen, but in the
 // editor, where long lines move with the cursor.
 bool is_editor(const char* name) { return std::string(name).find("##text") != std::string::npos; }
@@ -63,6 +87,7 @@ std::vector<Cut> cut_letters(const ImDrawData& data) {
         if (list._OwnerName != nullptr && is_editor(list._OwnerName)) continue;
         const bool scrolled = list._OwnerName != nullptr && scrolls(list._OwnerName);
         Cut cut{list._OwnerName != nullptr ? list._OwnerName : "", ""};
+        std::vector<Placed> placed;
         for (const ImDrawCmd& command : list.CmdBuffer) {
             if (command.UserCallback != nullptr) continue;
             for (unsigned i = 0; i + 6 <= command.ElemCount;) {
@@ -85,6 +110,8 @@ std::vector<Cut> cut_letters(const ImDrawData& data) {
                 // A glyph's quad may have an empty pixel at its edge.
                 const ImVec4& clip = command.ClipRect;
                 constexpr float slip = 1.01F, cut_uv = 1e-4F;
+                if (to.x > clip.x && from.x < clip.z && to.y > clip.y && from.y < clip.w)
+                    placed.push_back({from, to, static_cast<ImWchar>(glyph->Codepoint)});
                 const bool sideways = from.x < clip.x - slip || to.x > clip.z + slip || low.x > glyph->U0 + cut_uv ||
                                       high.x < glyph->U1 - cut_uv;
                 const bool upright = from.y < clip.y - slip || to.y > clip.w + slip || low.y > glyph->V0 + cut_uv ||
@@ -93,9 +120,67 @@ std::vector<Cut> cut_letters(const ImDrawData& data) {
                 i += 6;
             }
         }
+        cut.letters += letters_on_others(std::move(placed));
         if (!cut.letters.empty()) cuts.push_back(cut);
     }
     return cuts;
+}
+
+// Names of 25 letters, where others have one.
+const char* const long_names =
+    R"toml(title = "A ball with names of twenty-five letters and a long title that may not fit"
+[[coordinate]]
+name = "horizontal_displacement_x"
+rate = 0.7
+unit = "m"
+[[coordinate]]
+name = "vertical_displacement_of_"
+start = 1.0
+unit = "m"
+[[coordinate]]
+name = "angular_displacement_of_b"
+start = 0.5
+rate = 0.2
+unit = "rad"
+[[parameter]]
+name = "gravitational_acceleratio"
+value = 9.81
+unit = "m/s^2"
+[lagrangian]
+kinetic = "1/2*(horizontal_displacement_x'^2 + vertical_displacement_of_'^2 + angular_displacement_of_b'^2)"
+potential = "gravitational_acceleratio*vertical_displacement_of_ + angular_displacement_of_b^2"
+[[constraint]]
+name = "the_floor_under_everythin"
+gap = "vertical_displacement_of_"
+restitution = 0.6
+[[constraint]]
+name = "the_wall_at_the_far_right"
+gap = "2 - horizontal_displacement_x"
+restitution = 0.3
+[run]
+end_time = 5
+)toml";
+// And of a world as large as a planet's.
+std::string large_world() {
+    std::string text = R"toml(title = "A ball around a planet"
+[[coordinate]]
+name = "x"
+rate = 1e9
+unit = "m"
+[[coordinate]]
+name = "y"
+start = 1e9
+unit = "m"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+potential = "9.81e9*y"
+[[constraint]]
+gap = "y"
+restitution = 0.6
+[run]
+end_time = 3
+)toml";
+    return text;
 }
 
 struct State {
@@ -110,6 +195,10 @@ const State states[] = {
     {"an impact", "double_pendulum", {"select 3"}},
     {"a release", "ball_on_sine", {"select 13"}},
     {"the lens", "ball_on_sine", {"show lens", "select 12"}},
+    {"long names", "long", {}},
+    {"long names and an impact", "long", {"select 5"}},
+    {"long names compared", "long", {"pin", "set gravitational_acceleratio 5"}},
+    {"a large world", "large", {"seek 2.5"}},
     {"many sliders", "triple_pendulum", {"seek 1.5", "set g 3"}},
     {"the editor", "double_pendulum", {"show editor", "seek 2"}},
     {"the editor and a certificate", "ball_on_sine", {"show editor", "select 12"}},
@@ -133,7 +222,10 @@ TEST_P(Clipping, cuts_no_letter) {
     Interface interface(test::surface(width, height, scale));
     const Interface::Active active(interface);
     for (const State& state : states) {
-        Session session = test::session(state.system);
+        const bool is_own = std::string(state.system) == "long" || std::string(state.system) == "large";
+        Session session = test::session(is_own ? "ball_on_sine" : state.system);
+        if (is_own) session.apply(command::Text{state.system[1] == 'o' ? long_names : large_world()});
+        ASSERT_TRUE(session.document().problems.empty());
         for (const char* line : state.journal) session.apply(parse_command(line));
         for (const char* theme : {"theme light", "theme dark"}) {
             session.apply(parse_command(theme));
@@ -182,6 +274,9 @@ TEST(Clipping, finds_what_is_cut) {
     EXPECT_EQ(letters(300.0F, 100.0F, "it fits"), "");
     EXPECT_NE(letters(60.0F, 100.0F, "too wide for it"), "");
     EXPECT_NE(letters(300.0F, 32.0F, "too low\nfor it"), "");
+    const Placed one{{10, 10}, {18, 20}, 'a'};
+    EXPECT_EQ(letters_on_others({one, {{16, 10}, {24, 20}, 'b'}, {{10, 5}, {18, 8}, '.'}}), "");
+    EXPECT_EQ(letters_on_others({one, {{12, 12}, {20, 22}, 'b'}}), "ab ");
 }
 
 }  // namespace

@@ -73,6 +73,19 @@ TEST(Results, call_a_landing_so_and_offer_no_lens) {
     }
 }
 
+// The strip has no bar to scroll by: it says how many stand before those that are shown, and how many after.
+TEST(Results, say_how_many_are_not_shown) {
+    for (const int width : {1024, 1280, 1600}) {
+        Hands hands("driven_double_pendulum", test::surface(width, 800));
+        for (const double time : {0.0, 9.0, 15.0}) {
+            hands.session.apply(command::Seek{time});
+            hands.rest(1);
+            EXPECT_EQ(hands.says(" before"), time > 0.0) << width << ", " << time;
+            EXPECT_EQ(hands.says(" more"), time < 15.0) << width << ", " << time;
+        }
+    }
+}
+
 TEST(EventList, folds_impacts_until_a_click_opens_them) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("event 1"));
