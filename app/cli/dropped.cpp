@@ -12,6 +12,7 @@
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "pictures/origin.hpp"
+#include "pictures/picture_ending.hpp"
 
 namespace achilles {
 
@@ -153,11 +154,7 @@ std::vector<Command> session_of(const Origin& origin, Opening& opening) {
 
 }  // namespace
 
-bool is_picture(const std::string& path) {
-    const std::string ending = std::filesystem::path(path).extension().string();
-    return ending == ".png" || ending == ".svg" || ending == ".pdf" || ending == ".PNG" || ending == ".SVG" ||
-           ending == ".PDF";
-}
+bool is_picture(const std::string& path) { return !ending_of_picture(path).empty(); }
 
 std::vector<Command> session_in(const std::string& picture, const Trust& trust) {
     Opening opening{picture, trust};

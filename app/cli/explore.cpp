@@ -20,6 +20,7 @@
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "panels/print.hpp"
+#include "pictures/picture_ending.hpp"
 #include "session/open_session.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
@@ -353,6 +354,7 @@ int explore(const ExploreOptions& options) {
 
 int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     job.check_size(options.width, options.height);
+    format_for(options.out, "png", "; the plots alone are drawn as SVG and PDF, too: achilles figure");
     job.add(options.out);
     if (!options.record.empty() && !job.reproduces()) {
         refuse_record(options.record);
@@ -370,7 +372,7 @@ int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     const std::vector<Command> more = inputs.steps(options.steps);
     journal.insert(journal.end(), more.begin(), more.end());
     record.insert(record.end(), journal.begin(), journal.end());
-    for (const Command& command : journal) session.apply(command);
+    apply_all(session, journal);
     if (!options.record.empty()) job.put_text(options.record, journal_text(record));
     PanelState state = panel_state(false);
     job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {

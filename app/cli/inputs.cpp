@@ -30,17 +30,8 @@ const Source& Inputs::next(const std::string& name, bool is_journal) {
 }
 
 std::string Inputs::text(const std::string& name) {
-    if (from_picture_) {
-        const Source& source = next(name, false);
-        if (source.kind == Source::Kind::refusal) throw InputError({}, {}, source.text);
-        return source.text;
-    }
-    try {
-        kept_.push_back({Source::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
-    } catch (const InputError& error) {
-        kept_.push_back({Source::Kind::refusal, name, error.what()});
-        throw;
-    }
+    if (from_picture_) return next(name, false).text;
+    kept_.push_back({Source::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
     return kept_.back().text;
 }
 

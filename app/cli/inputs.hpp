@@ -16,7 +16,7 @@ namespace achilles {
 constexpr std::size_t most_changes = 1000;
 
 struct Source {
-    enum class Kind { system, journal, refusal };  // refusal: what was said instead of a system that could not be read
+    enum class Kind { system, journal };
     Kind kind = Kind::system;
     std::string name, text;
     friend bool operator==(const Source&, const Source&) = default;

@@ -90,16 +90,11 @@ void check_asked(const Model& model, const Run& run, const std::vector<std::stri
     }
 }
 
-void warn(const SystemDescription& description, const Run& run, const Run* told) {
-    const auto all_of = [&](const Run& of) {
-        std::vector<std::string> all = warnings(of.options);
-        for (const std::string& outside : outside_ranges(description, of)) all.push_back(outside);
-        return all;
-    };
-    const std::vector<std::string> before = told != nullptr ? all_of(*told) : std::vector<std::string>{};
-    for (const std::string& warning : all_of(run))
-        if (std::find(before.begin(), before.end(), warning) == before.end())
-            print_clean(stderr, "achilles: warning: {}\n", warning);
+void warn(const SystemDescription& description, const Run& run) {
+    std::vector<std::string> all = warnings(run.options);
+    for (const std::string& outside : outside_ranges(description, run)) all.push_back(outside);
+    for (const std::string& unseen : unseen_lines(description)) all.push_back(unseen);
+    for (const std::string& warning : all) print_clean(stderr, "achilles: warning: {}\n", warning);
 }
 
 }  // namespace achilles

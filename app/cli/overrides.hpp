@@ -35,8 +35,8 @@ Run asked_run(const SystemDescription& description, const std::vector<std::strin
 // Model::check(). What a --set makes impossible is told with that setting in place of the file's line. Throws InputErrors.
 void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings);
 
-// Tells on standard error what a person should know of a run, once: core's warnings() and outside_ranges(). What was told
-// of another run before is left out.
-void warn(const SystemDescription& description, const Run& run, const Run* told = nullptr);
+// Tells on standard error what a person should know of a run: core's warnings(), outside_ranges() and
+// unseen_lines().
+void warn(const SystemDescription& description, const Run& run);
 
 }  // namespace achilles

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "panels/widgets.hpp"
+#include "pictures/picture_ending.hpp"
 #include "surface/imgui_version.hpp"
 
 namespace achilles {
@@ -58,12 +59,11 @@ Verdict to_save(const Document& document, const std::string& path) {
     return {"There is a file of this name. Overwrite it?", true, true};
 }
 
-bool is_figure(const std::string& ending) { return ending == ".svg" || ending == ".png" || ending == ".pdf"; }
-
 Verdict to_take_away(const std::string& path, int plot) {
     const std::string ending = fs::path(path).extension().string();
-    if (!path.empty() && plot > 0 && !is_figure(ending)) return {"end it in .svg, .png or .pdf", false, false};
-    if (!path.empty() && !is_figure(ending) && ending != ".json" && ending != ".csv" && ending != ".journal")
+    const bool is_picture = !ending_of_picture(path).empty();
+    if (!path.empty() && plot > 0 && !is_picture) return {"end it in .svg, .png or .pdf", false, false};
+    if (!path.empty() && !is_picture && ending != ".json" && ending != ".csv" && ending != ".journal")
         return {"end it in .svg, .png, .pdf, .json, .csv or .journal", false, false};
     return to_save(Document(), path);
 }

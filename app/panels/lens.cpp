@@ -85,8 +85,7 @@ void show_interval(const Session& session, const Event& zeno, float width) {
 }  // namespace
 
 bool lens_is_open(const Session& session) {
-    if (!session.scene().shows("lens") || session.selected() == 0) return false;
-    return session.trajectory().events[static_cast<std::size_t>(session.selected() - 1)].kind == Event::Kind::zeno;
+    return session.scene().shows("lens") && session.selected_zeno() != nullptr;
 }
 
 void show_lens(const Session& session, PanelState& state, Commands& commands) {

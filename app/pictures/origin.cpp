@@ -50,8 +50,6 @@ std::string key_of(Source::Kind kind) {
             return "Achilles System";
         case Source::Kind::journal:
             return "Achilles Journal";
-        case Source::Kind::refusal:
-            return "Achilles Refusal";
     }
     return {};
 }
@@ -175,7 +173,7 @@ Origin origin_of(std::string_view file) {
         if (note.keyword == software_key) origin.software = note.text;
         if (note.keyword == command_key) origin.command = note.text;
         if (note.keyword == picture_key) origin.picture = note.text;
-        for (const Source::Kind kind : {Source::Kind::system, Source::Kind::journal, Source::Kind::refusal}) {
+        for (const Source::Kind kind : {Source::Kind::system, Source::Kind::journal}) {
             if (note.keyword != key_of(kind)) continue;
             std::string_view text = note.text;
             const std::string name = take_word(text);

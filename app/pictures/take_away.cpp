@@ -12,6 +12,7 @@
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/pdf.hpp"
+#include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 
@@ -87,7 +88,7 @@ std::string bytes_of(const Session& session, const std::string& file, int plot) 
     std::string ending = fs::path(file).extension().string();
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const Plots plots = plot > 0 ? session.plotted().only(plot) : session.plotted();
-    if (ending == ".svg" || ending == ".png" || ending == ".pdf") return drawn(session, plots, file, ending.substr(1));
+    if (const std::string format = ending_of_picture(file); !format.empty()) return drawn(session, plots, file, format);
     if (plot > 0) throw InputError(file, {}, "one plot is a figure", "end it in .svg, .png or .pdf");
     if (ending == ".json") return to_json(session.trajectory());
     if (ending == ".csv") return to_csv(session.trajectory());
@@ -113,7 +114,16 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
             panels[i] = with_pinned(std::move(panels[i]), others[i], plots.list()[i].framing, theme);
     }
     Figure figure = publication(session.trajectory(), std::move(panels), style);
-    if (behind) figure.keys.push_back({"pinned run", pinned_stroke(theme, {})});
+    if (!behind) return figure;
+    // Which run is which: the present one has the colours of its phases, the pinned one is grey.
+    const Run &here = session.trajectory().run, &there = pinned->run;
+    const std::string present = told_apart(session.description(), here, there);
+    const Phase::Kind first = session.trajectory().phases.front().kind;
+    Stroke stroke = phase_stroke(theme, first, 0, 1);
+    stroke.dash.clear();
+    if (!present.empty()) figure.keys.push_back({present, stroke});
+    const std::string other = told_apart(session.description(), there, here);
+    figure.keys.push_back({other.empty() ? "pinned run" : "pinned: " + other, pinned_stroke(theme, {})});
     return figure;
 }
 

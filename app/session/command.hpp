@@ -65,7 +65,7 @@ struct MaxImpacts : UseOption {
     explicit MaxImpacts(int count) : UseOption("max-impacts", {count}) {}
 };
 struct Seek {
-    double time = 0.0;  // s; beyond the run: its end
+    double time = 0.0;  // s; beyond the run: its end, and that is told
     static constexpr auto said = Said("seek", "write: seek NUMBER", Change::none, &Seek::time);
 };
 struct Play {
@@ -194,7 +194,7 @@ struct Pin {
         Said("pin", alone, Change::view, Field(&Pin::on, {.yes = "pin", .no = "unpin", .is_name = true}));
 };
 struct Lens {
-    double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens
+    double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens, which opens
     static constexpr auto said = Said("lens", "write: lens NUMBER", Change::view, &Lens::from);
 };
 struct UseTheme {

@@ -1,10 +1,12 @@
 #include "session/open_session.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
+#include "cli/terminal.hpp"
 #include "model/model.hpp"
 
 namespace achilles {
@@ -26,6 +28,16 @@ Session open_session(const std::string& name, const SystemDescription& first, co
     } catch (const InputError&) {
         if (!settings.empty()) check_asked(Model(first), run, settings);
         throw;
+    }
+}
+
+void apply_all(Session& session, const std::vector<Command>& commands) {
+    std::set<std::string> told;
+    for (const Command& command : commands) {
+        session.apply(command);
+        if (!session.error().empty()) throw InputError(to_text(command), {}, session.error());
+        for (const std::string& warning : session.warnings())
+            if (told.insert(warning).second) print_clean(stderr, "achilles: warning: {}\n", warning);
     }
 }
 

@@ -1,12 +1,16 @@
 #include "session/recipe.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
+#include "figure/label.hpp"
 #include "model/model.hpp"
+#include "number/angle.hpp"
 
 namespace achilles {
 
@@ -114,6 +118,8 @@ std::vector<Command> sight_steps(const Session& session) {
     if (session.theme().dark) steps.emplace_back(command::UseTheme{true});
     append(steps, steps_to(session.scene()));
     append(steps, time_steps(session));
+    if (session.scene().shows("lens") && session.scene().lens() && session.selected_zeno() != nullptr)
+        steps.emplace_back(command::Lens{*session.scene().lens()});
     return steps;
 }
 
@@ -170,6 +176,28 @@ std::vector<std::string> run_options(const Session& session) {
                 words.insert(words.end(), {std::string(group[i].flag), to_text(now.values[i])});
     }
     return words;
+}
+
+std::string told_apart(const SystemDescription& description, const Run& run, const Run& other) {
+    std::vector<std::string> parts;
+    const auto changed = changed_values(description, other, run);
+    for (const auto& [name, given] : changed) {
+        const bool is_angle = unit_given(description, name) == "rad";
+        const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
+                                           [&](const ParameterDescription& p) { return p.name == name; });
+        std::string unit = typeset_unit(unit_of(description, name));
+        if (is_angle) unit.replace(0, 3, "\u00b0");
+        std::string value = fmt::format("{:.6g}", is_angle ? degrees(given.value) : given.value);
+        if (value[0] == '-') value.replace(0, 1, "\u2212");
+        parts.push_back(typeset(name) + (is_start ? "(0)" : "") + " = " + value +
+                        (is_angle || unit.empty() ? unit : "\u00a0" + unit));
+    }
+    for (const auto group : options_by_command(other.options, run.options))
+        if (const command::UseOption step(group[0], run.options); step != command::UseOption(group[0], other.options))
+            parts.push_back(to_text(Command(step)));
+    constexpr std::size_t most = 3;
+    if (parts.size() > most) parts.resize(most), parts.emplace_back("\u2026");
+    return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 std::vector<Command> figure_steps(const Session& session, const Plots& plots) {

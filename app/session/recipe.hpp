@@ -14,6 +14,8 @@ std::vector<Command> recipe(const Session& session);
 
 // The options that make of a system's file the run that was asked for: --set e=0.3 --end 30.
 std::vector<std::string> run_options(const Session& session);
+// How one run of a system differs from another, for a legend: "e = 0.3, x(0) = 1 m", a few words at most; empty: not at all.
+std::string told_apart(const SystemDescription& description, const Run& run, const Run& other);
 // After these options: what puts the pinned run beside it, and leads to the plots.
 std::vector<Command> figure_steps(const Session& session, const Plots& plots);
 // The same, and everything else that is seen.

@@ -39,7 +39,10 @@ void Scene::perform(const command::Speed& command) {
 
 void Scene::perform(const command::Loop& command) { loops_ = command.on; }
 
-void Scene::perform(const command::Lens& command) { lens_ = std::clamp(command.from, -100.0, 1e9); }
+void Scene::perform(const command::Lens& command) {
+    lens_ = std::clamp(command.from, -100.0, 1e9);
+    shown_.insert("lens");
+}
 
 double Scene::share(const std::string& panel) const {
     const auto found = shares_.find(panel);
@@ -61,7 +64,6 @@ std::vector<Command> steps_to(const Scene& scene) {
         if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
     if (scene.loops()) steps.emplace_back(command::Loop{true});
-    if (scene.lens()) steps.emplace_back(command::Lens{*scene.lens()});
     for (const std::string& panel : command::sized_panels)
         if (scene.share(panel) > 0.0) steps.emplace_back(command::Size{panel, scene.share(panel)});
     if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});

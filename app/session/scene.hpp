@@ -50,7 +50,7 @@ class Scene {
     std::string caption_;
 };
 
-// What leads from a new scene to this one.
+// What leads from a new scene to this one, but for the lens, which needs a Zeno point to look at.
 std::vector<Command> steps_to(const Scene& scene);
 
 // What is not as at the beginning, for the session's text.

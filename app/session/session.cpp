@@ -54,12 +54,13 @@ void Session::apply(const Command& command) {
     if (!patience_) receive(patience_);
     const Moment before = moment();
     const std::string noticed = std::exchange(notice_, {});
+    warnings_.clear();
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playing on, or letting go, must not wipe away what the last change of the run complained about.
         const bool changes_nothing = change_of(command) == command::Change::none;
         if (!changes_nothing) error_.clear();
-        if (changes_nothing) notice_ = noticed;
+        if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, moment());
     } catch (const Forbidden&) {
         throw;
@@ -141,8 +142,8 @@ void Session::begin_document(Document document) {
         placed_.reset();
         pinned_.reset();  // a run of another system is nothing to compare with
         change_system(system, Plots(system->model), run);
-        for (const std::string& told : outside_ranges(description, run))
-            notice_ += (notice_.empty() ? "" : "; ") + told;
+        for (const std::string& told : outside_ranges(description, run)) warn(told);
+        for (const std::string& told : unseen_lines(description)) warn(told);
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
         scene_.perform(command::Show{"editor", true});
@@ -217,10 +218,10 @@ void check_unit(const SystemDescription& description, const std::string& name, c
 
 void Session::perform(const command::Set& command) {
     perform(command::Start{{{command.name, command.value}}});
-    for (const std::string& told : outside_ranges(description(), run()))
-        if (told.starts_with(command.name + " ")) notice_ = told;
+    for (const std::string& told : warnings_) notice_ += (notice_.empty() ? "" : "; ") + told;
 }
 
+// A hand that drags makes many of these: a notice would come and go over what it holds.
 void Session::perform(const command::Start& command) {
     Run changed = run();
     for (const auto& [name, given] : command.values) {
@@ -239,6 +240,10 @@ void Session::perform(const command::Start& command) {
         throw refusal(fmt::format("{}: {}", names, problem.message), problem.hint);
     }
     rerun(changed);
+    for (const std::string& told : outside_ranges(description(), changed))
+        if (std::any_of(command.values.begin(), command.values.end(),
+                        [&](const auto& value) { return told.starts_with(value.first + " "); }))
+            warnings_.push_back(told);
 }
 
 std::optional<double> Session::value(const std::string& name) const {
@@ -255,29 +260,10 @@ void Session::perform(const command::UseOption& command) {
             throw refusal(fmt::format(fmt::runtime(option.wrong), to_text(command.values[i])));
         option.set(changed.options, command.values[i]);
     }
+    const std::vector<std::string> before = achilles::warnings(run().options);
     rerun(changed);
-}
-
-void Session::perform(const command::Seek& command) {
-    move_to(command.time);
-    place(command);
-}
-
-void Session::perform(const command::Play&) {
-    // Play at the end means: once more.
-    if (time_ >= trajectory().end_time) move_to(run().options.start_time);
-    playing_ = true;
-}
-
-void Session::perform(const command::Pause&) { playing_ = false; }
-
-void Session::perform(const command::Select& command) {
-    const auto& events = trajectory().events;
-    if (command.event < 0 || static_cast<std::size_t>(command.event) > events.size())
-        throw refusal(fmt::format("there is no event {}: this run has {}", command.event, events.size()));
-    selected_ = command.event;
-    if (selected_ > 0) move_to(events[static_cast<std::size_t>(selected_ - 1)].t);
-    place(command);
+    for (const std::string& told : achilles::warnings(changed.options))
+        if (std::find(before.begin(), before.end(), told) == before.end()) warn(told);
 }
 
 // The same model with another run: nothing is read or derived again.
@@ -311,41 +297,21 @@ void Session::receive(Patience patience) {
     compose_pinned();
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
     move_to(time_);
-    if (placed_) apply(*std::exchange(placed_, std::nullopt));
+    if (!placed_) return;
+    // A time that was asked for while this run was not known lies in it as nearly as can be; nobody is to be told.
+    Command placed = *std::exchange(placed_, std::nullopt);
+    if (auto* const seek = std::get_if<command::Seek>(&placed))
+        seek->time = std::clamp(seek->time, run().options.start_time, trajectory().end_time);
+    apply(placed);
 }
 
-// While a run is under way: what is to be done again on its result.
-void Session::place(const Command& command) {
-    if (watch_ != nullptr) placed_ = command;
-}
-
-void Session::move_to(double time) {
-    time_ = std::clamp(time, run().options.start_time, trajectory().end_time);
-    now_ = simulated_->sampler.at(time_);
+void Session::warn(const std::string& warning) {
+    warnings_.push_back(warning);
+    notice_ += (notice_.empty() ? "" : "; ") + warning;
 }
 
 std::vector<double> Session::values(std::size_t plot, const Sample& sample) const {
     return values_at(simulated_->trajectory, sample, *plots_.list()[plot].prepared);
-}
-
-// The next event after the present, or the last before it; beyond them the end and the start.
-void Session::perform(const command::Step& command) {
-    const auto& events = trajectory().events;
-    const double start = run().options.start_time;
-    double time = time_;
-    for (int i = 0; i < std::abs(command.events); ++i) {
-        if (time == (command.events > 0 ? trajectory().end_time : start)) break;
-        const auto later = std::upper_bound(events.begin(), events.end(), time,
-                                            [](double t, const Event& event) { return t < event.t; });
-        const auto here = std::lower_bound(events.begin(), events.end(), time,
-                                           [](const Event& event, double t) { return event.t < t; });
-        if (command.events > 0)
-            time = later != events.end() ? later->t : trajectory().end_time;
-        else
-            time = here != events.begin() ? std::prev(here)->t : start;
-    }
-    move_to(time);
-    place(command::Seek{time});
 }
 
 template <class Other>
@@ -364,16 +330,6 @@ void Session::compose_plots() {
     simulated_->dark = theme_.dark;
     simulated_->plots = plots_.compose(simulated_->trajectory, simulated_->samples, theme_);
     compose_pinned();
-}
-
-void play_on(Session& session, double seconds) {
-    if (!session.playing()) return;
-    session.apply(command::Seek{session.time() + seconds * session.scene().speed()});
-    if (session.time() < session.trajectory().end_time || session.under_way() != nullptr) return;
-    if (session.scene().loops())
-        session.apply(command::Play{});  // at the end: once more
-    else
-        session.apply(command::Pause{});
 }
 
 }  // namespace achilles

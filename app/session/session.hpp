@@ -108,12 +108,15 @@ class Session {
     const Sample& now() const { return now_; }  // the state at that time
     bool playing() const { return playing_; }
     int selected() const { return selected_; }           // an event's number, from 1; 0: none
+    const Event* selected_zeno() const;                  // that event where it is a Zeno point, else null
     const std::string& error() const { return error_; }  // why the last command was refused; empty: it was not
     // Every value and option as the text of the system has them.
     const Run& file_run() const { return system_->file_run; }
     const Theme& theme() const { return theme_; }
     // What the last command did that cannot be seen otherwise: a file written, a line copied. Empty: nothing.
     const std::string& notice() const { return notice_; }
+    // What a person should know of the last command, though it was done.
+    const std::vector<std::string>& warnings() const { return warnings_; }
     // What is to be on the clipboard, and how often something was put there.
     const std::string& copied() const { return copied_; }
     int copies() const { return copies_; }
@@ -152,6 +155,7 @@ class Session {
     void perform(const command::Play& command);
     void perform(const command::Pause& command);
     void perform(const command::Select& command);
+    void perform(const command::Lens& command);
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
@@ -192,6 +196,7 @@ class Session {
     void compose_plots();
     void place(const Command& command);
     void move_to(double time);
+    void warn(const std::string& warning);
 
     SystemSource library_;
     Patience patience_;
@@ -210,6 +215,7 @@ class Session {
     bool playing_ = false;
     int selected_ = 0;
     std::string error_, notice_;
+    std::vector<std::string> warnings_;
     std::string copied_;
     int copies_ = 0, replaying_ = 0;
     History<Moment> history_;

@@ -37,6 +37,25 @@ TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
               "here it is m\n");
 }
 
+// The same of what commands do.
+TEST(Meant, WhatACommandOverstepsIsTold) {
+    const Folder folder;
+    for (const char* command :
+         {"screenshot double_pendulum --size 640x480 --out a.png", "figure double_pendulum --out a.svg"}) {
+        const Answer answer =
+            folder.run(command + std::string(" --end 3 --do 'set theta1 45' --do 'seek 99' --do 'set theta1 0'"
+                                             " --do 'seek -1' --do 'tolerance 1e-30' --do 'seek 3'"));
+        EXPECT_EQ(answer.status, 0);
+        EXPECT_EQ(answer.err,
+                  "achilles: warning: theta1 = 45 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is "
+                  "written 45 deg\n"
+                  "achilles: warning: seek 99: the run ends at t = 3 s\n"
+                  "achilles: warning: seek -1: the run begins at t = 0 s\n"
+                  "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n")
+            << command;
+    }
+}
+
 const std::string drop =
     "title = \"drop\"\n[[coordinate]]\nname = \"y\"\nstart = 1.0\n[[parameter]]\nname = \"e\"\nvalue = "
     "0.5\n[lagrangian]\n"

@@ -88,6 +88,19 @@ const Refusal refusals[] = {
     {"missing_journal", "screenshot --out a.png --journal none.journal", "none.journal: there is no such file\n"},
     {"screenshot_without_a_place", "screenshot ball_on_sine",
      "achilles: --out is required\n'achilles screenshot --help' tells more\n"},
+    {"refused_step", "screenshot --do 'seek 2' --do 'set e 1.5' --out a.png --record r.journal",
+     "set e 1.5: e = 1.5: the restitution must lie in [0, 1], but it is 1.5\n0 is plastic, 1 is elastic\n"},
+    {"lens_of_nothing", "screenshot --do 'lens 1' --out a.png",
+     "lens 1: the lens looks at a Zeno point, and none is selected\nselect it first: select 10\n"},
+    {"screenshot_as_svg", "screenshot --out q.svg",
+     "--out q.svg: this name says SVG, but what is drawn is PNG\n"
+     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+    {"screenshot_as_jpg", "screenshot --out q.JPG",
+     "--out q.JPG: this name says JPG, but what is drawn is PNG\n"
+     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+    {"format_against_name", "figure ball_on_sine --format pdf --out q.png",
+     "--out q.png: this name says PNG, but what is drawn is PDF\n"
+     "end it in .pdf, or leave --format out: the name tells\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
      "--size 1600: this is no size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
 };
@@ -167,6 +180,20 @@ TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
     EXPECT_EQ(answer.err.rfind("tour.journal:2:3: there is no command 'seeek'; did you mean 'seek'?\n", 0), 0u)
         << answer.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"tour.journal"});
+}
+
+// What it wanted is not in the picture, so there is none.
+TEST(Cli, ALineOfAJournalThatIsRefusedIsBadInput) {
+    const Folder folder;
+    folder.put("tour.journal", "set g 2\nselect 9999\nseek 1\n");
+    for (const char* command : {"screenshot --journal tour.journal --out a.png",
+                                "screenshot --allow-files --do 'replay tour.journal' --out a.png",
+                                "figure ball_on_sine --journal tour.journal --out a.svg"}) {
+        const Answer answer = folder.run(command);
+        EXPECT_EQ(answer.status, 2) << command;
+        EXPECT_NE(answer.err.find("there is no event 9999"), std::string::npos) << answer.err;
+        EXPECT_EQ(folder.files(), std::vector<std::string>{"tour.journal"}) << command;
+    }
 }
 
 TEST(Cli, AFullDeviceLeavesTheOtherFileAsItWas) {

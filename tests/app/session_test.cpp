@@ -4,6 +4,7 @@
 #include "app/program.hpp"
 #include "output/output.hpp"
 #include "panels/turns.hpp"
+#include "session/recipe.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -93,6 +94,36 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
     EXPECT_EQ(session.notice(), "x = 0 m is outside its range, 1 to 2");
 }
 
+// Of several values at once, too.
+TEST(Session, starts_outside_their_ranges_are_told) {
+    Session session = test::session("double_pendulum");
+    session.apply(parse_command("start theta1 30 theta1' 0.5 theta2 0.2"));
+    EXPECT_EQ(session.warnings(),
+              (std::vector<std::string>{"theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an "
+                                        "angle in degrees is written 30 deg"}));
+    EXPECT_EQ(session.notice(), "") << "no card comes and goes under a hand that drags";
+    session.apply(parse_command("start theta2 0.3"));
+    EXPECT_TRUE(session.warnings().empty());
+}
+
+// It opens where there is something to look at, and says so where there is not. What leads there again does so.
+TEST(Session, the_lens_opens_at_a_zeno_point) {
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Lens{2.0});
+    EXPECT_EQ(session.error(), "the lens looks at a Zeno point, and none is selected\nselect it first: select 10");
+    EXPECT_FALSE(session.scene().shows("lens"));
+    session.apply(command::Select{10});
+    session.apply(command::Lens{2.0});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_TRUE(session.scene().shows("lens"));
+    Session again = test::session("ball_on_sine");
+    for (const Command& command : recipe(session)) {
+        again.apply(command);
+        EXPECT_EQ(again.error(), "") << to_text(command);
+    }
+    EXPECT_EQ(to_text(again.scene()), to_text(session.scene()));
+}
+
 TEST(Session, options_change_the_run) {
     Session session = test::session("double_pendulum");
     session.apply(command::End{5.0});
@@ -115,6 +146,13 @@ TEST(Session, plays_and_finds_events) {
     EXPECT_EQ(session.time(), events[1].t);
     session.apply(command::Seek{1e9});
     EXPECT_EQ(session.time(), session.trajectory().end_time);
+    EXPECT_EQ(session.notice(), "seek 1000000000: the run ends at t = 20 s");
+    session.apply(command::Pause{});
+    EXPECT_NE(session.notice(), "") << "it stays until something else is done";
+    play_on(session, 1.0);
+    session.apply(command::Set{"m", 1.0});
+    session.apply(command::Seek{20.0});
+    EXPECT_EQ(session.notice(), "");
     session.apply(command::Play{});
     EXPECT_TRUE(session.playing());
     EXPECT_EQ(session.time(), 0.0) << "play at the end means once more";

@@ -65,7 +65,8 @@ TEST_F(Strangers, journals_use_no_files) {
 }
 
 TEST_F(Strangers, journals_may_name_assets_and_what_the_command_line_names) {
-    EXPECT_EQ(screenshot("open ball_on_floor\nreplay the_ball\n").status, 0);
+    folder.put("x.journal", "open ball_on_floor\nreplay the_ball\n");
+    EXPECT_EQ(folder.run("screenshot --journal x.journal --out a.png --size 640x480").status, 0);
     folder.put("mine.toml", drop_text);
     EXPECT_EQ(screenshot("open ./mine.toml\n", "mine.toml").status, 0);
     EXPECT_EQ(screenshot("open ./mine.toml\ntext \"x\"\nsave ./mine.toml\n", "mine.toml").status, 2);
@@ -91,7 +92,7 @@ TEST_F(Strangers, a_journal_that_is_trusted_overwrites_nothing) {
 }
 
 TEST_F(Strangers, a_text_that_is_no_system_is_not_saved) {
-    EXPECT_EQ(screenshot("text \"alias ls=rm\"\nsave .bashrc\n", "--allow-files").status, 0);
+    EXPECT_EQ(screenshot("text \"alias ls=rm\"\nsave .bashrc\n", "--allow-files").status, 2);
     EXPECT_FALSE(has(".bashrc"));
     const Answer answer = folder.run("figure ball_on_sine --do 'text \"x\"' --do 'save b.toml' --out b.svg");
     EXPECT_EQ(answer.status, 2);

@@ -40,7 +40,7 @@ const std::string changes[] = {
     "zoom 1 0 5 -1 2\nlink off\nzoom 2 1 3 -1 2\nfit 1\nlink on\n",
     "zoom 1 0 5 -1 2\nplot 1 t y\nplot 2 t gap\n",
     "set e 0.7\npin\nset e 0.2\nconditions paper\nselect 3\nseek 1\n",
-    "look 1 2 3\nhide trail\nshow lens\nhide force\nspeed 0.1\nloop on\nlens 2.5\nselect 11\nsay \"a # \\\"b\\\"\"\n",
+    "look 1 2 3\nhide trail\nshow lens\nhide force\nspeed 0.1\nloop on\nselect 10\nlens 2.5\nsay \"a # \\\"b\\\"\"\n",
     "text \"title = \\\"no system\\\"\"\nset g 2\n",
 };
 
@@ -218,6 +218,36 @@ TEST(Export, is_not_done_by_a_picture_that_is_reproduced) {
     EXPECT_TRUE(fs::remove(folder.path() / "run.json"));
     EXPECT_EQ(folder.run("reproduce f.svg").status, 0);
     EXPECT_FALSE(fs::exists(folder.path() / "run.json"));
+}
+
+// With a pinned run the legend tells which is which.
+TEST(Figure, names_both_runs_by_what_differs) {
+    const auto last_keys = [](const std::string& journal) {
+        Session session = test::session("double_pendulum");
+        apply(session, journal);
+        std::vector<std::string> labels;
+        for (const Key& key : figure_of(session, {}).keys) labels.push_back(key.label);
+        return std::vector<std::string>(labels.end() - 2, labels.end());
+    };
+    using Labels = std::vector<std::string>;
+    EXPECT_EQ(last_keys("pin\nset e 0.3\n"), (Labels{"𝑒 = 0.3", "pinned: 𝑒 = 0.5"}));
+    EXPECT_EQ(last_keys("pin\nset theta1 -20 deg\nset m1 2\n"),
+              (Labels{"𝑚₁ = 2\u00a0kg, 𝜃₁(0) = \u221220°", "pinned: 𝑚₁ = 1\u00a0kg, 𝜃₁(0) = 30°"}));
+    EXPECT_EQ(last_keys("pin\neps 0.1\n"), (Labels{"eps 0.1", "pinned: eps 1e-06"}));
+    EXPECT_EQ(last_keys("pin\n")[1], "pinned run");
+}
+
+// The surface is drawn as far as the pinned run has made the picture.
+TEST(Figure, draws_the_surface_under_both_runs) {
+    Session session = test::session("ball_on_sine");
+    apply(session, "pin\nset e 0.3\nset x' 1.2\n");
+    const Figure figure = figure_of(session, {});
+    const Panel& path = figure.panels[3];
+    double right = 0.0;
+    for (const Point& point : path.boundary.points)
+        if (std::isfinite(point.x)) right = std::max(right, point.x);
+    ASSERT_TRUE(path.equal_axes);
+    EXPECT_GT(right, path.x.high - 0.02 * (path.x.high - path.x.low));
 }
 
 TEST(Figure, refuses_steps_that_are_refused) {

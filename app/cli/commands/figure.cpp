@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <filesystem>
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
@@ -11,6 +9,7 @@
 #include "journal/journal.hpp"
 #include "model/model.hpp"
 #include "pictures/pdf.hpp"
+#include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
 #include "session/open_session.hpp"
@@ -30,18 +29,6 @@ struct FigureArguments {
     PictureSize size;
 };
 
-// By --format, else by the ending of --out: "png", "svg" or "pdf".
-std::string format_of(const FigureArguments& arguments) {
-    if (!arguments.format.empty()) return arguments.format;
-    if (arguments.out == "-") return "png";
-    std::string ending = std::filesystem::path(arguments.out).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? c + 32 : c; });
-    if (ending == ".png" || ending == ".svg" || ending == ".pdf") return ending.substr(1);
-    throw InputError("--out " + arguments.out, {}, "this name says neither PNG nor SVG nor PDF",
-                     "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
-}
-
 // Puts a figure of a finished run where it belongs.
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
         PictureJob& job) {
@@ -53,7 +40,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Fi
     return told_of(trajectory);
 }
 
-// The plots of the explorer after a journal and some commands more. What is refused there is bad input here.
+// The plots of the explorer after a journal and some commands more.
 int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
@@ -66,21 +53,15 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
                                    arguments.overrides, source_of(job), {});
     job.add(arguments.out);
-    const Run asked = session.run();
-    const auto model = session.model();
-    for (const Command& step : steps) {
-        session.apply(step);
-        if (!session.error().empty()) throw InputError(to_text(step), {}, session.error());
-        if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
-    }
-    warn(session.description(), session.run(), session.model() == model ? &asked : nullptr);
+    apply_all(session, steps);
+    if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
     return put(arguments, session.trajectory(), figure_of(session, style), format, job);
 }
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
-    const std::string format = format_of(arguments);
+    const std::string format = format_for(arguments.out, arguments.format, ", or leave --format out: the name tells");
     if (format == "pdf") need_pdf_writer("--out " + arguments.out);
     if (format == "png") job.check_size(arguments.size.width, arguments.size.height);
     if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, format, job);

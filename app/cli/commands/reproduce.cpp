@@ -6,6 +6,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
+#include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "system/description.hpp"
 
@@ -57,6 +58,7 @@ int reproduce(const std::string& picture, const std::string& out) {
     const std::string before = read_text(picture, largest_picture);
     if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
+    if (!out.empty()) format_for(out, picture_format(before));
     PictureJob job(origin);
     const int status = with_name(picture, [&] { return run_again(picture, origin, picture_format(before), job); });
     const std::string& after = *job.made();
