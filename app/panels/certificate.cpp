@@ -43,7 +43,8 @@ void show_inequality(const Inequality& inequality, bool decisive) {
         name.replace(at_power, 2, "\u00b2");
     list->AddText(at, packed(color), name.c_str());
     const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
-    list->AddText({std::floor(at.x + units(138.0F)), at.y}, packed(color), sides.c_str());
+    const ImVec2 middle{std::floor(at.x + units(138.0F)), at.y};
+    cell(middle, sides, std::min(units(150.0F), at.x + width + units(6.0F) - middle.x), color);  // into the margin
     const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
     const float top = at.y + 0.35F * line, bottom = at.y + 0.7F * line;
     if (room > units(12.0F) && inequality.right > 0.0) {

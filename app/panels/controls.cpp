@@ -27,9 +27,11 @@ std::string short_name(const std::string& system) {
 
 void choose_system(const Session& session, PanelState& state, Commands& commands, float width) {
     ImGui::SetNextItemWidth(width);
-    const bool is_down =
-        ImGui::BeginCombo("##system", short_name(session.system()).c_str(), ImGuiComboFlags_HeightLargest);
+    const std::string whole = short_name(session.system());
+    const std::string name = fitted(whole, width - ImGui::GetFrameHeight() - 2.0F * ImGui::GetStyle().FramePadding.x);
+    const bool is_down = ImGui::BeginCombo("##system", name.c_str(), ImGuiComboFlags_HeightLargest);
     remember(state, "systems");
+    if (!is_down && name != whole) tooltip(whole);
     if (is_down) {
         for (const SystemEntry& entry : state.systems) {
             const bool is_open = entry.name == session.system();

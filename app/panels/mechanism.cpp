@@ -26,7 +26,7 @@ void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
     const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
     const double unit = std::min(double{area.width} / width, double{area.height} / height);
     const double below = 0.5 * (double{area.height} - unit * height);
-    if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 3.0 * strip) return;
+    if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 2.5 * strip) return;
     double more = 2.0 * (strip - below) / unit;  // as long as the width decides what is seen
     if (unit * (height + more) > double{area.height}) more = strip * height / (double{area.height} - strip);
     drawing.y_low -= more;

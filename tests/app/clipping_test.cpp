@@ -245,9 +245,9 @@ TEST_P(Clipping, cuts_no_letter) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Clipping,
-                         testing::Values(std::tuple(1024, 700, 1.0), std::tuple(1280, 800, 1.0),
-                                         std::tuple(1600, 1000, 1.0), std::tuple(2560, 1600, 2.0),
-                                         std::tuple(1600, 1000, 1.5)));
+                         testing::Values(std::tuple(800, 600, 1.0), std::tuple(1024, 700, 1.0),
+                                         std::tuple(1280, 800, 1.0), std::tuple(1600, 1000, 1.0),
+                                         std::tuple(2560, 1600, 2.0), std::tuple(1600, 1000, 1.5)));
 
 // The test itself: text too long for its window is found, sideways and downwards, and text that fits is not.
 TEST(Clipping, finds_what_is_cut) {
