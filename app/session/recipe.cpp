@@ -182,7 +182,7 @@ std::string told_apart(const SystemDescription& description, const Run& run, con
     std::vector<std::string> parts;
     const auto changed = changed_values(description, other, run);
     for (const auto& [name, given] : changed) {
-        const bool is_angle = unit_given(description, name) == "rad";
+        const bool is_angle = is_of_angles(unit_of(description, name));
         const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
                                            [&](const ParameterDescription& p) { return p.name == name; });
         std::string unit = typeset_unit(unit_of(description, name));

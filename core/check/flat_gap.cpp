@@ -16,16 +16,16 @@ bool falls_to_flat(const Model& model, const Run& run, std::size_t contact, Stat
     constexpr double least = 0.2, most = 0.35;
     auto terms = model.evaluator(model.programs_of(contact).contact_terms, run.parameters);
     double before = 0.0;
-    for (int step = 0; step <= steps; ++step) {
+    for (int round = 0; round <= steps; ++round) {
         set_state(terms, state);
         terms.run();
         const double h = terms.h(), share = std::abs(h) / before;
-        if (step > steps - looked_at && !(share > least && share < most)) return false;
+        if (round > steps - looked_at && !(share > least && share < most)) return false;
         before = std::abs(h);
         double slope = 0.0;
         const auto dof = static_cast<std::size_t>(state.q.size());
         for (std::size_t i = 0; i < dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
-        if (step == steps || !(slope > 0.0)) break;
+        if (round == steps || !(slope > 0.0)) break;
         for (std::size_t i = 0; i < dof; ++i) state.q[static_cast<Eigen::Index>(i)] -= h / slope * terms.gradient(i);
     }
     return before > 0.0 && is_flat(model, run.parameters, state, contact);

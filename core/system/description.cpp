@@ -102,9 +102,8 @@ namespace {
 
 // "8.2 rad"; an angle that no one has typed in radians, 400 deg or 3*pi, in degrees.
 std::string with_unit(double value, const std::string& unit) {
-    const bool is_angle = unit == "rad" || unit == "rad/s";
     constexpr double few_decimals = 1e4;
-    if (!is_angle || std::round(value * few_decimals) == value * few_decimals)
+    if (!is_of_angles(unit) || std::round(value * few_decimals) == value * few_decimals)
         return fmt::format("{}{}{}", value, unit.empty() ? "" : " ", unit);
     return fmt::format("{:.6g} deg{}", degrees(value), unit.substr(3));
 }
@@ -116,9 +115,8 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
     const auto look = [&](const std::string& name, double value, const std::array<double, 2>& range, bool is_written) {
         if (!is_written || (value >= range[0] && value <= range[1])) return;
         const std::string unit = unit_of(description, name), shown_value = with_unit(value, unit);
-        const bool is_angle = unit == "rad" || unit == "rad/s",
-                   is_shown_in_degrees = shown_value.find(" deg") != shown_value.npos;
-        const bool seems_degrees = is_angle && !is_shown_in_degrees && std::abs(value) > 6.5;
+        const bool is_shown_in_degrees = shown_value.find(" deg") != shown_value.npos;
+        const bool seems_degrees = is_of_angles(unit) && !is_shown_in_degrees && std::abs(value) > 6.5;
         const double factor = is_shown_in_degrees ? degrees(1.0) : 1.0;
         told.push_back(fmt::format(
             "{} = {} is outside its range, {:.6g} to {:.6g}{}", name, shown_value, factor * range[0], factor * range[1],

@@ -165,6 +165,8 @@ double* find_value(const SystemDescription& description, Run& run, std::string_v
 std::string why_not_settable(const SystemDescription& description, std::string_view name);
 // The unit of a coordinate's rate; "" where there is none.
 std::string rate_unit(const std::string& unit);
+// Whether it is that of an angle or of its rate: degrees may be shown.
+inline bool is_of_angles(std::string_view unit) { return unit == "rad" || unit == "rad/s"; }
 // The unit of such a name's value, a rate's with its "/s"; "" where it is not known.
 std::string unit_of(const SystemDescription& description, std::string_view name);
 // A sentence for each value outside the range that the file gives it: no mistake, but perhaps not what was meant.

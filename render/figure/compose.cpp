@@ -323,10 +323,10 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     add_curves(panel, view, theme);
     trace(panel, samples, values, framing, x_range, y_range);
     if (!single) name_drawn(panel);
-    if (const double noise = noise_of(trajectory, samples, values, quantities.size() - 1);
-        y_range.high - y_range.low <= noise) {
+    if (const double unseen = noise_of(trajectory, samples, values, quantities.size() - 1);
+        y_range.high - y_range.low <= unseen) {
         const double middle = 0.5 * (y_range.low + y_range.high);
-        y_range.low = y_range.high = std::abs(middle) <= noise ? 0.0 : middle;
+        y_range.low = y_range.high = std::abs(middle) <= unseen ? 0.0 : middle;
     }
     const bool several = trajectory.model->contacts() > 1 && !samples.empty();
     if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
