@@ -7,189 +7,151 @@
 #include <limits>
 #include <stdexcept>
 
+#include "floor/laws.hpp"
 #include "simulate/impact.hpp"
-
 #include "simulate/many.hpp"
 
 namespace achilles::test {
 
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-// The events of an execution as times: the impacts of every hybrid phase, when it ended, when contact ended.
-struct Outline {
-    struct Hybrid {
-        std::vector<double> impacts;
-        double zeno_low = 0.0, zeno_high = 0.0;
-    };
-    std::vector<Hybrid> bounces;  // the last one may lack its Zeno point
-    std::vector<double> releases;
-    std::size_t zenos = 0;
-    Vector end;
-    bool ends_alone = false;  // no times are kept
-};
-
-Outline outline_of(const Trajectory& trajectory) {
-    Outline outline;
-    outline.bounces.emplace_back();
-    outline.ends_alone = trajectory.pieces.empty();
-    if (outline.ends_alone) {
-        for (std::size_t i = 1; i < trajectory.phases.size(); ++i) {
-            const bool contact = trajectory.phases[i].kind == Phase::Kind::constrained;
-            outline.zenos += contact ? 1 : 0;
-            if (!contact) outline.releases.push_back(trajectory.phases[i].start);
-        }
-    }
-    for (const Event& event : trajectory.events) {
-        if (event.kind == Event::Kind::impact) outline.bounces.back().impacts.push_back(event.t);
-        if (event.kind == Event::Kind::release) outline.releases.push_back(event.t);
-        if (event.kind != Event::Kind::zeno) continue;
-        auto& bounces = outline.bounces.back();
-        bounces.zeno_low = event.certificate->zeno_low;
-        bounces.zeno_high = event.certificate->zeno_high;
-        ++outline.zenos;
-        outline.bounces.emplace_back();
-    }
-    outline.end.resize(2 * trajectory.end.q.size());
-    outline.end << trajectory.end.q, trajectory.end.v;
-    return outline;
+Starts::Starts(std::shared_ptr<const Model> model, unsigned seed) : model_(std::move(model)), random_(seed) {
+    look(model_->default_run());
 }
 
-Outline outline_of(const TrueExecution& truth) {
-    Outline outline;
-    outline.bounces.emplace_back();
-    for (const TrueEvent& event : truth.events) {
-        const double t = static_cast<double>(event.t);
-        if (event.kind == Event::Kind::impact) outline.bounces.back().impacts.push_back(t);
-        if (event.kind == Event::Kind::release) outline.releases.push_back(t);
-        if (event.kind != Event::Kind::zeno) continue;
-        outline.bounces.back().zeno_low = outline.bounces.back().zeno_high = t;
-        ++outline.zenos;
-        outline.bounces.emplace_back();
-    }
-    const std::size_t n = truth.end.q.size();
-    outline.end.resize(static_cast<Eigen::Index>(2 * n));
-    for (std::size_t i = 0; i < n; ++i) {
-        outline.end[static_cast<Eigen::Index>(i)] = static_cast<double>(truth.end.q[i]);
-        outline.end[static_cast<Eigen::Index>(n + i)] = static_cast<double>(truth.end.v[i]);
-    }
-    return outline;
+void Starts::look(const Run& run) {
+    gaps_.clear();
+    for (std::size_t i = 0; i < model_->contacts(); ++i)
+        gaps_.push_back(model_->evaluator(model_->gap(i), run.parameters));
+    start_time_ = run.options.start_time;
 }
-
-struct Difference {
-    double size = 0.0;
-    std::string where;
-    void add(double more, const std::string& place) {
-        if (std::isnan(more)) more = infinity;
-        if (more <= size) return;
-        size = more;
-        where = place;
-    }
-};
-
-// How far `b` is from `a`. A bouncing may have been cut at another impact, so those that both have are compared.
-Difference between(const Outline& a, const Outline& b) {
-    Difference difference;
-    if (a.zenos != b.zenos || a.releases.size() != b.releases.size())
-        difference.add(infinity, fmt::format("{} Zeno points and {} releases against {} and {}", a.zenos,
-                                             a.releases.size(), b.zenos, b.releases.size()));
-    for (std::size_t phase = 0; !a.ends_alone && phase < std::min(a.bounces.size(), b.bounces.size()); ++phase) {
-        const auto &x = a.bounces[phase], &y = b.bounces[phase];
-        const bool both_end = phase < a.zenos && phase < b.zenos;
-        if (!both_end && x.impacts.size() != y.impacts.size())
-            difference.add(infinity,
-                           fmt::format("{} impacts against {} in phase {}", x.impacts.size(), y.impacts.size(), phase));
-        for (std::size_t i = 0; i < std::min(x.impacts.size(), y.impacts.size()); ++i)
-            difference.add(std::abs(x.impacts[i] - y.impacts[i]),
-                           fmt::format("impact {} of phase {}, t = {:.9g}", i + 1, phase, x.impacts[i]));
-        if (both_end)
-            difference.add(std::max({0.0, x.zeno_low - y.zeno_high, y.zeno_low - x.zeno_high}),
-                           fmt::format("Zeno point {}, t = {:.9g}", phase + 1, x.zeno_low));
-    }
-    for (std::size_t i = 0; i < std::min(a.releases.size(), b.releases.size()); ++i)
-        difference.add(std::abs(a.releases[i] - b.releases[i]),
-                       fmt::format("release {}, t = {:.9g}", i + 1, a.releases[i]));
-    difference.add((a.end - b.end).cwiseAbs().maxCoeff(), "end state");
-    return difference;
-}
-
-}  // namespace
-
-Starts::Starts(std::shared_ptr<const Model> model, unsigned seed)
-    : model_(std::move(model)),
-      gap_(model_->evaluator(model_->gap(), model_->default_run().parameters)),
-      random_(seed) {}
 
 double Starts::uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
 }
 
-State Starts::next() {
+double Starts::within(const std::array<double, 2>& range) { return uniform(range[0], range[1]); }
+
+std::optional<State> Starts::in_the_air(int tries) {
     const auto& coordinates = model_->description().coordinates;
-    State state{Vector(model_->dof()), Vector(model_->dof())};
-    for (int tries = 0; tries < 100000; ++tries) {
+    State state{Vector(model_->dof()), Vector(model_->dof()), start_time_};
+    for (; tries > 0; --tries) {
         for (Eigen::Index i = 0; i < state.q.size(); ++i) {
             const auto& coordinate = coordinates[static_cast<std::size_t>(i)];
-            state.q[i] = uniform(coordinate.range[0], coordinate.range[1]);
-            state.v[i] = uniform(coordinate.rate_range[0], coordinate.rate_range[1]);
+            state.q[i] = within(coordinate.range);
+            state.v[i] = within(coordinate.rate_range);
         }
-        set_state(gap_, state);
-        gap_.run();
-        if (gap_.output(0) > 1e-6) return state;
+        const bool open = std::all_of(gaps_.begin(), gaps_.end(), [&](Evaluator<double>& gap) {
+            set_state(gap, state);
+            gap.run();
+            return gap.output(0) > 1e-6;
+        });
+        if (open) return state;
+    }
+    return std::nullopt;
+}
+
+State Starts::next() {
+    if (const auto state = in_the_air(100000)) return *state;
+    throw std::runtime_error("the ranges of " + model_->description().file + " show no state in the air");
+}
+
+Run Starts::next_run() {
+    for (int tries = 0; tries < 1000; ++tries) {
+        Run run = model_->default_run();
+        for (std::size_t i = 0; i < run.parameters.size(); ++i)
+            run.parameters[i] = within(model_->description().parameters[i].range);
+        const double from = run.options.start_time, to = run.options.end_time;
+        if (!model_->equations().autonomous) run.options.start_time = uniform(from, to);
+        run.options.end_time = run.options.start_time + uniform(0.0, to - from);
+        look(run);
+        const auto state = in_the_air(100);
+        if (!state) continue;
+        run.q = state->q;
+        run.v = state->v;
+        return run;
     }
     throw std::runtime_error("the ranges of " + model_->description().file + " show no state in the air");
 }
 
-std::string start_of(const Trajectory& trajectory) {
+std::string start_of(const Model& model, const Run& run) {
     std::string text;
-    const auto& coordinates = trajectory.model->description().coordinates;
-    for (Eigen::Index i = 0; i < trajectory.run.q.size(); ++i) {
-        const std::string& name = coordinates[static_cast<std::size_t>(i)].name;
-        text += fmt::format(" --set {}={} --set \"{}'={}\"", name, trajectory.run.q[i], name, trajectory.run.v[i]);
+    const SystemDescription& description = model.description();
+    for (Eigen::Index i = 0; i < run.q.size(); ++i) {
+        const std::string& name = description.coordinates[static_cast<std::size_t>(i)].name;
+        text += fmt::format(" --set {}={} --set \"{}'={}\"", name, run.q[i], name, run.v[i]);
     }
-    const Options& options = trajectory.run.options;
+    const Run usual = model.default_run();
+    for (std::size_t i = 0; i < usual.parameters.size(); ++i)
+        if (run.parameters[i] != usual.parameters[i])
+            text += fmt::format(" --set {}={}", description.parameters[i].name, run.parameters[i]);
+    const Options& options = run.options;
+    if (options.start_time != usual.options.start_time) text += fmt::format(" --start-time {}", options.start_time);
     return text + fmt::format(" --end {} --tolerance {} --method {} --eps-q {} --eps-v {}", options.end_time,
                               options.tolerance, to_text(options.method), options.truncation.eps_q,
                               options.truncation.eps_v);
 }
 
+std::string start_of(const Trajectory& trajectory) { return start_of(*trajectory.model, trajectory.run); }
+
+namespace {
+
+// The gaps of a run, as evaluators of its parameters.
+std::vector<Evaluator<double>> gaps_of(const Trajectory& trajectory) {
+    std::vector<Evaluator<double>> gaps;
+    for (std::size_t i = 0; i < trajectory.model->contacts(); ++i)
+        gaps.push_back(trajectory.model->evaluator(trajectory.model->gap(i), trajectory.run.parameters));
+    return gaps;
+}
+
+double least_of(std::vector<Evaluator<double>>& gaps, const State& state) {
+    double least = std::numeric_limits<double>::infinity();
+    for (Evaluator<double>& gap : gaps) {
+        set_state(gap, state);
+        gap.run();
+        if (!(gap.output(0) >= least)) least = gap.output(0);
+    }
+    return least;
+}
+
+}  // namespace
+
 std::string below_the_floor(const Trajectory& trajectory) {
-    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
+    auto gaps = gaps_of(trajectory);
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::impact) continue;
-        set_state(gap, {event.q, event.v_before});
-        gap.run();
+        const double least = least_of(gaps, {event.q, event.v_before, event.t});
         const double terms = std::max(1.0, event.q.cwiseAbs().maxCoeff());
-        if (!(gap.output(0) >= -1e-12 * terms))
-            return fmt::format("the impact at t = {:.17g} is stored at h = {:.3g}", event.t, gap.output(0));
+        if (!(least >= -1e-12 * terms))
+            return fmt::format("the impact at t = {:.17g} is stored at h = {:.3g}", event.t, least);
     }
     return {};
 }
 
 std::string fault(const Trajectory& trajectory, double between) {
-    if (trajectory.outcome.kind != Outcome::Kind::end_time)
+    // Not all that chatters together is completed (theory-gaps.md 2.6): such a run says so.
+    const bool may_be_undecided = trajectory.model->contacts() > 1;
+    if (trajectory.outcome.kind != Outcome::Kind::end_time &&
+        !(may_be_undecided && trajectory.outcome.kind == Outcome::Kind::undecided))
         return fmt::format("{}: {}", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     if (!(trajectory.statistics.least_gap >= -1e-12))
         return fmt::format("least gap {} at the end of a step", trajectory.statistics.least_gap);
-    auto gap = trajectory.model->evaluator(trajectory.model->gap(), trajectory.run.parameters);
     const std::string stored = below_the_floor(trajectory);
     if (!stored.empty()) return stored;
-    const auto n = static_cast<std::size_t>(trajectory.model->dof());
+    auto gaps = gaps_of(trajectory);
     for (const Piece& piece : trajectory.pieces) {
         if (!piece.held.empty()) continue;  // a sample is projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
-            for (std::size_t i = 0; i < n; ++i) {
-                double q = 0.0;
-                for (std::size_t k = piece.degree + 1; k-- > 0;)
-                    q = q * theta + trajectory.coefficients[piece.first + 2 * n * k + i];
-                gap.input(i) = q;
-            }
-            gap.run();
-            if (!(gap.output(0) >= -between))
-                return fmt::format("gap {} inside the step from t = {} to {}", gap.output(0), piece.start, piece.end);
+            const double t = piece.start + theta * (piece.end - piece.start);
+            const double least = least_of(gaps, state_in(piece, trajectory.coefficients, trajectory.model->dof(), t));
+            if (!(least >= -between))
+                return fmt::format("gap {} inside the step from t = {} to {}", least, piece.start, piece.end);
         }
     }
+    return {};
+}
+
+std::string broken_law(const Trajectory& trajectory) {
+    for (const auto law : {energy, gap, phases, contact_force})
+        if (const Violations violations = law(trajectory); !violations.empty()) return violations.front();
     return {};
 }
 
@@ -209,7 +171,7 @@ Comparison Judge::compare(const Trajectory& trajectory) {
     const Outline own = outline_of(trajectory);
     Comparison result;
     const TrueExecution truth = truth_.run(point_of({run.q, run.v}), run.options.end_time);
-    const Difference error = between(own, outline_of(truth));
+    const Distance error = between(own, outline_of(truth));
     result.error = error.size;
     result.where = error.where;
     for (Eigen::Index i = 0; i < 2 * run.q.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "laws/laws.hpp"
+#include "floor/laws.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/model.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/surfaces.hpp"
 
