@@ -34,22 +34,25 @@ class Chatter {
             a_least_[i] = p_.a[i] - d_[i] * p_.Delta;
             slope_[i] = rest_[i] * p_.lambda[i] - sqrt(rest_[i]) * p_.Delta;
         }
-        const Interval one(1.0), two(2.0);
+        const Interval one(1.0), two(2.0), e = max(p_.e[0], p_.e[1]);
+        // An impact of i alone takes the part 1 - e_i^2 of hdot_i^2/(2 W_ii). One of both, p' W p/2 (1 - e)/(1 + e) at least,
+        // and p' W p >= (1 + e_i)^2 hdot_i^2/W_ii since W p >= (1 + e) |hdot|: the same where restitutions are equal.
+        for (std::size_t i = 0; i < 2; ++i) taken_[i] = square(one + p_.e[i]) * (one - e) / (one + e);
         L_ = sqrt(square(p_.lambda[0]) * p_.W[0][0] + two * p_.lambda[0] * p_.lambda[1] * p_.W[0][1] +
                   square(p_.lambda[1]) * p_.W[1][1]);
         kd_ = sqrt(two / (one + p_.W[0][1] / (d_[0] * d_[1])));
     }
     bool is_possible() const {
         return certainly_positive(a_least_[0]) && certainly_positive(a_least_[1]) && certainly_positive(slope_[0]) &&
-               certainly_positive(slope_[1]) && certainly_positive(L_ - p_.Delta) &&
-               certainly_less(kd_ * p_.omega, Interval(1.0));
+               certainly_positive(slope_[1]) && certainly_positive(L_ - p_.Delta) && certainly_positive(taken_[0]) &&
+               certainly_positive(taken_[1]) && certainly_less(kd_ * p_.omega, Interval(1.0));
     }
 
     std::optional<PairBound> with(double share) const {
         const Interval eta(share), one(1.0), two(2.0), four(4.0), c = abs(p_.W[0][1]);
         std::array<Interval, 2> hat, low;
         for (std::size_t i = 0; i < 2; ++i) {
-            hat[i] = d_[i] * sqrt((one + p_.omega) * eta / (one - square(p_.e[i])));
+            hat[i] = d_[i] * sqrt((one + p_.omega) * eta / taken_[i]);
             low[i] = c * square(hat[i]) / (two * p_.W[i][i] * a_least_[i]);
         }
         Interval gam(0.0), S(0.0), m(1.0), Ct(0.0);
@@ -91,14 +94,13 @@ class Chatter {
 
  private:
     const PairAtCollision& p_;
-    std::array<Interval, 2> d_, rest_, a_least_, slope_;
+    std::array<Interval, 2> d_, rest_, a_least_, slope_, taken_;
     Interval L_, kd_;
 };
 
 }  // namespace
 
 std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
-    if (pair.e[0].lo() != pair.e[1].lo() || pair.e[0].hi() != pair.e[1].hi()) return std::nullopt;
     const Chatter chatter(pair);
     if (!chatter.is_possible()) return std::nullopt;
     std::optional<PairBound> best;

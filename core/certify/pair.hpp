@@ -26,7 +26,7 @@ struct PairAtCollision {
 struct PairBound {
     Interval T, J, m;
 };
-// Nothing where no eta is admissible. Restitutions must be equal: landings of both at once are covered for these only.
+// Nothing where no eta is admissible, as with a restitution of 1.
 std::optional<PairBound> pair_bound(const PairAtCollision& pair);
 
 // A collision of the pair: the state before it, h and hdot of the two.

@@ -39,7 +39,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
             return;
         }
         const ContactSet landing = landing_with(which, contact);
-        if (landing.count() > 1 || !next_.touching.empty() || !passes_on(which)) return collide(landing);
+        if (landing.count() > 1 || !next_.touching.empty() || !stays_held(which, contact)) return collide(landing);
     }
     land_alone(contact);
 }

@@ -243,6 +243,7 @@ std::string Execution::doubt(const StepResult& result) const {
 }
 
 void Execution::stop_at(StepFailure failure) {
+    if (failure == StepFailure::step_too_small && is_chatter()) return end_chatter({});
     const std::string place = where(next_.state);
     if (failure == StepFailure::not_a_number)
         return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);

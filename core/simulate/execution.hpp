@@ -121,7 +121,9 @@ class Execution {
     void enter_phase();
     // Where several contacts are closed (several.cpp).
     ContactSet landing_with(std::size_t which, const Contact& contact);
-    bool passes_on(std::size_t which);
+    bool stays_held(std::size_t which, const Contact& contact);
+    bool is_pressed(const Closed& closed, ContactSet held, const State& state);
+    double plastic_work(const State& before, ContactSet contacts);
     void collide(ContactSet landing);
     bool complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding);
     bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
@@ -131,6 +133,7 @@ class Execution {
     bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
     bool judge(ContactSet closed, ContactSet active);
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
+    bool is_chatter() const;
     void end_chatter(ContactSet contacts);
     bool stays_closed(std::size_t contact, ContactSet held);
     bool is_at_rest(ContactSet held);

@@ -128,7 +128,7 @@ Exchange Recorder::exchange_of_jump(const State& before, const State& after, dou
     const auto energy_at = [&](const State& state) {
         set_state(energy_, state);
         energy_.run();
-        return energy_.kinetic();
+        return energy_.total();  // the place jumps too where a pair rests
     };
     return {work, work + energy_at(before) - energy_at(after)};
 }

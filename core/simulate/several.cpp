@@ -50,15 +50,35 @@ ContactSet Execution::landing_with(std::size_t which, const Contact& contact) {
     return landing;
 }
 
-// Whether an impact on this contact presses all that is held (kappa >= 0), so that it stays held.
-bool Execution::passes_on(std::size_t which) {
+// Whether all that is held stays so at an impact of this contact: the impact presses it (kappa >= 0), and with the velocities
+// after it the forces, which may depend on them, still do.
+bool Execution::stays_held(std::size_t which, const Contact& contact) {
     if (next_.held.empty()) return true;
     if (next_.held.count() >= most_contacts) return false;
     const Closed closed = surfaces_->at(next_.state, next_.held.with(which));
-    const auto held = closed.places_of(next_.held);
+    const auto held = closed.places_of(next_.held), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
-    return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, held, closed.places_of(ContactSet::of(which)))
-                .by_transmission;
+    if (order_dependence(enclosure(closed.W, radius_of(closed.W)), e, held, lands).by_transmission) return false;
+    const double restitution = restitutions_[which];
+    const State after{next_.state.q, impact(contact, next_.state.v, restitution), next_.state.t};
+    const bool rests = restitution == 0.0 && surfaces_->of(which, next_.held).normal_acceleration(after) < 0.0;
+    return is_pressed(closed, rests ? held.with(lands) : held, after);
+}
+
+// Whether the forces that hold some of these contacts press, by more than their rounding.
+bool Execution::is_pressed(const Closed& closed, ContactSet held, const State& state) {
+    const auto block = HeldBlock<double>::of(closed.W, held);
+    if (!block) return false;
+    ContactVector<double> hddot(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i]).normal_acceleration(state);
+    const ContactVector<double> lambda = -block->solve(hddot);
+    constexpr double rounding = 1e-12;
+    for (Eigen::Index i = 0; i < lambda.size(); ++i) {
+        const double size = std::abs(hddot[i]) + closed.W.row(i).cwiseAbs().dot(lambda.cwiseAbs());
+        if (contains(held, i) && !(lambda[i] * closed.W(i, i) > rounding * size)) return false;
+    }
+    return true;
 }
 
 // What an impact does to the energy, with what is passed on to held contacts that move.
@@ -74,6 +94,19 @@ Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange o
         if (next_.held.contains(closed.which[i]))
             own.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
     return own;
+}
+
+// What surfaces that move do where contacts are brought to rest: -p dh/dt, p = -W^-1 hdot.
+double Execution::plastic_work(const State& before, ContactSet contacts) {
+    if (!model_->equations().has_power()) return 0.0;
+    const Closed closed = surfaces_->at(before, contacts);
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(contacts));
+    if (!block) return 0.0;
+    const ContactVector<double> p = block->solve(-closed.rates());
+    double work = 0.0;
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        work -= p[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
+    return work;
 }
 
 // An impact of several at once, by Newton's law in Moreau's form.
@@ -213,7 +246,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     State restart = completion->restart;
     if (!surfaces_->project(restart, all, all)) return false;
     const State before = next_.state;
-    const Exchange exchange = record_.exchange_of_jump(before, restart, 0.0);
+    const Exchange exchange = record_.exchange_of_jump(before, restart, plastic_work(before, all));
     record_.impact(before, v_after, speed, exchange, landing);
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -231,6 +264,13 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     change_rates(before.v, all);
     begin_stretch(all, std::min(event.t, run_.options.end_time));
     return true;
+}
+
+// Whether the flight before, which an impact began and another one ended, was hardly longer than time resolves.
+bool Execution::is_chatter() const {
+    constexpr double resolved = 0x1p16;
+    return surfaces_->count() > 1 && record_.impacts() > 1 && next_.begins &&
+           last_step_ < resolved * ulp(next_.state.t);
 }
 
 // Nothing proves how a chatter that cannot be resolved any more ends. It is of these contacts and of what is near.

@@ -42,13 +42,10 @@ inline std::shared_ptr<const Model> load(const std::string& name) {
     return std::make_shared<const Model>(read_system(path));
 }
 
-// Of the gallery, those with one gap and nothing that depends on the time.
-inline std::vector<std::string> plain_systems() {
+// Of the gallery, those with one gap.
+inline std::vector<std::string> systems_of_one_gap() {
     std::vector<std::string> names = all_systems();
-    std::erase_if(names, [](const std::string& name) {
-        const auto model = load(name);
-        return model->contacts() > 1 || !model->equations().autonomous;
-    });
+    std::erase_if(names, [](const std::string& name) { return load(name)->contacts() > 1; });
     return names;
 }
 

@@ -26,7 +26,11 @@ void read_phases(const Trajectory& trajectory, Outline& outline) {
     }
 }
 
-void read_event(const Event& event, std::size_t contact, Outline::OfContact& known) {
+// Of several contacts that touch one another without a force, impacts may go on below what a method knows of a gap.
+constexpr double slowest = 1e-6;
+
+void read_event(const Event& event, std::size_t contact, bool several, Outline::OfContact& known) {
+    if (several && event.kind == Event::Kind::impact && event.impact_speed < slowest && event.opened.empty()) return;
     if (event.opened.contains(contact)) known.leaves.push_back(event.t);
     if (!event.contacts.contains(contact)) return;
     if (event.kind == Event::Kind::release) known.leaves.push_back(event.t);
@@ -77,7 +81,7 @@ Outline outline_of(const Trajectory& trajectory) {
     if (outline.ends_alone) read_phases(trajectory, outline);
     for (const Event& event : trajectory.events)
         for (std::size_t contact = 0; contact < outline.contacts.size(); ++contact)
-            read_event(event, contact, outline.contacts[contact]);
+            read_event(event, contact, outline.contacts.size() > 1, outline.contacts[contact]);
     outline.end.resize(2 * trajectory.end.q.size());
     outline.end << trajectory.end.q, trajectory.end.v;
     return outline;

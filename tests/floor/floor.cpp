@@ -217,6 +217,7 @@ bool GrazingStarts::dips_near_the_floor(const State& start) {
     double before = std::numeric_limits<double>::infinity();
     bool falling = false;
     for (double t = 0.0; t < soon_; t += dt) {
+        state.t = t;
         set_state(gap_, state);
         gap_.run();
         const double h = gap_.output(0);
@@ -224,7 +225,7 @@ bool GrazingStarts::dips_near_the_floor(const State& start) {
         falling = h < before && t > 0.0;
         before = h;
         const Vector a = rate(state), v = state.v + dt * a;
-        const Vector b = rate({state.q + dt * state.v, v});
+        const Vector b = rate({state.q + dt * state.v, v, t + dt});
         state.q += 0.5 * dt * (state.v + v);
         state.v += 0.5 * dt * (a + b);
     }

@@ -90,5 +90,53 @@ INSTANTIATE_TEST_SUITE_P(Reference, Gaps,
                                           testing::Values(Method::taylor, Method::dopri5)),
                          name_of);
 
+// A body that slides on a floor at x' = 1 and is lifted by 3/2 - x'^2 there, against gravity 1, until it strikes a wall.
+std::shared_ptr<const Model> lifted(double e, double push) {
+    return test::typed(fmt::format(R"toml(
+title = "Lifted where it is slow"
+coordinate = [{{ name = "x", start = 0, rate = 1.1, force = "{} - x'/10" }},
+              {{ name = "y", start = 0, force = "3/2 - x'^2" }}]
+lagrangian = {{ kinetic = "(x'^2 + y'^2)/2", potential = "y" }}
+constraint = [{{ name = "wall", gap = "1 - x", restitution = {} }}, {{ name = "floor", gap = "y", restitution = 0.5 }}]
+[run]
+end_time = 1.5
+)toml",
+                                   push, e));
+}
+
+// The force that holds a contact may depend on velocities: an impact that only presses it may leave it without.
+TEST(HeldContacts, AnImpactMayTakeTheForceFromWhatIsHeld) {
+    const auto floor = ContactSet::of(1), wall = ContactSet::of(0);
+    for (const Method method : {Method::taylor, Method::dopri5}) {
+        const auto model = lifted(0.5, 0.0);
+        auto run = model->default_run();
+        run.options.method = method;
+        run.options.tolerance = 1e-12;
+        const Trajectory trajectory = simulate(model, run);
+        ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        ASSERT_EQ(trajectory.events.size(), 1u);  // the blow, which opens the floor
+        EXPECT_EQ(trajectory.events[0].contacts, wall);
+        EXPECT_EQ(trajectory.events[0].opened, floor);
+        EXPECT_TRUE(trajectory.end_held.empty());
+        // x' falls by 1/10 for each metre, from 1 at the wall to -1/2; then y'' = 1/2 - (exp(-t/10)/2)^2.
+        const double blow = 10.0 * std::log(1.1), t = 1.5 - blow;
+        EXPECT_NEAR(trajectory.events[0].t, blow, 1e-12);
+        EXPECT_NEAR(trajectory.end.q[1], t * t / 4.0 - 0.25 / 0.04 * (std::exp(-0.2 * t) - 1.0 + 0.2 * t), 1e-12);
+    }
+}
+
+// The same where the wall catches it and holds it there: the floor leaves, the wall stays.
+TEST(HeldContacts, APlasticImpactMayTakeTheForceFromWhatIsHeld) {
+    const auto model = lifted(0.0, 0.01);
+    const Trajectory trajectory = simulate(model, model->default_run());
+    ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    ASSERT_EQ(trajectory.events.size(), 1u);
+    EXPECT_EQ(trajectory.events[0].opened, ContactSet::of(1));
+    EXPECT_EQ(trajectory.end_held, ContactSet::of(0));
+    const double t = 1.5 - trajectory.events[0].t;
+    EXPECT_NEAR(trajectory.end.q[0], 1.0, 1e-12);
+    EXPECT_NEAR(trajectory.end.q[1], t * t / 4.0, 1e-11);
+}
+
 }  // namespace
 }  // namespace achilles
