@@ -213,8 +213,10 @@ void Execution::release(std::size_t which) {
     const ContactSet held = next_.held;
     const bool leaves = certainly_positive(surfaces_->of(which, held.without(which)).normal(next_.state).jerk);
     if (surfaces_->count() > 1 && (!leaves || !next_.touching.empty() || not_unique_)) {
-        decide(held.with(next_.touching));
-        if (!outcome_ && next_.held != held) leave(held.without(next_.held));
+        const ContactSet closed = held.with(next_.touching);
+        decide(closed);
+        const ContactSet gone = closed.without(next_.held).without(next_.touching);
+        if (!outcome_ && next_.held != held) leave(gone.empty() ? held.without(next_.held) : gone);
         return;
     }
     if (!leaves) {

@@ -131,6 +131,8 @@ class Execution {
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed);
     bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
+    bool is_stuck(const Closed& closed, ContactSet active);
+    ContactSet carriers(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
     bool judge(ContactSet closed, ContactSet active);
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
     bool is_chatter() const;

@@ -63,25 +63,62 @@ bool Execution::hold_independent(const Closed& closed, const ContactVector<doubl
                 if (some.contains(i)) continue;
                 valid = valid && y[k] >= -scale;
                 const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
-                // What neither depends on them nor leaves needs a force of its own: they do not carry all.
-                if (!depends) valid = valid && y[k] > scale;
+                // What neither depends on them nor leaves at once is told by its rates, as what has a force of its own.
                 (depends ? carried : others) = (depends ? carried : others).with(i);
             }
             if (!valid) continue;
             next_.touching = closed.contacts_at(carried);
             // What is carried is so by all of these.
             if (judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
-                closed.contacts_at(some).without(next_.held).empty())
+                closed.contacts_at(some).without(next_.held).empty() &&
+                HeldBlock<double>::of(closed.W, closed.places_of(next_.held)))
                 return true;
         }
     // At rest for ever nothing has to be told apart.
     const ContactSet pressed_ones = closed.contacts_at(active);
-    if (!is_at_rest(pressed_ones)) return false;
-    next_.held = pressed_ones;
-    next_.touching = closed.contacts_at(all).without(pressed_ones);
+    const bool rests = is_at_rest(pressed_ones);
+    if (!rests && !is_stuck(closed, active)) return false;
+    const ContactSet carrying = rests ? pressed_ones : closed.contacts_at(carriers(closed, hddot, active));
+    if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
+    next_.held = carrying;
+    next_.touching = closed.contacts_at(all).without(carrying);
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
-        if (pressed_ones.contains(i)) next_.starts[i] = {};
+        if (carrying.contains(i)) next_.starts[i] = {};
     return true;
+}
+
+// Whether these, pressed, leave no motion at all: nothing moves, no surface does, and the gradients span everything.
+bool Execution::is_stuck(const Closed& closed, ContactSet active) {
+    if (next_.state.v != Vector::Zero(next_.state.v.size())) return false;
+    ContactSet basis;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        if (closed.contacts[i].gap_t != 0.0) return false;
+        if (active.contains(i) && HeldBlock<double>::of(closed.W, basis.with(i))) basis = basis.with(i);
+    }
+    return basis.count() == model_->dof();
+}
+
+// Of contacts that hold everything still, some that press by themselves and leave no acceleration; all of them if there are
+// none such.
+ContactSet Execution::carriers(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
+    const std::size_t count = closed.which.size();
+    for (std::uint32_t bits = 1; bits < 1u << count; ++bits) {
+        ContactSet some;
+        for (std::size_t i = 0; i < count; ++i)
+            if (bits >> i & 1u) some = some.with(i);
+        const auto block = some.without(active).empty() ? HeldBlock<double>::of(closed.W, some) : std::nullopt;
+        if (!block) continue;
+        const ContactVector<double> lambda = -block->solve(hddot), y = hddot + closed.W * lambda;
+        bool valid = true;
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto k = static_cast<Eigen::Index>(i);
+            const double size = std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs());
+            valid = valid && (some.contains(i) ? lambda[k] > 1e-9 * lambda.cwiseAbs().maxCoeff()
+                                               : std::abs(y[k]) <= 1e-12 * size);
+        }
+        if (valid) return some;
+    }
+    return active;
 }
 
 // Those of the doubtful whose force grows from 0, while these are held.

@@ -386,7 +386,7 @@ Violations contact_force(const Trajectory& trajectory) {
             if (!event.contacts.contains(held.which[i])) continue;
             const double force = forces[static_cast<Eigen::Index>(i)];
             const double size = std::max(strongest, probe.force_scale(after(event), held.contacts[i]));
-            complain(violations, std::abs(force) <= 1e-12 * size,
+            complain(violations, std::abs(force) <= 1e-11 * size,
                      fmt::format("released while the force is {:.3g} of {:.3g} at t = {:.17g}", force, size, event.t));
             complain(violations, probe.surfaces.of(held.which[i], event.held).jerk(after(event)) > 0.0,
                      fmt::format("released while h''' <= 0 at t = {:.17g}", event.t));

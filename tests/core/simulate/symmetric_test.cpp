@@ -116,6 +116,69 @@ end_time = {}
     }
 }
 
+// A table of mass 1 on those of four legs at (+-1, +-1), under a load at (x, y) on its top.
+std::shared_ptr<const Model> table(const std::string& load, const std::string& x, const std::string& y,
+                                   const std::vector<int>& legs = {0, 1, 2, 3}) {
+    const char* const signs[] = {"- u - v", "+ u - v", "- u + v", "+ u + v"};
+    std::string constraints;
+    for (const int leg : legs)
+        constraints += fmt::format("{}{{ name = \"leg{}\", gap = \"z {}\", restitution = 0 }}",
+                                   constraints.empty() ? "" : ", ", leg, signs[leg]);
+    return test::typed(fmt::format(R"toml(
+title = "Table"
+coordinate = [{{ name = "s", start = 0, rate = 1 }}, {{ name = "z", start = 0, force = "-({0})" }},
+              {{ name = "u", start = 0, force = "-({0})*({1})" }}, {{ name = "v", start = 0, force = "-({0})*({2})" }}]
+lagrangian = {{ kinetic = "(s'^2 + z'^2 + u'^2 + v'^2)/2", potential = "z" }}
+constraint = [{3}]
+[run]
+end_time = 4
+)toml",
+                                   load, x, y, constraints));
+}
+
+// Three legs carry a load beside the diagonals, two one on a diagonal, and it may change and move.
+TEST(SymmetricRuns, ATableWithOneLegTooManyStandsUnderAnyLoad) {
+    struct Load {
+        const char *load, *x, *y;
+    };
+    for (const auto& [load, x, y] : {Load{"2", "0.3", "0.1"}, Load{"1 + cos(t)^2", "0.3", "0.1"},
+                                     Load{"2", "0.5*cos(3*t)", "0.5*sin(3*t)"}, Load{"1", "s/4 - 1/2", "0.2"}}) {
+        const auto model = table(load, x, y);
+        const Trajectory trajectory = simulate(model, model->default_run());
+        ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << x << " " << trajectory.outcome.message;
+        EXPECT_NEAR(trajectory.end.q.tail(3).norm() + trajectory.end.v.tail(3).norm(), 0.0, 1e-12) << x;
+    }
+    for (const char* load : {"2", "2*cos(t)^2", "0"}) {
+        auto model = table(load, "0", "0");
+        auto run = model->default_run();
+        run.v[0] = 0.0;
+        const Trajectory trajectory = simulate(model, run);
+        ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << load << " " << trajectory.outcome.message;
+        EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12) << load;
+        EXPECT_EQ(trajectory.end_held.count(), 2) << load;
+    }
+}
+
+// A load that moves over the edge tips it about two legs: the other two leave at once, and it goes on as if it had those two.
+TEST(SymmetricRuns, ATableTipsOverItsEdge) {
+    const auto four = table("2", "s", "0.1"), two = table("2", "s", "0.1", {1, 3});
+    const Trajectory trajectory = simulate(four, four->default_run());
+    ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    // 2 s = 3 there: the load and the weight are balanced on the edge.
+    const Event& tips = trajectory.events.back();
+    EXPECT_NEAR(tips.t, 1.5, 1e-9);
+    EXPECT_EQ(tips.contacts, ContactSet::of(0).with(2));
+    EXPECT_EQ(trajectory.end_held, ContactSet::of(1).with(3));
+    auto run = two->default_run();
+    run.q = tips.q;
+    run.v = tips.v_after;
+    run.options.start_time = tips.t;
+    const Trajectory alone = simulate(two, run);
+    ASSERT_EQ(alone.outcome.kind, Outcome::Kind::end_time) << alone.outcome.message;
+    EXPECT_LT((alone.end.q - trajectory.end.q).norm(), 1e-9);
+    EXPECT_GT(trajectory.end.q.norm(), 0.1);
+}
+
 std::shared_ptr<const Model> cradle(double e, double gap) {
     return test::typed(fmt::format(R"toml(
 title = "Three balls in a row"
