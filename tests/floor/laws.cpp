@@ -130,8 +130,8 @@ struct Blow {
           p(least(contacts.W, rates_after - rates)) {
         for (std::size_t i = 0; i < contacts.which.size(); ++i)
             if (held_before(event).contains(contacts.which[i])) rates[static_cast<Eigen::Index>(i)] = 0.0;
-        // Where gradients depend on one another velocities do not tell how impulses were shared.
-        if (!event.joint || !event.joint->not_unique) return;
+        // Where gradients depend on one another, or nearly do, velocities do not tell how impulses were shared.
+        if (!event.joint) return;
         Eigen::VectorXd told = Eigen::VectorXd::Zero(p.size());
         for (const auto& [contact, impulse] : event.joint->impulses)
             for (std::size_t i = 0; i < contacts.which.size(); ++i)
@@ -152,7 +152,7 @@ struct Blow {
 // contacts that land or were held, and where p > 0 is hdot+ = -e hdot-.
 void moreau(Violations& violations, Probe& probe, const Event& event) {
     const Blow blow(probe, event);
-    const double rounding = 1e-14 * (1.0 + largest(event.v_after));
+    const double rounding = 1e-14 * (1.0 + std::max(largest(event.v_before), largest(event.v_after)));
     const auto check = [&](bool holds, const char* what) {
         complain(violations, holds, fmt::format("{} at t = {:.17g}", what, event.t));
     };

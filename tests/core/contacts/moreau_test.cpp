@@ -343,5 +343,20 @@ TEST(OrderMatters, CountsRoundingAsZeroAndSaysSo) {
     EXPECT_TRUE(twice.by_transmission);
 }
 
+// Equal elastic balls in a row exchange velocities until these are in order, and who approaches most is next.
+TEST(Moreau, InTurnTheFastestIsNext) {
+    ContactMatrix<double> W(3, 3);
+    W << 2, -1, 0, -1, 2, -1, 0, -1, 2;
+    ContactVector<double> hdot(3), e(3);
+    hdot << -1, 0, -0.3;  // velocities 0, -1, -1, -1.3
+    e << 1, 1, 1;
+    const auto sequence = impacts_in_turn(W, hdot, e, {}, 0);
+    ASSERT_TRUE(sequence);
+    EXPECT_EQ(sequence->impacts, 5);
+    EXPECT_NEAR(sequence->hdot_after[0], 0.3, 1e-12);
+    EXPECT_NEAR(sequence->hdot_after[1], 0.0, 1e-12);
+    EXPECT_NEAR(sequence->hdot_after[2], 1.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace achilles

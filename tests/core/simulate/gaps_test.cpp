@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/systems.hpp"
+#include "floor/laws.hpp"
 #include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 
@@ -136,6 +137,29 @@ TEST(HeldContacts, APlasticImpactMayTakeTheForceFromWhatIsHeld) {
     const double t = 1.5 - trajectory.events[0].t;
     EXPECT_NEAR(trajectory.end.q[0], 1.0, 1e-12);
     EXPECT_NEAR(trajectory.end.q[1], t * t / 4.0, 1e-11);
+}
+
+// A blow that is passed on to a held surface that moves does work there, too.
+TEST(HeldContacts, WhatIsPassedOnToASurfaceThatMovesDoesWork) {
+    const auto model = test::typed(R"toml(
+title = "Body on a lift, against a wall that leans over"
+coordinate = [{ name = "x", start = 0, rate = 1 }, { name = "y", start = 0, rate = 0.3 }]
+lagrangian = { kinetic = "(x'^2 + y'^2)/2", potential = "y" }
+constraint = [{ name = "wall", gap = "1 - x - y/2", restitution = 0.5 },
+              { name = "lift", gap = "y - 0.3*t", restitution = 0.5 }]
+[run]
+end_time = 1.5
+)toml");
+    const Trajectory trajectory = simulate(model, model->default_run());
+    ASSERT_FALSE(trajectory.events.empty());
+    const Event& blow = trajectory.events[0];
+    EXPECT_EQ(blow.held, ContactSet::of(1));
+    // W = 1 for the wall while the lift holds the body: p = (1 + e) |hdot|, half of it on the lift.
+    const double impulse = 1.5 * 1.15, before = 0.3 * blow.t;
+    EXPECT_NEAR(blow.work - before, 0.3 * impulse / 2.0, 1e-12);
+    EXPECT_NEAR(blow.loss, 0.5 * impulse * 0.5 * 1.15, 1e-12);
+    const auto violations = test::energy(trajectory);
+    EXPECT_TRUE(violations.empty()) << violations.front();
 }
 
 }  // namespace

@@ -197,6 +197,27 @@ TEST(Pairs, WhatCollapsesWithoutAForceIsToldAsChatter) {
     }
 }
 
+// The formulas of theory-gaps.md 3 with r0 = 1 and Delta = omega = 0, evaluated by another program.
+TEST(Pairs, TheBoundIsThatOfTheTheory) {
+    struct Known {
+        double a[2], W[3], e[2], T;
+    };
+    const Known all[] = {{{1.0, 1.0}, {1.0, 0.5, 1.0}, {0.5, 0.5}, 78.044111382075},
+                         {{1.0, 1.3}, {1.0, -0.6, 2.0}, {0.5, 0.5}, 46.927026349887},
+                         {{1.0, 1.3}, {1.0, 0.4, 2.0}, {0.3, 0.6}, 88.202842317443}};
+    for (const auto& [a, W, e, T] : all) {
+        PairAtCollision pair;
+        const double det = W[0] * W[2] - W[1] * W[1];
+        pair.a = {Interval(a[0]), Interval(a[1])};
+        pair.lambda = {Interval((W[2] * a[0] - W[1] * a[1]) / det), Interval((W[0] * a[1] - W[1] * a[0]) / det)};
+        pair.e = {Interval(e[0]), Interval(e[1])};
+        pair.W = {{{Interval(W[0]), Interval(W[1])}, {Interval(W[1]), Interval(W[2])}}};
+        pair.r0 = Interval(1.0);
+        ASSERT_TRUE(pair_bound(pair));
+        EXPECT_NEAR(pair_bound(pair)->T.hi(), T, 1e-9 * T);
+    }
+}
+
 TEST(Pairs, NothingIsClaimedOfElasticImpactsOrOfWhatIsNotPressed) {
     PairAtCollision pair;
     pair.a = pair.lambda = {Interval(1.0), Interval(1.0)};

@@ -159,6 +159,19 @@ TEST(SymmetricRuns, ATableWithOneLegTooManyStandsUnderAnyLoad) {
     }
 }
 
+// The same of the gallery's, where nothing is left that could move: its forces have no rates to decide by.
+TEST(SymmetricRuns, TheTableOfTheGalleryStandsUnderALoadOnItsMiddle) {
+    const auto model = test::load("table_on_legs");
+    auto run = model->default_run();
+    for (std::size_t i = 0; i < run.parameters.size(); ++i)
+        if (const auto& name = model->description().parameters[i].name; name == "R" || name == "side")
+            run.parameters[i] = 0.0;
+    const Trajectory trajectory = simulate(model, run);
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    EXPECT_EQ(trajectory.end_held.count(), 2);
+    EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12);
+}
+
 // A load that moves over the edge tips it about two legs: the other two leave at once, and it goes on as if it had those two.
 TEST(SymmetricRuns, ATableTipsOverItsEdge) {
     const auto four = table("2", "s", "0.1"), two = table("2", "s", "0.1", {1, 3});
