@@ -268,7 +268,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
 
 // Whether the flight before, which an impact began and another one ended, was hardly longer than time resolves.
 bool Execution::is_chatter() const {
-    constexpr double resolved = 0x1p16;
+    constexpr double resolved = 0x1p20;
     return surfaces_->count() > 1 && record_.impacts() > 1 && next_.begins &&
            last_step_ < resolved * ulp(next_.state.t);
 }
