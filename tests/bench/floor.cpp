@@ -171,7 +171,7 @@ Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
     }
 }
 
-// Whether both methods tell the same of bouncings that are cut late, as far as a start 1e-9 away does.
+// Whether both methods tell the same of bouncings that are cut late, as far as a start or parameters 1e-9 away do.
 std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
     run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
     const Trajectory trajectory = simulate(model, run);
@@ -184,10 +184,17 @@ std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
     const Distance apart = between(outline_of(trajectory), outline_of(other));
     if (apart.size <= 1e-8) return {};
     double sensitive = 1.0;
-    for (Eigen::Index i = 0; i < 2 * run.q.size(); ++i) {
+    // Rest forgets the start, so parameters are moved, too.
+    const auto n = static_cast<std::size_t>(run.q.size());
+    for (std::size_t i = 0; i < 2 * n + run.parameters.size(); ++i) {
         Run moved = trajectory.run;
-        (i < run.q.size() ? moved.q[i] : moved.v[i - run.q.size()]) += 1e-9;
-        const Attempt there = attempt(trajectory.model, moved);
+        const auto k = static_cast<Eigen::Index>(i % n);
+        if (i < 2 * n) {
+            (i < n ? moved.q[k] : moved.v[k]) += 1e-9;
+        } else {
+            moved.parameters[i - 2 * n] *= 1.0 + 1e-9;
+        }
+        const Attempt there = attempt(model, moved);
         if (!std::holds_alternative<Trajectory>(there)) return {};
         sensitive =
             std::max(sensitive, between(outline_of(trajectory), outline_of(std::get<Trajectory>(there))).size / 1e-9);
