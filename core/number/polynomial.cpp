@@ -19,6 +19,17 @@ double Polynomial::slope(double theta) const {
     return value;
 }
 
+Polynomial::End Polynomial::at_end() const {
+    End end;
+    for (int i = degree; i >= 1; --i) {
+        const double term = c[static_cast<std::size_t>(i)];
+        end.value += term;
+        end.slope += i * term;
+    }
+    end.value += c[0];
+    return end;
+}
+
 Polynomial interpolate(const std::array<double, 5>& f) {
     // Newton's forward differences at x = 4 theta, expanded: coefficients of the differences from the first value.
     const double d1 = f[1] - f[0], d2 = f[2] - f[0], d3 = f[3] - f[0], d4 = f[4] - f[0];

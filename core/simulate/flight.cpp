@@ -24,7 +24,8 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     if (flow_->is_expansion()) return;
     ContactKinematics& surface = surfaces_->of(contact);
     const Contact end = surface.at(flow_->end());
-    const double value = end.h - h(1.0), slope = end.hdot * flow_->duration() - h.slope(1.0);
+    const Polynomial::End reached = h.at_end();
+    const double value = end.h - reached.value, slope = end.hdot * flow_->duration() - reached.slope;
     if (!surface.within_gap_error(value, 4.0, end, flow_->end())) {
         // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
         const int m = std::max(2, multiplicity);
@@ -83,7 +84,8 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         const Polynomial& h = gap_along(i);
         ContactKinematics& surface = surfaces_->of(i);
         const Contact end = surface.at(flow_->end());
-        Gap gap{h(1.0), h.slope(1.0) / flow_->duration()};
+        const Polynomial::End reached = h.at_end();
+        Gap gap{reached.value, reached.slope / flow_->duration()};
         if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
             if (end.h < 0.0) {
                 contact_ = i;
