@@ -216,7 +216,7 @@ void show_plane(const Session& session, const Rectangle& area, PanelState& state
     if (plane.pair >= all.size()) plane.pair = 0;
     const float edge = units(12.0F), line = ImGui::GetTextLineHeight() + units(4.0F);
     show_heading(session, all, {area.x + edge, area.y, area.width - 2.0F * edge, line}, state);
-    const Axes axes = all[plane.pair];
+    const Axes& axes = all[plane.pair];
     const Rectangle inner{area.x + edge, area.y + line, area.width - 2.0F * edge, area.height - line};
     if (inner.width < units(80.0F) || inner.height < units(60.0F)) return;
     Panel panel = panel_of(session, axes, plane);

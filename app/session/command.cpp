@@ -210,7 +210,7 @@ void list_names(std::vector<std::string>& names) {
 }
 
 // "write: range NUMBER x LOW HIGH, or: ..." without what is said to somebody who wrote something else.
-std::string without_request(std::string usage) {
+std::string without_request(const std::string& usage) {
     constexpr std::string_view request = "write: ";
     return usage.starts_with(request) ? usage.substr(request.size()) : usage;
 }

@@ -184,7 +184,7 @@ std::string told_apart(const SystemDescription& description, const Run& run, con
     for (const auto& [name, given] : changed) {
         const bool is_angle = is_of_angles(unit_of(description, name));
         const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
-                                           [&](const ParameterDescription& p) { return p.name == name; });
+                                           [&name = name](const ParameterDescription& p) { return p.name == name; });
         std::string unit = typeset_unit(unit_of(description, name));
         if (is_angle) unit.replace(0, 3, "\u00b0");
         std::string value = fmt::format("{:.6g}", is_angle ? degrees(given.value) : given.value);

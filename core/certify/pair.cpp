@@ -43,28 +43,28 @@ class Chatter {
         kd_ = sqrt(two / (one + p_.W[0][1] / (d_[0] * d_[1])));
     }
     bool is_possible() const {
-        return certainly_positive(a_least_[0]) && certainly_positive(a_least_[1]) && certainly_positive(slope_[0]) &&
-               certainly_positive(slope_[1]) && certainly_positive(L_ - p_.Delta) && certainly_positive(taken_[0]) &&
-               certainly_positive(taken_[1]) && certainly_less(kd_ * p_.omega, Interval(1.0));
+        return certainly_positive(slope_[0]) && certainly_positive(slope_[1]) && certainly_positive(L_ - p_.Delta) &&
+               certainly_positive(taken_[0]) && certainly_positive(taken_[1]) &&
+               certainly_less(kd_ * p_.omega, Interval(1.0));
     }
 
     std::optional<PairBound> with(double share) const {
         const Interval eta(share), one(1.0), two(2.0), four(4.0), c = abs(p_.W[0][1]);
-        std::array<Interval, 2> hat, low;
-        for (std::size_t i = 0; i < 2; ++i) {
-            hat[i] = d_[i] * sqrt((one + p_.omega) * eta / taken_[i]);
-            low[i] = c * square(hat[i]) / (two * p_.W[i][i] * a_least_[i]);
-        }
+        std::array<Interval, 2> hat, wait{Interval(0.0), Interval(0.0)};
+        for (std::size_t i = 0; i < 2; ++i) hat[i] = d_[i] * sqrt((one + p_.omega) * eta / taken_[i]);
         Interval gam(0.0), S(0.0), m(1.0), Ct(0.0);
         bool stands = false;
         for (int round = 0; round < 60 && !stands; ++round) {
             m = one + gam;
             const Interval M = m + p_.omega * S;
             Interval fall(0.0);
+            std::array<Interval, 2> next_wait;
             for (std::size_t i = 0; i < 2; ++i) {
                 const std::size_t j = 1 - i;
-                const Interval root = sqrt(rest_[j] * square(M) + four * slope_[j] * low[i]);
-                fall = max(fall, (sqrt(rest_[j]) * M + root) / slope_[j]);
+                const Interval low = c * most(i, hat[i], wait[i]).height / p_.W[i][i];
+                const Interval root = sqrt(rest_[j] * square(M) + four * slope_[j] * low);
+                next_wait[i] = top((sqrt(rest_[j]) * M + root) / slope_[j]);
+                fall = max(fall, next_wait[i]);
             }
             Ct = top(two * m / (L_ - p_.Delta) + fall);
             const Interval next_S =
@@ -73,7 +73,9 @@ class Chatter {
             const Interval next_gam = top(p_.Delta * Ct + two * p_.omega * next_S / (one - p_.omega));
             if (!next_gam.is_defined() || !next_S.is_defined() || next_gam.hi() > 1.0) return std::nullopt;
             stands = next_gam.hi() <= gam.hi() && next_S.hi() <= S.hi();  // what was assumed is what follows
+            for (std::size_t i = 0; i < 2; ++i) stands = stands && next_wait[i].hi() <= wait[i].hi();
             if (!stands) {
+                for (std::size_t i = 0; i < 2; ++i) wait[i] = Interval(next_wait[i].hi() * (1.0 + 1e-9));
                 gam = Interval(next_gam.hi() * (1.0 + 1e-9) + 1e-300);
                 S = Interval(next_S.hi() * (1.0 + 1e-9));
             }
@@ -82,9 +84,10 @@ class Chatter {
         if (!stands || !certainly_less(z2, one)) return std::nullopt;
         for (std::size_t i = 0; i < 2; ++i) {
             const std::size_t j = 1 - i;
-            const Interval strong =
-                rest_[j] * (square(one - gam) - eta - square(hat[i]) * (one / p_.W[i][i] + p_.lambda[i] / a_least_[i]));
-            const Interval needed = hat[j] + c * hat[i] / p_.W[i][i];
+            const Most weak = most(i, hat[i], wait[i]);
+            const Interval strong = rest_[j] * (square(one - gam) - eta - square(weak.speed) / p_.W[i][i] -
+                                                two * p_.lambda[i] * weak.height);
+            const Interval needed = hat[j] + c * weak.speed / p_.W[i][i];
             if (!(strong.lo() > 0.0) || !(sqrt(strong).lo() >= needed.hi())) return std::nullopt;
         }
         const Interval z = sqrt(max(z2, Interval(0.0)));
@@ -93,6 +96,19 @@ class Chatter {
     }
 
  private:
+    // How fast and how high contact i is at most, in units of r0 and r0^2, while all its impacts are weak (slower than hat) and
+    // until the other one lands, the time `wait` (in r0) later. It falls back; or, where nothing draws it back as long as the
+    // other is open (a_i <= 0), it has gone on since its last rebound.
+    struct Most {
+        Interval speed, height;
+    };
+    Most most(std::size_t i, const Interval& hat, const Interval& wait) const {
+        const Interval two(2.0), none(0.0), drift = d_[i] * p_.Delta;
+        if (certainly_positive(a_least_[i])) return {hat, square(hat) / (two * a_least_[i])};
+        const Interval rebound = p_.e[i] * hat, rise = max(drift - p_.a[i], none), fall = max(p_.a[i] + drift, none);
+        return {max(rebound + rise * wait, fall * wait), rebound * wait + rise * square(wait) / two};
+    }
+
     const PairAtCollision& p_;
     std::array<Interval, 2> d_, rest_, a_least_, slope_, taken_;
     Interval L_, kd_;
@@ -131,8 +147,7 @@ bool PairConditions::look(const std::vector<Interval>& box) {
     terms_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
     terms_.clock() = box[2 * dof_ + 2];
     terms_.run();
-    return certainly_negative(terms_.hddot(0)) && certainly_negative(terms_.hddot(1)) &&
-           certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
+    return certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
 }
 
 std::optional<Certificate::Others> PairConditions::others_stay(const std::vector<Interval>& box) {
@@ -237,9 +252,10 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
     c.certified = true;
     c.conditions = Conditions::sharp;
     c.reinitialization = Reinitialization::kinetic;
-    double wait = 0.0;  // as if each bounced alone with what it has now
+    double wait = 0.0;  // as if each bounced alone with what it has now, drawn by what holds both
     for (std::size_t k = 0; k < 2; ++k) {
-        const double e = mid(e_[k]), a = mid(pair.a[k]), h = std::max(0.0, collision.h[k]);
+        const double e = mid(e_[k]), h = std::max(0.0, collision.h[k]);
+        const double a = mid(pair.a[k]) > 0.0 ? mid(pair.a[k]) : mid(pair.lambda[k] * pair.W[k][k]);
         const double falling = std::sqrt(collision.sigma[k] * collision.sigma[k] + 2.0 * a * h);
         const double landing = h > 0.0 ? (collision.sigma[k] + falling) / a : 0.0;
         wait = std::max(wait, landing + 2.0 * e * falling / (a * (1.0 - e)));
@@ -256,7 +272,8 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
     c.decision = {{"time bound", 0.5 * bound.T.hi(), truncation_.eps_t},
                   {"uniform position", *c.uniform_position, truncation_.eps_q},
                   {"shadowing velocity", *c.shadowing_velocity, truncation_.eps_v}};
-    c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0}, {"normal acceleration", -c.a_min, 0.0}};
+    c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0},
+                     {"force at the cut", -std::min(pair.lambda[0].lo(), pair.lambda[1].lo()), 0.0}};
     c.decisive = c.decision->closest().name;
     return c;
 }

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "algebra/vanishes.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
 #include "number/ground.hpp"
@@ -110,9 +111,8 @@ const Program& Model::power(ContactSet held) const {
 }
 
 bool Model::is_carried(std::size_t contact, ContactSet held) const {
-    const std::scoped_lock lock(held_mutex_);
-    const Ground ground;
-    return held_motions().of(held).contacts.at(contact).hddot.is_zero();
+    return derived(carried_, {held, contact},
+                   [&] { return vanishes(held_motions().of(held).contacts.at(contact).hddot); });
 }
 
 const Bouncing& Model::bouncing(std::size_t contact, ContactSet held) const {

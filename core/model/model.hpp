@@ -152,6 +152,7 @@ class Model {
     mutable std::map<WhileHeld, ContactPrograms> programs_;
     mutable std::map<WhileHeld, Bouncing> bouncings_;
     mutable std::map<WhileHeld, Neighbours> neighbours_;
+    mutable std::map<WhileHeld, bool> carried_;
     mutable std::map<std::pair<ContactSet, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // of programs_, those of contacts while none is held
     std::vector<Program> restitutions_;

@@ -33,7 +33,8 @@ void Execution::land(std::size_t which, const Contact& contact) {
     if (surfaces_->count() > 1) {
         // Contacts that strike in turn may leave no time between them, however high each would bounce alone.
         constexpr double resolved = 16.0;
-        if (record_.impacts() > 1 && last_step_ < resolved * ulp(next_.state.t)) {
+        if (record_.impacts() > 1 &&
+            (last_step_ < resolved * ulp(next_.state.t) || moves_within_rounding(which, -contact.hdot))) {
             const Vector v_after = impact(contact, next_.state.v, restitutions_[which]);
             if (!complete_pair(ContactSet::of(which), v_after, true)) end_chatter(ContactSet::of(which));
             return;
@@ -149,6 +150,8 @@ void Execution::capture(const Contact& contact, const Collision& before) {
     } else if (certainly_positive(hddot)) {
         bounce(contact, 0.0);
         next_.starts[which_] = {{0.0, 0.0}, 2};
+    } else if (surfaces_->count() > 1) {
+        collide(ContactSet::of(which_));  // it may stay closed without a force, as of two that fall together
     } else {
         stop(Outcome::Kind::undecided,
              "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +

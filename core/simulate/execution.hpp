@@ -136,6 +136,7 @@ class Execution {
     bool judge(ContactSet closed, ContactSet active);
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
     bool is_chatter() const;
+    bool moves_within_rounding(std::size_t which, double speed);
     void end_chatter(ContactSet contacts);
     bool stays_closed(std::size_t contact, ContactSet held);
     bool is_at_rest(ContactSet held);

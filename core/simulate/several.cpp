@@ -273,6 +273,20 @@ bool Execution::is_chatter() const {
            last_step_ < resolved * ulp(next_.state.t);
 }
 
+// Whether the flight before an impact of this speed was lower than what the gap of another open contact, which is closed but
+// for its rounding, is known to: then roundings decide which of them lands, and may keep them going for ever.
+bool Execution::moves_within_rounding(std::size_t which, double speed) {
+    constexpr double few = 16.0;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (i == which || next_.held.contains(i) || next_.touching.contains(i)) continue;
+        const Contact other = surfaces_->of(i).at(next_.state);
+        if (!(speed * last_step_ < 0x1p-40 * (1.0 + next_.state.q.cwiseAbs().maxCoeff()))) continue;  // cheap
+        const double known = few * surfaces_->of(i).gap_error(next_.state);
+        if (other.h < known && std::abs(other.hdot) * last_step_ < known && speed * last_step_ < known) return true;
+    }
+    return false;
+}
+
 // Nothing proves how a chatter that cannot be resolved any more ends. It is of these contacts and of what is near.
 void Execution::end_chatter(ContactSet contacts) {
     constexpr double close = 1e-6;

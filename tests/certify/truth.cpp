@@ -201,6 +201,7 @@ std::vector<Trial> Trials::next_run() {
     try {
         for (const Event& event : simulate(model_, run).events) {
             if (event.kind != Event::Kind::zeno || is_plastic_landing(event)) continue;
+            if (!event.contacts.has_one()) continue;  // the true motion below is of one contact that bounces
             Trial& trial = trials.emplace_back();
             trial.run = run;
             while (!event.contacts.contains(trial.contact)) ++trial.contact;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "algebra/factored.hpp"
+#include "algebra/vanishes.hpp"
 #include "algebra/writer.hpp"
 #include "expression/parse.hpp"
 
@@ -152,6 +153,14 @@ TEST_F(Simplification, WritesLatex) {
     EXPECT_EQ(name("L12"), "L_{12}");
     EXPECT_EQ(name("m_foot2"), "m_{\\mathit{foot},2}");
     EXPECT_EQ(name("rest"), "\\mathit{rest}");
+}
+
+TEST_F(Simplification, TellsWhatIsZeroHoweverItIsWritten) {
+    const auto zero = [&](const std::string& text) { return vanishes(parse(text, scope, graph)); };
+    EXPECT_TRUE(zero("0"));
+    EXPECT_TRUE(zero("a*x/x - a*y/y"));
+    EXPECT_TRUE(zero("sin(x)^2 + cos(x)^2 - 1"));
+    EXPECT_FALSE(zero("a*x/x - b*y/y"));
 }
 
 }  // namespace
