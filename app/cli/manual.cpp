@@ -13,6 +13,7 @@
 #include "model/read_system.hpp"
 #include "output/output.hpp"
 #include "session/command.hpp"
+#include "session/glossary.hpp"
 #include "simulate/simulate.hpp"
 #include "system/keys.hpp"
 
@@ -82,6 +83,21 @@ std::string functions_line() {
 
 std::string commands_list() { return fmt::format("    {}\n", fmt::join(command_usages(), "\n    ")); }
 
+std::string words_table() {
+    std::vector<std::vector<std::string>> rows{{"word", "formula", "meaning", "source"}};
+    for (const Term& term : glossary())
+        rows.push_back({std::string(term.word), term.formula.empty() ? "" : fmt::format("`{}`", term.formula),
+                        std::string(term.meaning), std::string(term.source)});
+    return table(rows);
+}
+
+std::string shortcuts_table() {
+    std::vector<std::vector<std::string>> rows{{"keys", "what they do"}};
+    for (const Shortcut& shortcut : shortcuts())
+        rows.push_back({std::string(shortcut.keys), std::string(shortcut.does)});
+    return table(rows);
+}
+
 std::string csv_header() {
     const auto model = std::make_shared<const Model>(read_system(find_system("ball_on_sine")));
     Run run = model->default_run();
@@ -99,6 +115,8 @@ std::string expanded(std::string_view name) {
     if (name == "options") return options_table();
     if (name == "functions") return functions_line();
     if (name == "commands") return commands_list();
+    if (name == "words") return words_table();
+    if (name == "shortcuts") return shortcuts_table();
     if (name == "csv") return csv_header();
     throw InputError("manual", {}, fmt::format("there is no table '{}'", name));
 }

@@ -13,7 +13,7 @@ struct ManualTopic {
 };
 std::vector<ManualTopic> manual_topics();
 
-// A page, as Markdown. A line {{NAME}} of the file becomes a table: of keys, options, functions, commands, columns.
+// A page, as Markdown. A line {{NAME}} of the file becomes a table: of keys, options, functions, commands, columns, words, shortcuts.
 // Throws InputError where there is no such topic, with the nearest.
 std::string manual_page(std::string_view topic);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "panels/widgets.hpp"
+#include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
 
 namespace achilles {
@@ -13,18 +14,11 @@ namespace achilles {
 namespace {
 
 struct Shown {
-    const char *what, *name, *keys;
+    const char *what, *name;
     int key;
 };
 constexpr std::array<Shown, 3> panels{
-    {{"controls", "Controls", "Ctrl+1", '1'}, {"plots", "Plots", "Ctrl+2", '2'}, {"events", "Events", "Ctrl+3", '3'}}};
-
-// A line of a menu; true when it is chosen.
-bool item(const char* name, const char* keys, PanelState& state, bool ticked = false, bool enabled = true) {
-    const bool chosen = ImGui::MenuItem(name, keys, ticked, enabled);
-    remember(state, std::string("menu ") + name);
-    return chosen;
-}
+    {{"controls", "Controls", '1'}, {"plots", "Plots", '2'}, {"events", "Events", '3'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
@@ -37,44 +31,44 @@ void menu(const char* name, PanelState& state, const Content& content) {
 }
 
 void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
-    if (item("New", "Ctrl+N", state)) request(session, state, command::New{}, commands);
-    if (item("Open\u2026", "Ctrl+O", state)) ask_to_open(state);
-    if (item("Save", "Ctrl+S", state)) save_or_ask(session, state, commands);
-    if (item("Save as\u2026", nullptr, state)) ask_to_save(session, state);
+    if (menu_item("New", state)) request(session, state, command::New{}, commands);
+    if (menu_item("Open\u2026", state)) ask_to_open(state);
+    if (menu_item("Save", state)) save_or_ask(session, state, commands);
+    if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
     ImGui::Separator();
     show_take_away_items(session, state, commands);
 }
 
 void show_edit_menu(const Session& session, PanelState& state, Commands& commands) {
-    if (item("Undo", "Ctrl+Z", state, false, session.can_undo())) commands.emplace_back(command::Undo{});
-    if (item("Redo", "Ctrl+Shift+Z", state, false, session.can_redo())) commands.emplace_back(command::Redo{});
+    if (menu_item("Undo", state, false, session.can_undo())) commands.emplace_back(command::Undo{});
+    if (menu_item("Redo", state, false, session.can_redo())) commands.emplace_back(command::Redo{});
     ImGui::Separator();
-    if (item("Reset all values", nullptr, state)) commands.emplace_back(command::Reset{});
+    if (menu_item("Reset all values", state)) commands.emplace_back(command::Reset{});
     ImGui::Separator();
-    if (item("Text of the system", "Ctrl+E", state, session.shows_editor())) toggle_editor(session, state, commands);
+    if (menu_item("Command\u2026", state)) commands.emplace_back(command::Show{"palette", true});
+    if (menu_item("Text of the system", state, session.shows_editor())) toggle_editor(session, state, commands);
 }
 
 void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
     const Scene& scene = session.scene();
     for (const Shown& panel : panels)
-        if (item(panel.name, panel.keys, state, scene.shows(panel.what)))
+        if (menu_item(panel.name, state, scene.shows(panel.what)))
             commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
-    if (item("Sizes that fit", nullptr, state))
+    if (menu_item("Sizes that fit", state))
         for (const std::string& panel : command::sized_panels)
             if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
     ImGui::Separator();
     for (const auto& [what, name] :
          {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"}, std::pair{"force", "Contact force"}})
-        if (item(name, nullptr, state, scene.shows(what)))
-            commands.emplace_back(command::Show{what, !scene.shows(what)});
+        if (menu_item(name, state, scene.shows(what))) commands.emplace_back(command::Show{what, !scene.shows(what)});
     const bool plane = scene.shows("plane");
-    if (item("Configuration plane", nullptr, state, plane)) commands.emplace_back(command::Show{"plane", !plane});
-    if (item("All of the motion", nullptr, state, false, scene.look().has_value()))
+    if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});
+    if (menu_item("All of the motion", state, false, scene.look().has_value()))
         commands.emplace_back(command::LookAll{});
     ImGui::Separator();
     const bool loops = scene.loops();
-    if (item("Play again at the end", nullptr, state, loops)) commands.emplace_back(command::Loop{!loops});
-    if (item("Dark theme", "Ctrl+D", state, session.theme().dark))
+    if (menu_item("Play again at the end", state, loops)) commands.emplace_back(command::Loop{!loops});
+    if (menu_item("Dark theme", state, session.theme().dark))
         commands.emplace_back(command::UseTheme{!session.theme().dark});
 }
 
@@ -97,7 +91,9 @@ void panel_switch(const Session& session, const Shown& panel, PanelState& state,
     const bool shown = session.scene().shows(panel.what);
     Rectangle r;
     if (switch_button(std::string("switch ") + panel.what,
-                      std::string(shown ? "hide the " : "show the ") + panel.what + " (" + panel.keys + ")", state, r))
+                      std::string(shown ? "hide the " : "show the ") + panel.what + " (" +
+                          std::string(shortcut_of(panel.name)) + ")",
+                      state, r))
         commands.emplace_back(command::Show{panel.what, !shown});
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = packed(shown ? text_color() : faint_color());
@@ -143,7 +139,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     menu("Edit", state, [&] { show_edit_menu(session, state, commands); });
     menu("View", state, [&] { show_view_menu(session, state, commands); });
     menu("Tours", state, [&] { show_tour_items(session, state, commands); });
-    menu("Help", state, [&] { show_help_items(state); });
+    menu("Help", state, [&] { show_help_items(state, commands); });
     const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
     const float width = 4.0F * size + 3.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;

@@ -132,10 +132,7 @@ void begin_change(PanelState& state, Commands& commands) {
 }
 
 // For the panels; whatever stands before them takes Escape for itself.
-bool escape_pressed() {
-    const bool is_covered = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    return is_pressed(key::escape, false) && !is_covered && !ImGui::GetIO().WantTextInput;
-}
+bool escape_pressed() { return is_pressed(key::escape, false) && !is_covered() && !ImGui::GetIO().WantTextInput; }
 
 bool is_part_of_change(const Command& command) { return goes_on(command, command); }
 
@@ -162,6 +159,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     });
     show_dialogs(session, state, commands);
     show_manual(state);
+    show_help(session, state, commands);
+    show_palette(session, state, commands);
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });

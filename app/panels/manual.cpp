@@ -34,7 +34,9 @@ void show_page(PanelState& state) {
 
 }  // namespace
 
-void show_help_items(PanelState& state) {
+void show_help_items(PanelState& state, Commands& commands) {
+    if (menu_item("Keys and words", state)) commands.emplace_back(command::Show{"help", true});
+    ImGui::Separator();
     // The menu is there in any case: a picture must not depend on where the assets are.
     if (state.manual.empty()) ImGui::MenuItem("The manual is missing", nullptr, false, false);
     for (const SystemEntry& page : state.manual) {

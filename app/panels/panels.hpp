@@ -63,6 +63,18 @@ struct PlotMenu {
     bool is_wrong = false;     // it was refused
 };
 
+// The command palette: the line as it is typed, and what became of it.
+struct PaletteState {
+    std::string text;
+    int chosen = 0;          // a row of the list, from 0
+    int revision = 0;        // counts the lines that are not typed
+    bool focuses = false;    // the line is to have the hand,
+    bool to_end = false;     // with the cursor behind it
+    bool completes = false;  // Tab was pressed
+    bool has_run = false;    // the line was given as a command; if that is refused the palette stays
+    std::string wrong;       // why it was refused
+};
+
 // A value that is typed in place of its slider.
 struct TypedValue {
     std::string id;  // of the slider; empty: none
@@ -74,11 +86,15 @@ struct TypedValue {
 // A press of a slider is a drag, a click that moves it there, or half of a double click, which types: until this is
 // known nothing moves.
 struct PressedSlider {
-    std::string id;        // that is pressed, or was last; empty: none
-    double since = 0.0;    // s, of ImGui's clock
-    double target = 0.0;   // where it was pressed, as a value
-    bool is_drag = false;  // it is one
-    std::string clicked;   // the slider that was clicked: its value is to be clicked_target when no second click comes
+    std::string id;                         // that is pressed, or was last; empty: none
+    double since = 0.0;                     // s, of ImGui's clock
+    double target = 0.0;                    // where it was pressed, as a value
+    bool is_drag = false;                   // it is one
+    double share = 0.0;                     // of the track, where the hand is
+    bool is_fine = false;                   // Shift is held: the hand has twenty times as far to go,
+    bool is_relative = false;               // and since it was, goes on from where it came to
+    double from_x = 0.0, from_share = 0.0;  // there: pixels, of the track
+    std::string clicked;  // the slider that was clicked: its value is to be clicked_target when no second click comes
     double clicked_since = 0.0, clicked_target = 0.0;
 };
 
@@ -138,6 +154,7 @@ struct PanelState {
     TypedValue typed;
     PressedSlider pressed;
     PlotMenu plot_menu;
+    PaletteState palette;
     PlotBox box;
     HeldMechanism held;
     PlaneView plane;
@@ -162,8 +179,12 @@ void show_editor(const Session& session, PanelState& state, Commands& commands);
 void show_take_away_items(const Session& session, PanelState& state, Commands& commands);
 void show_tour_items(const Session& session, PanelState& state, Commands& commands);
 // The pages of the manual as lines of a menu, and the one that was chosen, above everything else.
-void show_help_items(PanelState& state);
+void show_help_items(PanelState& state, Commands& commands);
+// Keys and words on a card (F1), while the scene shows it.
+void show_help(const Session& session, PanelState& state, Commands& commands);
 void show_manual(PanelState& state);
+// Any command by a few of its letters (Ctrl+Shift+P), while the scene shows the palette.
+void show_palette(const Session& session, PanelState& state, Commands& commands);
 // Above the mechanism: what a tour says.
 float caption_height(const Session& session, const PanelState& state, float width);
 void show_caption(const Session& session, PanelState& state, Commands& commands);

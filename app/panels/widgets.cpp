@@ -8,6 +8,7 @@
 
 #include "figure/label.hpp"
 #include "paint/label.hpp"
+#include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -47,6 +48,8 @@ void cell(const ImVec2& at, const std::string& name, const std::string& value, f
 void cell(const ImVec2& at, const std::string& text, float width, const Color& color) {
     cell(at, text, "", width, color);
 }
+
+float width_of(const std::string& text) { return label_width(text, ImGui::GetFontSize()); }
 
 void label(const std::string& text, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -111,8 +114,7 @@ void tooltip(const std::string& text) {
     if (!wants_tooltip(text)) return;
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // where the mouse is
-    const bool in_menu = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (!in_menu) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});
+    if (!is_covered()) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});
     // Beside the menu: it covers no other line.
     const ImVec2 size = tooltip_size(text), window = ImGui::GetWindowPos();
     const float gap = units(4.0F), right = window.x + ImGui::GetWindowWidth() + gap;
@@ -120,7 +122,16 @@ void tooltip(const std::string& text) {
     show_tooltip(text);
 }
 
+bool is_covered() { return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel); }
+
 bool take_escape(PanelState& state) { return std::exchange(state.escape, false); }
+
+bool menu_item(const char* name, PanelState& state, bool ticked, bool enabled) {
+    const std::string keys(shortcut_of(name));
+    const bool chosen = ImGui::MenuItem(name, keys.c_str(), ticked, enabled);
+    remember(state, std::string("menu ") + name);
+    return chosen;
+}
 
 void close_by_escape() {
     if (is_pressed(key::escape, false)) ImGui::CloseCurrentPopup();

@@ -26,6 +26,8 @@ std::string fitted(const std::string& text, float width);
 void cell(const ImVec2& at, const std::string& text, float width, const Color& color);
 // The same of a name and its value: "= 3.2 m" is not cut while there is room for it, the name is.
 void cell(const ImVec2& at, const std::string& name, const std::string& value, float width, const Color& color);
+// How wide a label is in a cell.
+float width_of(const std::string& text);
 // A label with dots over its letters, on the current line, `width` wide however long it is.
 void label(const std::string& text, float width);
 // A quiet heading over a group of widgets; so much at its right end stays free.
@@ -34,8 +36,12 @@ void section(const char* title, float free = 0.0F);
 void tooltip(const std::string& text);
 // The same, below or above this part of the surface, none of which it covers.
 void tooltip(const std::string& text, const Rectangle& clear);
+// Whether a menu or a dialog stands before the panels.
+bool is_covered();
 // Whether Escape was pressed for what asks first, and for nothing in front of it: a menu, a dialog, a text field.
 bool take_escape(PanelState& state);
+// A line of a menu, with the keys that do the same; true when it is chosen.
+bool menu_item(const char* name, PanelState& state, bool ticked = false, bool enabled = true);
 // Within a menu: Escape closes it.
 void close_by_escape();
 // What is left to draw on in the current window.

@@ -94,17 +94,24 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "events", "force",
-                                                   "lens",     "plane",    "plots",  "trail",  "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "events", "force", "help",
+                                                   "lens",     "palette",  "plane",  "plots",  "trail", "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events; or trail, velocity, force;
-                       // the section accuracy of the controls, the configuration plane in place of the mechanism
+        // the section accuracy of the controls, the configuration plane in place of the mechanism; help: the
+        // card of keys and words
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
         Field(&Show::what,
               {.one_of = &shown_things, .known = "these can be shown: {}", .complaint = "there is no '{}' to show{}"}),
         Field(&Show::on, {.yes = "show", .no = "hide", .is_name = true}));
+};
+
+struct Find {
+    std::string text;  // letters of a command, in the palette, which opens
+    static constexpr auto said =
+        Said("find", "write: find \"letters of a command\"", Change::view, Field(&Find::text, in_quotes));
 };
 
 // The plots count from 1, row by row.
@@ -262,12 +269,12 @@ struct Replay {
 // In the order in which they are listed.
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
-                 command::Select, command::New, command::Text, command::Save, command::Show, command::Grid,
-                 command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale, command::ShowCurve,
-                 command::Link, command::Start, command::LookAll, command::Look, command::Speed, command::Loop,
-                 command::Step, command::Undo, command::Redo, command::Pin, command::Lens, command::UseTheme,
-                 command::Size, command::Reset, command::Done, command::Export, command::Copy, command::Wait,
-                 command::Say, command::Replay>;
+                 command::Select, command::New, command::Text, command::Save, command::Show, command::Find,
+                 command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
+                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Speed,
+                 command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::Lens,
+                 command::UseTheme, command::Size, command::Reset, command::Done, command::Export, command::Copy,
+                 command::Wait, command::Say, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -24,10 +24,19 @@ void Scene::perform(const command::Show& command) {
     const auto& things = command::shown_things;
     if (std::find(things.begin(), things.end(), command.what) == things.end())
         throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
+    // One card in front of everything is enough.
+    for (const char* card : {"help", "palette"})
+        if (command.on && (command.what == "help" || command.what == "palette")) shown_.erase(card);
+    if (command.what == "palette") finds_.clear();
     if (command.on)
         shown_.insert(command.what);
     else
         shown_.erase(command.what);
+}
+
+void Scene::perform(const command::Find& command) {
+    perform(command::Show{"palette", true});
+    finds_ = command.text;
 }
 
 void Scene::perform(const command::Speed& command) {
@@ -62,6 +71,7 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.look()) steps.emplace_back(*scene.look());
     for (const std::string& thing : command::shown_things)
         if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
+    if (!scene.finds().empty()) steps.emplace_back(command::Find{scene.finds()});
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
     if (scene.loops()) steps.emplace_back(command::Loop{true});
     for (const std::string& panel : command::sized_panels)
@@ -83,6 +93,7 @@ std::string to_text(const Scene& scene) {
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";
+    if (!scene.finds().empty()) text += fmt::format("finds {}\n", scene.finds());
     if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
     return text;
 }

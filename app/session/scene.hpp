@@ -22,6 +22,7 @@ class Scene {
     bool loops() const { return loops_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
+    const std::string& finds() const { return finds_; }      // letters that the palette opens with
     const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
 
     // The share of the window that the user gave a panel; 0: as it fits.
@@ -31,6 +32,7 @@ class Scene {
     void perform(const command::Look& command);
     void perform(const command::LookAll& command);
     void perform(const command::Show& command);
+    void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
     void perform(const command::Lens& command);
@@ -47,7 +49,7 @@ class Scene {
     bool loops_ = false;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
-    std::string caption_;
+    std::string caption_, finds_;
 };
 
 // What leads from a new scene to this one, but for the lens, which needs a Zeno point to look at.

@@ -212,6 +212,14 @@ const State states[] = {
     {"narrow panels", "ball_on_table", {"size controls 0.01", "size plots 0.9", "size events 0.01"}},
     {"the plane", "triple_pendulum", {"show plane", "show accuracy", "seek 2"}},
     {"a certificate of angles", "double_pendulum", {"select 11", "pin"}},
+    {"all that differs",
+     "triple_pendulum",
+     {"show accuracy", "set g 3", "eps 1e-3 1e-4 1e-5", "method dopri5", "memory 2e8"}},
+    {"the help", "ball_on_sine", {"show help"}},
+    {"all commands", "ball_on_sine", {"show palette"}},
+    {"a long usage", "ball_on_sine", {"find \"export\""}},
+    {"no command", "ball_on_sine", {"find \"qqq\""}},
+    {"systems to open", "ball_on_sine", {"find \"open \""}},
     {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},
 };
 

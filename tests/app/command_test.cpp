@@ -39,6 +39,7 @@ const std::vector<Command> one_of_each{
     command::Save{"mine.toml", false},
     command::Save{"a folder/mine\n.toml", true},
     command::Show{"editor", true},
+    command::Find{"grid 3"},
     command::Show{"trail", false},
     command::Start{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
     command::Look{-1.5, 1e-7, 3.0},
@@ -183,7 +184,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 49u) << list;
+    EXPECT_EQ(all.size(), 50u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.

@@ -1,0 +1,122 @@
+// The card of keys and words (F1), above everything else while the scene shows "help".
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/label.hpp"
+#include "paint/label.hpp"
+#include "paint/paint.hpp"
+#include "panels/print.hpp"
+#include "panels/widgets.hpp"
+#include "session/glossary.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr const char* title = "Keys and words";
+constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest = 1120.0F, highest = 860.0F;
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
+        text.replace(at, what.size(), with);
+    return text;
+}
+
+void heading(const char* text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text);
+    ImGui::PopStyleColor();
+    ImGui::Dummy({0.0F, units(2.0F)});
+}
+
+void show_keys() {
+    heading("Keys");
+    for (const Shortcut& shortcut : shortcuts()) {
+        if (shortcut.keys == "double click") {
+            ImGui::Dummy({0.0F, units(6.0F)});
+            heading("Mouse");
+        }
+        const float left = ImGui::GetCursorPosX();
+        ImGui::TextUnformatted(shortcut.keys.data(), shortcut.keys.data() + shortcut.keys.size());
+        ImGui::SameLine(left + units(keys_column));
+        paragraph(std::string(shortcut.does), ImGui::GetContentRegionAvail().x, text_color());
+    }
+}
+
+// ">=" and "<=" are one sign each.
+std::string formula_label(std::string_view formula) {
+    return replaced(replaced(typeset(formula), ">=", "\u2265"), "<=", "\u2264");
+}
+
+// The word, and beside it its formula, what it means, and where that stands: at the right end of the first line, or where there
+// is no room on a line below.
+void show_term(const Term& term) {
+    const float size = ImGui::GetFontSize(), column = ImGui::GetCursorPosX() + units(word_column);
+    const std::string formula = formula_label(term.formula), source(term.source);
+    ImGui::TextUnformatted(term.word.data(), term.word.data() + term.word.size());
+    ImGui::SameLine(column);
+    const Rectangle beside = remaining();
+    const float space = units(16.0F), source_width = ImGui::CalcTextSize(source.c_str()).x;
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const bool fits = formula.empty() || label_width(formula, size) + space + source_width <= beside.width;
+    if (fits)
+        list->AddText({std::floor(beside.x + beside.width - source_width), beside.y}, packed(faint_color()),
+                      source.c_str());
+    if (!formula.empty()) {
+        paint_label(list, beside.x, beside.y, formula, text_color(), size);
+        ImGui::Dummy({beside.width, ImGui::GetTextLineHeight()});
+        ImGui::SetCursorPosX(column);
+    }
+    paragraph(std::string(term.meaning), beside.width - (formula.empty() ? source_width + space : 0.0F), text_color());
+    if (!fits) {
+        ImGui::SetCursorPosX(column);
+        paragraph(source, beside.width, faint_color());
+    }
+    ImGui::Dummy({0.0F, units(4.0F)});
+}
+
+void show_words() {
+    heading("Words");
+    for (const Term& term : glossary()) show_term(term);
+}
+
+// A part of the card with a scroll bar of its own.
+template <class Content>
+void column(const char* name, const ImVec2& size, const Content& content) {
+    ImGui::BeginChild(name, size);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});
+    content();
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
+}
+
+}  // namespace
+
+void show_help(const Session& session, PanelState& state, Commands& commands) {
+    const bool shown = session.scene().shows("help");
+    if (is_pressed(key::f1, false)) commands.emplace_back(command::Show{"help", !shown});
+    if (shown && !is_covered()) ImGui::OpenPopup(title);
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({std::floor(0.5F * all.x), std::floor(0.5F * all.y)}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSize(
+        {std::min(units(widest), all.x - units(48.0F)), std::min(units(highest), all.y - units(48.0F))});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(18.0F), units(14.0F)});
+    const bool open = ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+    ImGui::PopStyleVar();
+    if (!open) return;
+    if (!shown) ImGui::CloseCurrentPopup();
+    const float height = ImGui::GetContentRegionAvail().y - ImGui::GetFrameHeightWithSpacing();
+    column("keys", {units(keys_width), height}, show_keys);
+    ImGui::SameLine(0.0F, units(24.0F));
+    column("words", {0.0F, height}, show_words);
+    if (ImGui::Button("Close", {units(96.0F), 0.0F}) || is_pressed(key::escape, false))
+        commands.emplace_back(command::Show{"help", false});
+    remember(state, "Close the help");
+    ImGui::EndPopup();
+}
+
+}  // namespace achilles

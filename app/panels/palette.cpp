@@ -1,0 +1,210 @@
+// The command palette (Ctrl+Shift+P): any command by a few of its letters, above everything else while the scene shows it.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "panels/print.hpp"
+#include "panels/widgets.hpp"
+#include "session/finder.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr const char* title = "Command";
+constexpr float wide = 620.0F;
+constexpr int most_rows = 10;
+
+std::vector<std::pair<std::string, std::string>> names_of(const std::vector<SystemEntry>& entries) {
+    std::vector<std::pair<std::string, std::string>> names;
+    for (const SystemEntry& entry : entries) names.emplace_back(entry.name, entry.title);
+    return names;
+}
+
+// What this session has to say after a command's name.
+std::vector<Completions> completions(const Session& session, const PanelState& state) {
+    Completions open{"open", names_of(state.systems)}, replay{"replay", names_of(state.tours)};
+    Completions set{"set", {}, false}, show{"show", {}}, hide{"hide", {}};
+    for (const ParameterDescription& parameter : session.description().parameters)
+        set.values.emplace_back(parameter.name, parameter.about);
+    for (const CoordinateDescription& coordinate : session.description().coordinates)
+        for (const char* prime : {"", "'"}) set.values.emplace_back(coordinate.name + prime, "");
+    for (const std::string& thing : command::shown_things)
+        (session.scene().shows(thing) ? hide : show).values.emplace_back(thing, "");
+    return {std::move(open), std::move(replay), std::move(set), std::move(show), std::move(hide)};
+}
+
+// What is in the field is ours between two frames only by way of ImGui: the cursor goes behind a line that was completed.
+int put_cursor(ImGuiInputTextCallbackData* data) {
+    auto& palette = *static_cast<PaletteState*>(data->UserData);
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) palette.completes = true;
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways && std::exchange(palette.to_end, false)) {
+        data->CursorPos = data->BufTextLen;
+        data->SelectionStart = data->SelectionEnd = data->CursorPos;
+    }
+    return 0;
+}
+
+// The field of the palette has the hand again, with this line in it.
+void write_line(PaletteState& palette, const std::string& line) {
+    palette.text = line;
+    palette.chosen = 0;
+    palette.wrong.clear();
+    ++palette.revision;
+    palette.focuses = palette.to_end = true;
+}
+
+void run(const std::string& line, const Session& session, PanelState& state, Commands& commands) {
+    PaletteState& palette = state.palette;
+    try {
+        const Command command = parse_command(line, "command");
+        const bool replaces =
+            std::holds_alternative<command::Open>(command) || std::holds_alternative<command::New>(command);
+        // Before the palette is known to close: what is asked about the text stands in front of it.
+        if (replaces && (session.document().is_changed() || is_typing(state))) {
+            commands.emplace_back(command::Show{"palette", false});
+            return request(session, state, command, commands);
+        }
+        commands.push_back(command);
+        palette.has_run = true;
+    } catch (const InputError& problem) {
+        palette.wrong = problem.what();
+    }
+    palette.focuses = palette.to_end = true;
+}
+
+// Takes a row of the list: runs it, or completes the line with it.
+void take(const Found& found, const Session& session, PanelState& state, Commands& commands) {
+    if (found.runs) {
+        write_line(state.palette, found.line);
+        run(found.line, session, state, commands);
+    } else {
+        write_line(state.palette, found.line);
+    }
+}
+
+void choose(PaletteState& palette, int count) {
+    if (is_pressed(key::down)) ++palette.chosen;
+    if (is_pressed(key::up)) --palette.chosen;
+    if (is_pressed(key::page_down)) palette.chosen = std::min(palette.chosen + most_rows, count - 1);
+    if (is_pressed(key::page_up)) palette.chosen = std::max(palette.chosen - most_rows, 0);
+    if (count > 0) palette.chosen = (palette.chosen + count) % count;
+}
+
+// True where Enter was pressed.
+bool show_line(PanelState& state) {
+    PaletteState& palette = state.palette;
+    if (ImGui::IsWindowAppearing() || std::exchange(palette.focuses, false)) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(-1.0F);
+    constexpr ImGuiInputTextFlags flags = ImGuiInputTextFlags_EnterReturnsTrue |
+                                          ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackAlways;
+    ImGui::PushID(palette.revision);
+    const bool entered = ImGui::InputTextWithHint("##command", "a command, or a few letters of it", &palette.text,
+                                                  flags, put_cursor, &palette);
+    if (ImGui::IsItemEdited()) {
+        palette.chosen = 0;
+        palette.wrong.clear();
+    }
+    ImGui::PopID();
+    remember(state, "command");
+    return entered;
+}
+
+// The row that was clicked; -1: none.
+int show_rows(const std::vector<Found>& found, PanelState& state) {
+    PaletteState& palette = state.palette;
+    int clicked = -1;
+    const int count = static_cast<int>(found.size()), first = std::clamp(palette.chosen - most_rows + 1, 0, count);
+    for (int i = first; i < std::min(count, first + most_rows); ++i) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float width = ImGui::GetContentRegionAvail().x;
+        ImGui::PushID(i);
+        if (ImGui::Selectable("##row", i == palette.chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = i;
+        ImGui::PopID();
+        const Found& row = found[static_cast<std::size_t>(i)];
+        remember(state, "command " + row.line);
+        // The name stands out from what follows it.
+        const std::string name = row.usage.substr(0, row.usage.find(' '));
+        const float name_width = ImGui::CalcTextSize((name + " ").c_str()).x;
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddText(at, packed(text_color()), name.c_str());
+        if (name.size() < row.usage.size())
+            list->AddText({at.x + name_width, at.y}, packed(faint_color()),
+                          fitted(row.usage.substr(name.size() + 1), width - name_width).c_str());
+    }
+    return clicked;
+}
+
+// What the last command was refused for; or how the present one is written, where the list does not tell, and what Enter
+// makes of it.
+void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (!palette.wrong.empty()) return show_message(palette.wrong, width);
+    if (found.empty()) {
+        const std::string usage = usage_of(palette.text);
+        return paragraph(usage.empty() ? "no command has these letters" : usage, width, faint_color());
+    }
+    const Found& chosen = found[static_cast<std::size_t>(palette.chosen)];
+    if (ImGui::CalcTextSize(chosen.usage.c_str()).x > width) paragraph(chosen.usage, width, faint_color());
+    paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
+}
+
+void show_content(const Session& session, PanelState& state, Commands& commands) {
+    PaletteState& palette = state.palette;
+    if (ImGui::IsWindowAppearing()) {
+        palette = {.text = session.scene().finds(), .revision = palette.revision + 1};
+        palette.to_end = true;
+    }
+    // The command that was run is done by now: it was refused, or there is nothing more to say.
+    if (std::exchange(palette.has_run, false)) {
+        palette.wrong = session.error();
+        if (palette.wrong.empty()) commands.emplace_back(command::Show{"palette", false});
+    }
+    const bool entered = show_line(state);
+    const std::vector<Found> found = find_commands(palette.text, completions(session, state));
+    choose(palette, static_cast<int>(found.size()));
+    const int clicked = show_rows(found, state);
+    ImGui::Separator();
+    show_answer(found, palette);
+    const bool completes = std::exchange(palette.completes, false) && !found.empty();
+    if (clicked >= 0)
+        take(found[static_cast<std::size_t>(clicked)], session, state, commands);
+    else if (completes)
+        write_line(palette, found[static_cast<std::size_t>(palette.chosen)].line);
+    else if (entered && !found.empty())
+        take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
+    else if (entered)
+        run(palette.text, session, state, commands);
+    else if (is_pressed(key::escape, false))
+        commands.emplace_back(command::Show{"palette", false});
+}
+
+}  // namespace
+
+void show_palette(const Session& session, PanelState& state, Commands& commands) {
+    const bool shown = session.scene().shows("palette");
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.KeyCtrl && io.KeyShift && is_pressed('P', false)) commands.emplace_back(command::Show{"palette", !shown});
+    if (shown && !is_covered()) ImGui::OpenPopup(title);
+    const float width = std::min(units(wide), io.DisplaySize.x - units(24.0F));
+    ImGui::SetNextWindowPos({std::floor(0.5F * (io.DisplaySize.x - width)), std::floor(0.1F * io.DisplaySize.y)});
+    ImGui::SetNextWindowSize({width, 0.0F});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(12.0F)});
+    constexpr ImGuiWindowFlags flags =
+        ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove;
+    const bool open = ImGui::BeginPopupModal(title, nullptr, flags);
+    ImGui::PopStyleVar();
+    if (!open) return;
+    if (shown)
+        show_content(session, state, commands);
+    else
+        ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+}
+
+}  // namespace achilles

@@ -1,0 +1,82 @@
+#include "session/glossary.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace achilles {
+
+namespace {
+
+constexpr std::array terms{
+    Term{"gap", "gap >= 0", "How far a contact is from closing. A motion never makes it negative.", "theory 1"},
+    Term{"hybrid phase", "M*a + b = 0", "Free flight and impacts, as long as no contact is held.", "paper (2), Def. 4"},
+    Term{"impact", "v(after) = v(before) - (1 + e)*gap'*n",
+         "The gap closes, and the velocity jumps along n, the direction of the impulse.", "paper (4)"},
+    Term{"impact speed", "w = -gap'(before)", "How fast the gap closes at an impact.", "theory 3"},
+    Term{"restitution", "e = -gap'(after)/gap'(before)", "What an impact leaves of its speed: 0 nothing, 1 all of it.",
+         "paper (4)"},
+    Term{"normal acceleration", "gap''",
+         "Of the gap in free motion. Where it is negative the bodies are pressed together.", "paper (8)"},
+    Term{"Zeno point", "gap = 0, gap' = 0, gap'' < 0",
+         "Infinitely many impacts end here in finite time: each flight is about e times the last.", "paper, Thm. 2"},
+    Term{"truncation", "w < c1, w < c2, w < c3",
+         "The bouncing is cut at the first impact where it is proved how little is lost by it.", "paper, Def. 7"},
+    Term{"conditions", "a_min <= -gap'' <= a_max",
+         "What is proved before the cut: the paper's inequalities, or the sharp ones, which choose their own "
+         "neighbourhood.",
+         "paper (9)-(11); theory 6"},
+    Term{"certificate", "t(Zeno) - t(cut) <= A*w",
+         "Bounds by interval arithmetic on the Zeno time, and on the true Zeno point beside the one that was computed.",
+         "paper, Thm. 3; theory 4"},
+    Term{"restart", "v(after) = v - gap'*n",
+         "Where the motion goes on from the cut: by the kinetic metric, a plastic impact, or by the paper's euclidean "
+         "projection.",
+         "paper, Def. 7; theory 5"},
+    Term{"constrained phase", "gap = 0, gap' = 0, lambda > 0", "The contact is held: the motion stays on the surface.",
+         "paper (5), Def. 5"},
+    Term{"contact force", "lambda = -gap''/W", "What holds the gap closed. It can push, but not pull.", "paper (6)"},
+    Term{"release", "lambda = 0", "The contact force has fallen to zero, and the body leaves the surface.",
+         "paper, Def. 5"},
+    Term{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
+         "paper, Defs. 4, 5"},
+    Term{"work and loss", "energy = energy(0) + work - loss",
+         "Forces and moving contacts do work, dampers and impacts take the loss.", ""},
+    Term{"undecided", "", "Double precision cannot tell what comes next, and the run says so and stops.", "theory 6"},
+};
+
+constexpr std::array keys{
+    Shortcut{"F1", "this card", "Keys and words"},
+    Shortcut{"Ctrl+Shift+P", "any command", "Command\u2026"},
+    Shortcut{"Ctrl+N", "a new system", "New"},
+    Shortcut{"Ctrl+O", "open a file", "Open\u2026"},
+    Shortcut{"Ctrl+S", "save the text", "Save"},
+    Shortcut{"Ctrl+E", "the system as text", "Text of the system"},
+    Shortcut{"Ctrl+Z", "undo", "Undo"},
+    Shortcut{"Ctrl+Shift+Z", "redo", "Redo"},
+    Shortcut{"Ctrl+1", "controls", "Controls"},
+    Shortcut{"Ctrl+2", "plots", "Plots"},
+    Shortcut{"Ctrl+3", "events", "Events"},
+    Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
+    Shortcut{"Ctrl+C", "copy the chosen event"},
+    Shortcut{"Ctrl+Q", "close the window"},
+    Shortcut{"Space", "play, pause"},
+    Shortcut{"Left, Right", "event before, after"},
+    Shortcut{"Home, End", "start, end of the run"},
+    Shortcut{"Escape", "close what is open"},
+    Shortcut{"Enter", "a tour's next step"},
+    Shortcut{"double click", "type a slider's value"},
+    Shortcut{"right click", "the file's value"},
+    Shortcut{"drag a body", "start there"},
+};
+
+}  // namespace
+
+std::span<const Term> glossary() { return terms; }
+std::span<const Shortcut> shortcuts() { return keys; }
+
+std::string_view shortcut_of(std::string_view menu) {
+    const auto* const found = std::find_if(keys.begin(), keys.end(), [&](const Shortcut& s) { return s.menu == menu; });
+    return found == keys.end() ? std::string_view() : found->keys;
+}
+
+}  // namespace achilles

@@ -1,0 +1,236 @@
+// Finding things: the card of keys and words, the command palette.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/hands.hpp"
+#include "cli/manual.hpp"
+#include "session/finder.hpp"
+#include "session/glossary.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+// ---- the card of keys and words ----
+
+TEST(Help, comes_and_goes_with_its_key_and_by_a_command) {
+    Hands hands("ball_on_sine");
+    EXPECT_FALSE(hands.says("certificate theory"));
+    hands.press(key::f1);
+    EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"help", true})});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("Zeno point"));
+    hands.press(key::escape);
+    hands.press(key::f1);
+    hands.press(key::f1);
+    hands.click("menu Help");
+    hands.click("menu Keys and words");
+    hands.click("Close the help");
+    std::string record;
+    for (const Command& command : hands.all) record += to_text(command) + "; ";
+    EXPECT_EQ(record, "show help; hide help; show help; hide help; show help; hide help; ");
+    EXPECT_FALSE(hands.says("Zeno point theory"));
+}
+
+// What Escape closes is the card alone: what stands behind it stays.
+TEST(Help, takes_escape_for_itself) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(parse_command("select 3"));
+    hands.session.apply(parse_command("show help"));
+    hands.rest(3);
+    hands.press(key::escape);
+    EXPECT_EQ(hands.session.selected(), 3);
+    EXPECT_FALSE(hands.session.scene().shows("help"));
+}
+
+TEST(Help, has_every_word_and_key_on_the_card) {
+    const SurfaceOptions tall = test::surface(1400, 1000);
+    Hands hands("ball_on_sine", tall);
+    hands.session.apply(parse_command("show help"));
+    hands.rest(3);
+    for (const Term& term : glossary()) {
+        EXPECT_TRUE(hands.says(std::string(term.word))) << term.word;
+        EXPECT_TRUE(hands.says(std::string(term.meaning))) << term.meaning;
+    }
+    for (const Shortcut& shortcut : shortcuts())
+        EXPECT_TRUE(hands.says(std::string(shortcut.keys) + std::string(shortcut.does))) << shortcut.keys;
+}
+
+// The manual shows the same tables. Its letters are all of one width only where they are ASCII.
+TEST(Help, is_the_manuals_table) {
+    const std::string page = manual_page("words");
+    const auto is_ascii = [](std::string_view text) {
+        return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+    };
+    std::set<std::string_view> words;
+    for (const Term& term : glossary()) {
+        EXPECT_TRUE(words.insert(term.word).second) << term.word;
+        for (const std::string_view text : {term.word, term.formula, term.meaning, term.source}) {
+            EXPECT_TRUE(is_ascii(text)) << text;
+            EXPECT_NE(page.find(text), std::string::npos) << text;
+        }
+    }
+    for (const char* word : {"gap", "restitution", "impact", "Zeno point", "truncation", "certificate", "release",
+                             "constrained phase", "contact force"})
+        EXPECT_TRUE(words.contains(word)) << word;
+    for (const Shortcut& shortcut : shortcuts()) EXPECT_NE(page.find(shortcut.does), std::string::npos);
+}
+
+// A menu's line has the keys of the table, and every key of the table that names a line has one.
+TEST(Help, tells_keys_of_lines_that_menus_have) {
+    Hands hands("ball_on_sine");
+    for (const char* menu : {"menu File", "menu Edit", "menu View", "menu Help"}) {
+        hands.click(menu);
+        hands.rest(2);
+        hands.press(key::escape);
+    }
+    for (const Shortcut& shortcut : shortcuts())
+        if (!shortcut.menu.empty()) {
+            EXPECT_TRUE(hands.state.places.contains("menu " + std::string(shortcut.menu))) << shortcut.menu;
+        }
+    EXPECT_EQ(shortcut_of("Undo"), "Ctrl+Z");
+    EXPECT_EQ(shortcut_of("Reset all values"), "");
+}
+
+// ---- the command palette ----
+
+std::vector<std::string> lines_for(const std::string& typed, const std::vector<Completions>& completions = {}) {
+    std::vector<std::string> lines;
+    for (const Found& found : find_commands(typed, completions)) lines.push_back(found.line);
+    return lines;
+}
+
+TEST(Finder, orders_by_how_well_letters_fit) {
+    EXPECT_EQ(misfit("grid", "grid"), 0);
+    EXPECT_EQ(misfit("GR", "grid"), 1);
+    EXPECT_EQ(misfit("imp", "max-impacts"), 2);
+    EXPECT_EQ(misfit("id", "grid"), 3);
+    EXPECT_EQ(misfit("gd", "grid"), 6);
+    EXPECT_EQ(misfit("dg", "grid"), -1);
+    EXPECT_EQ(misfit("gridd", "grid"), -1);
+}
+
+TEST(Finder, finds_commands_by_name_then_by_usage) {
+    EXPECT_EQ(lines_for("").size(), command_usages().size());
+    ASSERT_FALSE(lines_for("grid").empty());
+    EXPECT_EQ(lines_for("grid")[0], "grid ");
+    EXPECT_EQ(lines_for("pl")[0], "play") << "what stands alone runs";
+    EXPECT_EQ(lines_for("tol")[0], "tolerance ");
+    const auto by_usage = lines_for("journal");
+    EXPECT_NE(std::find(by_usage.begin(), by_usage.end(), "replay "), by_usage.end());
+    EXPECT_TRUE(lines_for("qqq").empty());
+    EXPECT_TRUE(lines_for("grid 2 ").empty());
+    EXPECT_EQ(usage_of("grid 2 2"), "grid COLUMNS ROWS");
+    EXPECT_EQ(usage_of("gird 2 2"), "");
+}
+
+TEST(Finder, completes_values_by_name_or_by_what_they_are) {
+    const std::vector<Completions> some{{"open", {{"ball_on_sine", "A ball"}, {"two words", "Kneed leg"}}, true},
+                                        {"set", {{"g", "gravity"}, {"e", ""}}, false}};
+    EXPECT_EQ(lines_for("open ball", some), std::vector<std::string>{"open ball_on_sine"});
+    EXPECT_EQ(lines_for("open knee", some), std::vector<std::string>{"open \"two words\""});
+    EXPECT_EQ(lines_for("set grav", some), std::vector<std::string>{"set g "});
+    EXPECT_TRUE(find_commands("open ball", some)[0].runs);
+    EXPECT_FALSE(find_commands("set g", some)[0].runs);
+    EXPECT_TRUE(lines_for("set g 3", some).empty());
+}
+
+// Opens it by its keys.
+void open_palette(Hands& hands) {
+    hands.hand.keys = {key::left_control, key::left_shift};
+    hands.rest(1);
+    hands.hand.keys.push_back('P');
+    hands.rest(2);
+    hands.hand.keys.clear();
+    hands.rest(3);
+}
+
+TEST(Palette, completes_and_runs_by_enter) {
+    Hands hands("ball_on_sine");
+    open_palette(hands);
+    EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"palette", true})});
+    hands.all.clear();
+    hands.type("gri");
+    EXPECT_TRUE(hands.says("grid COLUMNS ROWS"));
+    hands.press(key::enter);
+    EXPECT_EQ(hands.state.palette.text, "grid ");
+    hands.type("3 2");
+    EXPECT_EQ(hands.state.palette.text, "grid 3 2") << "letters go behind what was completed";
+    hands.press(key::enter);
+    EXPECT_EQ(hands.all, (std::vector<Command>{command::Grid{3, 2}, command::Show{"palette", false}}));
+    hands.rest(2);
+    EXPECT_FALSE(hands.says("COLUMNS"));
+    EXPECT_EQ(hands.session.plotted().columns(), 3);
+}
+
+TEST(Palette, is_walked_by_arrows_and_clicked) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(parse_command("find \"pi\""));
+    hands.rest(3);
+    const auto rows = lines_for("pi");
+    ASSERT_GE(rows.size(), 2U);
+    EXPECT_EQ(rows[0], "pin");
+    hands.press(key::down);
+    EXPECT_EQ(hands.state.palette.chosen, 1);
+    hands.press(key::up);
+    EXPECT_EQ(hands.state.palette.chosen, 0);
+    hands.press(key::up);
+    EXPECT_EQ(hands.state.palette.chosen, static_cast<int>(rows.size()) - 1);
+    EXPECT_EQ(hands.all, std::vector<Command>{}) << "neither the time nor a plot hears the arrows";
+    hands.press(key::down);
+    hands.press(key::tab);
+    EXPECT_EQ(hands.state.palette.text, "pin");
+    EXPECT_EQ(hands.all, std::vector<Command>{});
+    hands.click("command pin");
+    ASSERT_FALSE(hands.all.empty());
+    EXPECT_EQ(hands.all[0], Command(command::Pin{true}));
+    EXPECT_FALSE(hands.session.scene().shows("palette"));
+}
+
+TEST(Palette, keeps_what_is_refused_and_says_why) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(parse_command("find \"grid 3\""));
+    hands.rest(3);
+    hands.press(key::enter);  // no command yet
+    EXPECT_TRUE(hands.all.empty());
+    EXPECT_TRUE(hands.says("'grid' needs more"));
+    EXPECT_TRUE(hands.says("write: grid COLUMNS ROWS"));
+    hands.type(" 77");
+    EXPECT_FALSE(hands.says("'grid' needs more")) << "another line is another matter";
+    hands.press(key::enter);  // a command that the session refuses
+    EXPECT_FALSE(hands.session.error().empty());
+    EXPECT_TRUE(hands.session.scene().shows("palette"));
+    EXPECT_EQ(hands.state.palette.wrong, hands.session.error());
+    hands.press(key::escape);
+    EXPECT_FALSE(hands.session.scene().shows("palette"));
+}
+
+// Another system would take the place of a text that is not saved: that is asked first.
+TEST(Palette, asks_before_it_opens_over_changes) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::Text{hands.session.document().text + "# mine\n"});
+    hands.session.apply(parse_command("find \"open double\""));
+    hands.rest(3);
+    hands.press(key::enter);
+    hands.rest(3);
+    EXPECT_EQ(hands.session.system(), "ball_on_sine");
+    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::unsaved);
+    hands.click("dialog Discard");
+    EXPECT_EQ(hands.session.system(), "double_pendulum");
+}
+
+TEST(Palette, takes_the_place_of_the_help) {
+    Hands hands("ball_on_sine");
+    hands.press(key::f1);
+    open_palette(hands);
+    EXPECT_FALSE(hands.session.scene().shows("help"));
+    EXPECT_TRUE(hands.says("Enter or Tab completes it"));
+    hands.press(key::escape);
+    EXPECT_FALSE(hands.session.scene().shows("palette"));
+}
+
+}  // namespace
+}  // namespace achilles
