@@ -11,6 +11,7 @@
 #include "panels/print.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
+#include "session/recipe.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -149,15 +150,30 @@ void choice(const OptionRow& row, const Options& now, const Options& file, Panel
     }
 }
 
+double number_in(const OptionValue& value) {
+    const auto* count = std::get_if<int>(&value);
+    return count != nullptr ? *count : std::get<double>(value);
+}
+
 // The option's value in `options` under the hand; true where it has moved it.
 bool moved(const OptionRow& row, Options& options, const Options& file, PanelState& state) {
     const Option& slid = option(row.key);
-    const bool is_of_cut = slid.table == "truncation";
-    Slider slider{
-        row.title, row.id,   is_of_cut ? "" : std::string(slid.unit), row.about, std::get<double>(slid.get(options)),
-        row.low,   row.high, std::get<double>(slid.get(file)),        1.0,       row.digits};
+    const bool is_of_cut = slid.table == "truncation", is_count = std::holds_alternative<int>(slid.get(options));
+    Slider slider{row.title,
+                  row.id,
+                  is_of_cut ? "" : std::string(slid.unit),
+                  row.about,
+                  number_in(slid.get(options)),
+                  row.low,
+                  row.high,
+                  number_in(slid.get(file)),
+                  1.0,
+                  row.digits};
     if (!moved(slider, state)) return false;
-    slid.set(options, slider.value);
+    if (is_count)
+        slid.set(options, static_cast<int>(std::lround(std::clamp(slider.value, 1.0, 1e9))));
+    else
+        slid.set(options, slider.value);
     return true;
 }
 
@@ -186,7 +202,8 @@ void slide(const OptionRow& row, const Session& session, const Run& file, PanelS
 }
 
 // The keys of what the section holds.
-constexpr const char* accuracy_keys[] = {"eps_q", "eps_v", "eps_t", "conditions", "reinitialization", "tolerance"};
+constexpr const char* accuracy_keys[] = {"eps_q",     "eps_v",  "eps_t",       "conditions", "reinitialization",
+                                         "tolerance", "method", "max_impacts", "max_steps"};
 
 // What the folded section says: "ε 1e-06, sharp, tol 1e-10".
 std::string accuracy_text(const Options& options) {
@@ -255,6 +272,33 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     slide({"tolerance", "tolerance", "tolerance", "of the integration: local error per step, absolute and relative",
            1e-14, 1e-4},
           session, file, state, commands);
+    choice({"method", "", "method",
+            "of the integration: Taylor series, with an estimate of their error, or Dormand and Prince's formula"},
+           now, file.options, state, commands);
+    slide({"max_impacts", "max impacts", "impacts \u2264", "after so many impacts the run stops", 100.0, 1e7}, session,
+          file, state, commands);
+    slide({"max_steps", "max steps", "steps \u2264", "after so many steps of the integration the run stops", 1e3, 1e8},
+          session, file, state, commands);
+}
+
+// All that is not as the file has it, in one place: what it is, what the file has; a click puts it back.
+void changes(const Session& session, const Run& file, PanelState& state, Commands& commands) {
+    const std::vector<Difference> all = differences(session.description(), session.run(), file);
+    if (all.empty()) return;
+    section("Differs from the file");
+    for (const Difference& difference : all) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
+        if (ImGui::InvisibleButton(("put back " + difference.name).c_str(), {width, line}))
+            commands.push_back(difference.back);
+        remember(state, "put back " + difference.name);
+        const bool is_hovered = ImGui::IsItemHovered();
+        tooltip(fmt::format("{}; the file has {}. A click puts it back", difference.told(), difference.other));
+        const std::string file_has = "file: " + difference.other;
+        const float other = std::min(std::ceil(width_of(file_has)), 0.5F * width);
+        cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
+        cell({std::floor(at.x + width - other), at.y}, file_has, other, is_hovered ? text_color() : faint_color());
+    }
 }
 
 void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {
@@ -294,6 +338,7 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
         for (const bool is_rate : {false, true}) start_value(session, file, i, is_rate, state, commands);
     end_time(session, file, state, commands);
     accuracy(session, file, state, commands);
+    changes(session, file, state, commands);
     ImGui::PopStyleVar();
 }
 

@@ -24,6 +24,23 @@ bool is_logarithmic(const Slider& slider) { return slider.low > 0.0 && slider.hi
 
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 
+// Where a value, in the unit that is shown, stands on the track, and what stands there.
+double share_of(const Slider& slider, double value) {
+    const double low = slider.low * slider.factor, high = slider.high * slider.factor;
+    return is_logarithmic(slider) ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
+}
+double value_at(const Slider& slider, double share) {
+    const double low = slider.low * slider.factor, high = slider.high * slider.factor, at = std::clamp(share, 0.0, 1.0);
+    return is_logarithmic(slider) ? low * std::pow(high / low, at) : low + at * (high - low);
+}
+
+// As ImGui places the grab: how much of the track it moves along.
+constexpr float grab_padding = 2.0F;
+float usable(float width) { return std::max(1.0F, width - ImGui::GetStyle().GrabMinSize - 2.0F * grab_padding); }
+float grab_at(float left, float width, double share) {
+    return left + grab_padding + 0.5F * ImGui::GetStyle().GrabMinSize + static_cast<float>(share) * usable(width);
+}
+
 // "30°", "2 m", with so many digits.
 std::string shown(const Slider& slider, double value, int digits = 6) {
     const bool joined = slider.unit.empty() || slider.unit[0] == '\xc2';
@@ -47,7 +64,7 @@ std::string explanation(const Slider& slider) {
     return text +
            (slider.factor == 1.0 ? "\ndouble click: type a value, 1/3 too; "
                                  : "\ndouble click: type degrees, or pi/6; ") +
-           "right click: as the file has it";
+           "right click: as the file has it; Shift: fine";
 }
 
 // A thin track behind a slider whose own frame is invisible, with a mark where the file's value is.
@@ -57,12 +74,7 @@ void paint_track(const Slider& slider, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({at.x, y - half}, {at.x + width, y + half}, packed(current_theme().border), half);
     if (slider.value == slider.original || !(slider.original >= slider.low && slider.original <= slider.high)) return;
-    const double share = is_logarithmic(slider)
-                             ? std::log(slider.original / slider.low) / std::log(slider.high / slider.low)
-                             : (slider.original - slider.low) / (slider.high - slider.low);
-    const float grab = ImGui::GetStyle().GrabMinSize, padding = 2.0F;  // as ImGui places the grab
-    const float x =
-        std::floor(at.x + padding + 0.5F * grab + static_cast<float>(share) * (width - grab - 2.0F * padding));
+    const float x = std::floor(grab_at(at.x, width, share_of(slider, slider.original * slider.factor)));
     list->AddRectFilled({x - units(1.0F), y - units(6.0F)}, {x + units(1.0F), y + units(6.0F)}, packed(faint_color()));
 }
 
@@ -103,23 +115,66 @@ bool was_clicked(Slider& slider, PressedSlider& pressed) {
     return std::exchange(slider.value, pressed.clicked_target) != pressed.clicked_target;
 }
 
+constexpr double fine_gain = 1.0 / 20.0;
+
+// Where the hand has brought the grab to: where it is, and with Shift on from there by little steps.
+double held_share(const Slider& slider, double absolute, float width, PressedSlider& pressed) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActivated()) {
+        pressed.is_fine = pressed.is_relative = false;
+        const double there = share_of(slider, slider.value * slider.factor);
+        pressed.share = io.KeyShift && std::isfinite(there) ? there : absolute;
+    }
+    if (io.KeyShift != pressed.is_fine) {
+        pressed.is_fine = io.KeyShift;
+        pressed.is_relative = true;
+        pressed.from_x = io.MousePos.x;
+        pressed.from_share = pressed.share;
+    }
+    const double gone = (io.MousePos.x - pressed.from_x) / usable(width) * (pressed.is_fine ? fine_gain : 1.0);
+    pressed.share = std::clamp(pressed.is_relative ? pressed.from_share + gone : absolute, 0.0, 1.0);
+    return pressed.share;
+}
+
+// What the hand means, in the file's units: what there is, or the file's value, where that is within half a pixel, else the
+// roundest number that is.
+double meant_at(const Slider& slider, double share, float width, bool is_fine) {
+    const double half = 0.5 / usable(width) * (is_fine ? fine_gain : 1.0);
+    for (const double sticky : {slider.value, slider.original})
+        if (std::abs(share_of(slider, sticky * slider.factor) - share) <= half) return sticky;
+    return roundest(value_at(slider, share - half), value_at(slider, share + half)) / slider.factor;
+}
+
 // ImGui would write the value over the grab; ours stands beside it, so its text is hidden. Fifteen digits: ImGui takes
 // the precision of a logarithmic scale from here.
 bool dragged(Slider& slider, float width, PressedSlider& pressed) {
     paint_track(slider, width);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    // ImGui's grab is under the mouse, which a fine hand leaves behind.
+    const bool is_ours = pressed.id == slider.id && pressed.is_relative && ImGui::IsMouseDown(ImGuiMouseButton_Left);
     for (const ImGuiCol color : {ImGuiCol_FrameBg, ImGuiCol_FrameBgActive, ImGuiCol_FrameBgHovered, ImGuiCol_Text})
         ImGui::PushStyleColor(color, 0U);
+    const ImU32 grab = ImGui::GetColorU32(ImGuiCol_SliderGrabActive);
+    if (is_ours) ImGui::PushStyleColor(ImGuiCol_SliderGrabActive, 0U);
     ImGui::SetNextItemWidth(width);
     double value = slider.value * slider.factor;
-    const double before = value, low = slider.low * slider.factor, high = slider.high * slider.factor;
+    const double low = slider.low * slider.factor, high = slider.high * slider.factor;
     ImGui::SliderScalar(
         ("##" + slider.id).c_str(), ImGuiDataType_Double, &value, &low, &high, "%.15g",
         ImGuiSliderFlags_NoInput | (is_logarithmic(slider) ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None));
-    ImGui::PopStyleColor(4);
-    const bool stays = value == before || rounded(value, slider.digits) == before;
-    const double target = stays ? slider.value : rounded(value, slider.digits) / slider.factor;
-    const bool now = takes_effect(slider, target, pressed);
-    if (now && !stays) {
+    ImGui::PopStyleColor(is_ours ? 5 : 4);
+    double target = slider.value;
+    if (ImGui::IsItemActive()) {
+        const double share = held_share(slider, share_of(slider, value), width, pressed);
+        target = meant_at(slider, share, width, pressed.is_fine);
+    }
+    if (is_ours) {
+        const float x = grab_at(at.x, width, pressed.share), half = 0.5F * ImGui::GetStyle().GrabMinSize;
+        ImGui::GetWindowDrawList()->AddRectFilled({x - half, at.y + grab_padding},
+                                                  {x + half, at.y + ImGui::GetFrameHeight() - grab_padding}, grab,
+                                                  ImGui::GetStyle().GrabRounding);
+    }
+    if (takes_effect(slider, target, pressed) && target != slider.value) {
         slider.value = target;
         return true;
     }
@@ -197,6 +252,20 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
 }
 
 }  // namespace
+
+double roundest(double low, double high) {
+    if (low > high) std::swap(low, high);
+    if (low <= 0.0 && high >= 0.0) return 0.0;
+    const double middle = 0.5 * (low + high), most = std::max(std::abs(low), std::abs(high));
+    for (int power = static_cast<int>(std::ceil(std::log10(most))) + 1; power > -320 && high > low; --power)
+        for (const double step : {std::pow(10.0, power), 0.5 * std::pow(10.0, power), 0.2 * std::pow(10.0, power)}) {
+            double times = std::round(middle / step);
+            for (const double other : {times - 1.0, times + 1.0})
+                if (times * step < low || times * step > high) times = other;
+            if (times * step >= low && times * step <= high) return rounded(times * step, 15);
+        }
+    return low;
+}
 
 bool waits_for_click(const PanelState& state) { return !state.pressed.clicked.empty(); }
 

@@ -1,4 +1,5 @@
-// One value under the hand: dragged, typed after a double click, put back by a right click.
+// One value under the hand: dragged, typed after a double click, put back by a right click. A drag takes the roundest number
+// that lies within a pixel of the hand; with Shift within a twentieth of one, and goes so much slower.
 #pragma once
 
 #include <string>
@@ -12,8 +13,12 @@ struct Slider {
     double value = 0.0, low = 0.0, high = 1.0;  // in the file's units
     double original = 0.0;                      // as the file has it
     double factor = 1.0;                        // to the unit that is shown: 180/pi for an angle
-    int digits = 4;                             // that a dragged value keeps
+    int digits = 4;                             // that are shown of it, and two more
 };
+
+// The number between two that is written with the fewest digits: 0, else a multiple of the largest 1, 2 or 5 times a power of
+// ten, of several the one nearest to the middle.
+double roundest(double low, double high);
 
 // Widths of a row's columns at scale 1: what it is, its value. The slider has the rest.
 constexpr float label_width = 78.0F, value_width = 84.0F;

@@ -48,6 +48,16 @@ std::vector<Command> steps_between(const SystemDescription& description, const R
     return steps;
 }
 
+// "30°", "2 m".
+std::string with_unit_of(const std::string& unit_in_file, double value) {
+    const bool is_angle = is_of_angles(unit_in_file);
+    std::string unit = typeset_unit(unit_in_file);
+    if (is_angle) unit.replace(0, 3, "\u00b0");
+    std::string text = fmt::format("{:.6g}", is_angle ? degrees(value) : value);
+    if (text[0] == '-') text.replace(0, 1, "\u2212");
+    return text + (is_angle || unit.empty() ? unit : "\u00a0" + unit);
+}
+
 void append(std::vector<Command>& steps, const std::vector<Command>& more) {
     steps.insert(steps.end(), more.begin(), more.end());
 }
@@ -178,23 +188,31 @@ std::vector<std::string> run_options(const Session& session) {
     return words;
 }
 
+std::vector<Difference> differences(const SystemDescription& description, const Run& run, const Run& other) {
+    std::vector<Difference> all;
+    const auto now = changed_values(description, other, run), before = changed_values(description, run, other);
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const std::string& name = now[i].first;
+        const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
+                                           [&](const ParameterDescription& p) { return p.name == name; });
+        const std::string unit(unit_of(description, name));
+        all.push_back({typeset(name) + (is_start ? "(0)" : ""), with_unit_of(unit, now[i].second.value),
+                       with_unit_of(unit, before[i].second.value), false, command::Set{name, before[i].second}});
+    }
+    for (const auto group : options_by_command(run.options, other.options)) {
+        const command::UseOption step(group[0], run.options), back(group[0], other.options);
+        if (step == back) continue;
+        const auto values = [&](const command::UseOption& use) {
+            return to_text(Command(use)).substr(use.name.size() + 1);
+        };
+        all.push_back({step.name, values(step), values(back), true, back});
+    }
+    return all;
+}
+
 std::string told_apart(const SystemDescription& description, const Run& run, const Run& other) {
     std::vector<std::string> parts;
-    const auto changed = changed_values(description, other, run);
-    for (const auto& [name, given] : changed) {
-        const bool is_angle = is_of_angles(unit_of(description, name));
-        const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
-                                           [&name = name](const ParameterDescription& p) { return p.name == name; });
-        std::string unit = typeset_unit(unit_of(description, name));
-        if (is_angle) unit.replace(0, 3, "\u00b0");
-        std::string value = fmt::format("{:.6g}", is_angle ? degrees(given.value) : given.value);
-        if (value[0] == '-') value.replace(0, 1, "\u2212");
-        parts.push_back(typeset(name) + (is_start ? "(0)" : "") + " = " + value +
-                        (is_angle || unit.empty() ? unit : "\u00a0" + unit));
-    }
-    for (const auto group : options_by_command(other.options, run.options))
-        if (const command::UseOption step(group[0], run.options); step != command::UseOption(group[0], other.options))
-            parts.push_back(to_text(Command(step)));
+    for (const Difference& difference : differences(description, run, other)) parts.push_back(difference.told());
     constexpr std::size_t most = 3;
     if (parts.size() > most) parts.resize(most), parts.emplace_back("\u2026");
     return fmt::format("{}", fmt::join(parts, ", "));

@@ -14,6 +14,14 @@ std::vector<Command> recipe(const Session& session);
 
 // The options that make of a system's file the run that was asked for: --set e=0.3 --end 30.
 std::vector<std::string> run_options(const Session& session);
+// One value or option of a run that is another in another run of the same system, as a person reads it.
+struct Difference {
+    std::string name, now, other;  // "x(0)", "2 m", "1 m"
+    bool is_option = false;        // the name is the command that sets it
+    Command back;                  // gives it the other's value
+    std::string told() const { return name + (is_option ? " " : " = ") + now; }
+};
+std::vector<Difference> differences(const SystemDescription& description, const Run& run, const Run& other);
 // How one run of a system differs from another, for a legend: "e = 0.3, x(0) = 1 m", a few words at most; empty: not at all.
 std::string told_apart(const SystemDescription& description, const Run& run, const Run& other);
 // After these options: what puts the pinned run beside it, and leads to the plots.

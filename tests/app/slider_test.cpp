@@ -1,8 +1,15 @@
 // The hand on a value: typed, put back, marked, undone.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <set>
 
 #include "app/hands.hpp"
 #include "output/output.hpp"
+#include "panels/slider.hpp"
+#include "session/recipe.hpp"
 
 namespace achilles {
 namespace {
@@ -313,6 +320,130 @@ TEST(Slider, a_changed_value_is_marked) {
     EXPECT_GE(accents(), 3);
     hands.session.apply(parse_command("set g 1"));
     EXPECT_EQ(accents(), 0);
+}
+
+TEST(Slider, the_roundest_number_has_the_fewest_digits) {
+    struct Case {
+        double low, high, roundest;
+    };
+    for (const Case& c :
+         {Case{-1.0, 2.0, 0.0}, Case{0.93, 1.07, 1.0}, Case{0.463, 0.531, 0.5}, Case{9.31, 11.2, 10.0},
+          Case{-3.62, -3.37, -3.5}, Case{17.13, 17.27, 17.2}, Case{1.2e-7, 2.3e-7, 2e-7}, Case{23.0, 47.0, 40.0},
+          Case{0.33305, 0.3334, 0.3332}, Case{0.0, 0.1, 0.0}, Case{3.7, 3.7, 3.7}})
+        EXPECT_EQ(roundest(c.low, c.high), c.roundest) << c.low << " to " << c.high;
+}
+
+// Wherever a drag ends, the value is round, and lies within a pixel of the hand.
+TEST(Slider, a_drag_takes_round_numbers) {
+    SliderHand hands("ball_on_sine");
+    const double width = hands.state.places.at("set e").width;
+    hands.point("set e", 0.2);
+    hands.hand.left = true;
+    hands.rest(1);
+    std::set<std::string> texts;
+    for (int i = 1; i <= 40; ++i) {
+        hands.hand.mouse_x += 0.013 * width;
+        hands.rest(1);
+        texts.insert(fmt::format("{}", *hands.session.value("e")));
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    EXPECT_GE(texts.size(), 30U) << "it follows";
+    for (const std::string& text : texts) EXPECT_LE(text.size(), 5U) << text;
+    // In degrees, where these are shown.
+    SliderHand angle("double_pendulum");
+    angle.click("set theta1", 0.63);
+    const double shown = *angle.session.value("theta1") * 180.0 / 3.14159265358979323846;
+    EXPECT_NEAR(shown, std::round(shown), 1e-9) << shown;
+    EXPECT_NE(*angle.session.value("theta1"), angle.session.file_run().q[0]);
+}
+
+TEST(Slider, shift_makes_a_drag_fine) {
+    SliderHand hands("ball_on_sine");
+    const auto drag = [&](std::vector<int> keys, double pixels) {
+        hands.session.apply(parse_command("set g 1"));
+        hands.rest(30);
+        hands.hand.keys = std::move(keys);
+        hands.point("set g", 0.8);
+        hands.hand.left = true;
+        hands.rest(1);
+        hands.hand.mouse_x += pixels;
+        hands.rest(2);
+        const double value = *hands.session.value("g");
+        hands.hand.left = false;
+        hands.hand.keys.clear();
+        hands.rest(2);
+        return value;
+    };
+    const double coarse = drag({}, -20.0);
+    EXPECT_GT(coarse, 2.5) << "where the hand is";
+    const double fine = drag({key::left_shift}, 20.0);
+    EXPECT_GT(fine, 1.0) << "from where it was, and a little";
+    EXPECT_LT(fine, 1.1);
+    const double finer = drag({key::left_shift}, 24.0);
+    EXPECT_NE(finer, fine) << "less than a pixel of the others";
+    EXPECT_LT(std::abs(finer - fine), 0.02);
+}
+
+// What is pressed and held where the file's value is takes that, however many digits it has.
+TEST(Slider, a_drag_back_takes_exactly_the_files_value) {
+    SliderHand hands("ball_on_sine");
+    hands.session.apply(
+        command::Text{std::regex_replace(hands.session.document().text, std::regex("value = 0.5"), "value = 0.4567")});
+    hands.rest(2);
+    ASSERT_EQ(*hands.session.value("e"), 0.4567);
+    hands.point("set e", 0.4567);
+    hands.hand.left = true;
+    hands.rest(1);
+    hands.hand.mouse_x += 20.0;
+    hands.rest(2);
+    EXPECT_NE(*hands.session.value("e"), 0.4567);
+    hands.hand.mouse_x -= 20.0;
+    hands.rest(2);
+    EXPECT_NEAR(*hands.session.value("e"), 0.4567, 0.02);
+    for (int i = 0; i < 8 && *hands.session.value("e") != 0.4567; ++i) {
+        hands.hand.mouse_x += 1.0;
+        hands.rest(1);
+    }
+    EXPECT_EQ(*hands.session.value("e"), 0.4567);
+}
+
+TEST(Slider, counts_and_the_method_stand_in_accuracy) {
+    SliderHand hands("ball_on_sine");
+    hands.click("max impacts", 0.2);
+    hands.click("max steps", 0.2);
+    hands.click("method dopri5");
+    const Options& now = hands.session.run().options;
+    EXPECT_LT(now.max_impacts, Options().max_impacts);
+    EXPECT_LT(now.max_steps, Options().max_steps);
+    EXPECT_EQ(now.method, Method::dopri5);
+    EXPECT_EQ(hands.session.error(), "");
+    hands.right_click("max impacts");
+    EXPECT_EQ(hands.session.run().options.max_impacts, hands.session.file_run().options.max_impacts);
+}
+
+// In one place, with what the file has; a click there puts one back, whether it has a slider or not.
+TEST(Slider, all_differences_are_listed_and_put_back) {
+    SliderHand hands("double_pendulum");
+    hands.session.apply(command::Show{"accuracy", false});
+    for (const char* line : {"set m1 2", "set theta1 -0.5", "memory 2e8", "eps 1e-3 1e-4 1e-5"})
+        hands.session.apply(parse_command(line));
+    ASSERT_EQ(hands.session.error(), "");
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("Differs from the file"));
+    const auto all = differences(hands.session.description(), hands.session.run(), hands.session.file_run());
+    ASSERT_EQ(all.size(), 4U);
+    EXPECT_EQ(all[1].now, "\u221228.6479\u00b0");
+    EXPECT_EQ(all[1].other, "30\u00b0");
+    for (const Difference& difference : all) {
+        hands.all.clear();
+        hands.click("put back " + difference.name);
+        std::erase(hands.all, Command(command::Done{}));
+        EXPECT_EQ(hands.all, std::vector<Command>{difference.back}) << difference.name;
+        hands.rest(2);
+    }
+    EXPECT_EQ(hands.session.run(), hands.session.file_run());
+    EXPECT_FALSE(hands.says("Differs from the file"));
 }
 
 }  // namespace
