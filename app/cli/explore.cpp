@@ -12,9 +12,11 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/dropped.hpp"
+#include "cli/entries.hpp"
 #include "cli/manual.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
+#include "journal/preferences.hpp"
 #include "journal/recovery.hpp"
 #include "journal/tour.hpp"
 #include "model/read_system.hpp"
@@ -29,23 +31,10 @@ namespace achilles {
 
 namespace {
 
-std::vector<SystemEntry> known_systems() {
-    std::vector<SystemEntry> entries;
-    for (const std::filesystem::path& file : system_files()) {
-        const std::string name = file.stem().string();
-        try {
-            entries.push_back({name, read_system(file).title});
-        } catch (const InputError&) {
-            // It stays in the list: choosing it shows what is wrong with it.
-            entries.push_back({name, name});
-        }
-    }
-    return entries;
-}
-
 // What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
 // hand; the others are shown when they are there.
 constexpr double frame_patience = 1.0 / 40.0;
+constexpr double largest_scale = 20.0;  // that a surface takes
 
 // What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
 // line.
@@ -73,22 +62,6 @@ SurfaceOptions surface_options(const ExploreOptions& options) {
     surface.figure_text_size = screen_text_size;
     surface.fonts = assets() / "fonts";
     return surface;
-}
-
-// "The paper's ball" for a journal that begins with the comment "# The paper's ball".
-std::vector<SystemEntry> known_tours() {
-    std::vector<SystemEntry> entries;
-    for (const std::filesystem::path& file : journal_files()) {
-        const std::string name = file.stem().string();
-        try {
-            const std::string text = journal_file(file);
-            const std::string line = text.substr(0, text.find('\n'));
-            entries.push_back({name, line.rfind("# ", 0) == 0 ? line.substr(2) : name});
-        } catch (const InputError&) {
-            entries.push_back({name, name});  // choosing it tells what is wrong with it
-        }
-    }
-    return entries;
 }
 
 PanelState panel_state(bool in_window) {
@@ -123,9 +96,15 @@ class Explorer {
         : session_(session),
           window_(window),
           state_(panel_state(true)),
+          scale_(options.scale),
           trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
+        for (const Command& command : preferences_.looks()) {
+            keep(command);
+            session_.apply(command);
+        }
+        state_.recent = preferences_.recent();
         unsaved_ = left_unsaved();
     }
 
@@ -151,6 +130,9 @@ class Explorer {
         take_answer();
         recover();
         keep_text();
+        if (commands.empty() && !tour_.runs()) remember_looks();
+        if (const double size = session_.scene().text_scale(); size != std::exchange(text_scale_, size))
+            window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
         // A run that is under way is asked now and then how far it is.
@@ -282,6 +264,12 @@ class Explorer {
         unsaved_.erase(unsaved_.begin());
     }
 
+    // For the next window, once the hand rests. What a tour changes is not what the user wants to have.
+    void remember_looks() {
+        preferences_.keep(session_);
+        state_.recent = preferences_.recent();
+    }
+
     void lead_on(PanelState::OnTour wanted) {
         if (wanted == PanelState::OnTour::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
@@ -315,6 +303,8 @@ class Explorer {
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
+    Preferences preferences_;
+    double scale_, text_scale_ = 1.0;  // as the command line has it; what the session makes of it
     Recovery recovery_;
     std::vector<Unsaved> unsaved_;  // by earlier windows, not offered yet
     Trust trust_;
@@ -376,7 +366,9 @@ int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     if (!options.record.empty()) job.put_text(options.record, journal_text(record));
     PanelState state = panel_state(false);
     job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
-        Offscreen surface(surface_options(options));
+        SurfaceOptions enlarged = surface_options(options);
+        enlarged.scale = std::min(enlarged.scale * session.scene().text_scale(), largest_scale);
+        Offscreen surface(enlarged);
         const Image image = surface.frame([&] { explorer(session, state); }, 3);
         return with_notes(png_bytes(image), notes);
     });

@@ -19,9 +19,38 @@ float size_of(double share, float whole, float fitting, float least, float most)
     return std::floor(std::max(0.0F, std::min(std::max(wanted, least), std::max(most, 0.0F))));
 }
 
+// To a class: the mechanism beside one plot, below them the results and the player; nothing else.
+Arrangement arrange_presented(const Scene& scene, const Measures& m) {
+    const float edge = margin * m.unit, between = gap * m.unit, inside = std::max(0.0F, m.width - 2.0F * edge);
+    const float bottom = std::max(0.0F, m.height - edge);
+    const auto below = [&](const Rectangle& part) {
+        const double end = part.y + part.height;
+        return static_cast<float>(part.height > 0.0 ? end + 0.6 * double{between} : end);
+    };
+    Arrangement parts;
+    parts.error = {edge, edge, inside, std::min(m.error ? m.error(inside) : 0.0F, bottom - edge)};
+    const float said_at = below(parts.error);
+    parts.caption = {edge, said_at, inside, std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, bottom - said_at)};
+    const float top = std::min(below(parts.caption), bottom);
+    const float timeline = std::min(m.timeline, bottom - top), lower = bottom - timeline;
+    const float all_results = m.results ? m.results(inside) : 0.0F;
+    const float left_over = lower - 1.4F * between - top - least_picture * m.unit;
+    const float results = all_results <= left_over ? all_results : 0.0F;
+    const float height = std::max(0.0F, lower - between - top - (results > 0.0F ? results + 0.4F * between : 0.0F));
+    const bool has_plots = scene.shows("plots");
+    const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
+    const float centre = inside - (has_plots ? right + between : 0.0F);
+    parts.mechanism = {edge, top, centre, height};
+    parts.plots = {edge + centre + between, top, right, height};
+    parts.results = {edge, lower - between - results, inside, results};
+    parts.timeline = {edge, lower, inside, timeline};
+    return parts;
+}
+
 }  // namespace
 
 Arrangement arrange(const Scene& scene, const Measures& m) {
+    if (scene.presents()) return arrange_presented(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
     const bool has_plots = scene.shows("plots"), has_events = scene.shows("events");

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <string>
 #include <utility>
 
 #include "panels/widgets.hpp"
@@ -30,11 +32,40 @@ void menu(const char* name, PanelState& state, const Content& content) {
     ImGui::EndMenu();
 }
 
+// The next size of everything, as browsers have them.
+double next_size(double now, int step) {
+    constexpr std::array sizes{0.5, 0.67, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
+    if (step > 0) {
+        const auto* const larger = std::upper_bound(sizes.begin(), sizes.end(), now);
+        return larger == sizes.end() ? now : *larger;
+    }
+    const auto* const here = std::lower_bound(sizes.begin(), sizes.end(), now);
+    return here == sizes.begin() ? now : *(here - 1);
+}
+
+void enlarge(const Session& session, int step, Commands& commands) {
+    const double now = session.scene().enlarged(), next = step == 0 ? 1.0 : next_size(now, step);
+    if (next != now) commands.emplace_back(command::Enlarge{next});
+}
+
+// The files that were open last.
+void show_recent(const Session& session, PanelState& state, Commands& commands) {
+    if (state.recent.empty()) return;
+    ImGui::Separator();
+    for (const std::string& path : state.recent) {
+        const std::string name = std::filesystem::path(path).filename().string();
+        if (ImGui::MenuItem((name + "##" + path).c_str())) request(session, state, command::Open{path}, commands);
+        remember(state, "menu " + path);
+        tooltip(path);
+    }
+}
+
 void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
     if (menu_item("New", state)) request(session, state, command::New{}, commands);
     if (menu_item("Open\u2026", state)) ask_to_open(state);
     if (menu_item("Save", state)) save_or_ask(session, state, commands);
     if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
+    show_recent(session, state, commands);
     ImGui::Separator();
     show_take_away_items(session, state, commands);
 }
@@ -68,6 +99,11 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     ImGui::Separator();
     const bool loops = scene.loops();
     if (menu_item("Play again at the end", state, loops)) commands.emplace_back(command::Loop{!loops});
+    if (menu_item("Presentation", state, scene.presents())) commands.emplace_back(command::Present{!scene.presents()});
+    ImGui::Separator();
+    if (menu_item("Larger", state)) enlarge(session, 1, commands);
+    if (menu_item("Smaller", state)) enlarge(session, -1, commands);
+    if (menu_item("As large as at first", state)) enlarge(session, 0, commands);
     if (menu_item("Dark theme", state, session.theme().dark))
         commands.emplace_back(command::UseTheme{!session.theme().dark});
 }
@@ -121,19 +157,22 @@ void theme_switch(const Session& session, PanelState& state, Commands& commands)
     list->PathFillConvex(ink);
 }
 
-void use_keys(const Session& session, PanelState& state, Commands& commands) {
+}  // namespace
+
+void use_view_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
+    if (is_pressed(key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
     if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
     for (const Shown& panel : panels)
         if (is_pressed(panel.key, false))
             commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
     if (is_pressed('D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+    if (is_pressed('=', false)) enlarge(session, 1, commands);
+    if (is_pressed('-', false)) enlarge(session, -1, commands);
+    if (is_pressed('0', false)) enlarge(session, 0, commands);
 }
 
-}  // namespace
-
 void show_bar(const Session& session, PanelState& state, Commands& commands) {
-    use_keys(session, state, commands);
     if (!ImGui::BeginMenuBar()) return;
     menu("File", state, [&] { show_file_menu(session, state, commands); });
     menu("Edit", state, [&] { show_edit_menu(session, state, commands); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
@@ -34,7 +35,9 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
     remember(state, "systems");
     if (!is_down && name != whole) tooltip(whole);
     if (is_down) {
+        std::string group;
         for (const SystemEntry& entry : state.systems) {
+            if (entry.group != std::exchange(group, entry.group)) section(entry.group.c_str());
             const bool is_open = entry.name == session.system();
             if (ImGui::Selectable((entry.title + "##" + entry.name).c_str(), is_open))
                 request(session, state, command::Open{entry.name}, commands);
@@ -281,9 +284,21 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
           session, file, state, commands);
 }
 
-// All that is not as the file has it, in one place: what it is, what the file has; a click puts it back.
+// How many lines of a list can follow. It alone must not bring a scroll bar, which would move the rows above under the hand that
+// has just changed one of them; where there is one anyway, all.
+std::size_t lines_that_fit(std::size_t lines) {
+    const float below = ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - units(8.0F);
+    if (below <= 0.0F) return lines;
+    const float heading = ImGui::GetTextLineHeightWithSpacing() + units(12.0F);
+    const float room = std::max(0.0F, below - heading) / ImGui::GetTextLineHeightWithSpacing();
+    return std::min(lines, static_cast<std::size_t>(room));
+}
+
+// All that is not as the file has it, in one place: what it is, what the file has; a click puts it back. Where there is no room
+// for all the others have their marks, and "reset all".
 void changes(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    const std::vector<Difference> all = differences(session.description(), session.run(), file);
+    std::vector<Difference> all = differences(session.description(), session.run(), file);
+    all.erase(all.begin() + static_cast<std::ptrdiff_t>(lines_that_fit(all.size())), all.end());
     if (all.empty()) return;
     section("Differs from the file");
     for (const Difference& difference : all) {

@@ -178,6 +178,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
     use_keys(session, commands);
+    use_view_keys(session, state, commands);
+    if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);
     return commands;

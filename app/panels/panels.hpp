@@ -19,6 +19,7 @@ namespace achilles {
 
 struct SystemEntry {
     std::string name, title;
+    std::string group = {};  // those of one group stand together
 };
 
 // The text as the hand types it, until it rests and the text becomes a command; and what is asked about files.
@@ -137,6 +138,7 @@ struct PlaneView {
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
     std::vector<SystemEntry> systems;                                  // to choose from
+    std::vector<std::string> recent;                                   // paths of files, the last first
     std::vector<SystemEntry> tours;                                    // journals to replay
     std::vector<SystemEntry> manual;                                   // its pages
     std::function<std::string(const std::string& topic)> manual_page;  // the text of one
@@ -171,6 +173,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Its parts, each inside a window of its own that the explorer has begun.
 using Commands = std::vector<Command>;
+// The keys that change what is seen, whatever has the bar.
+void use_view_keys(const Session& session, PanelState& state, Commands& commands);
 void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);

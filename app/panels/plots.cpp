@@ -302,9 +302,14 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
 void show_plots(const Session& session, PanelState& state, Commands& commands) {
     state.pointed_before = state.pointed_at;  // by the last frame: this one may point in a plot that comes later
     state.pointed_at.reset();
-    show_grid_bar(session, state, commands);
+    const bool is_alone = session.scene().presents();  // a class looks at the first
+    if (!is_alone) show_grid_bar(session, state, commands);
     const Rectangle area = remaining();
     const Plots& plots = session.plotted();
+    if (is_alone) {
+        if (!session.plots().empty()) show_plot(session, 0, area, state, commands);
+        return;
+    }
     const float gap = units(8.0F);
     const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(plots.rows());
     const float width = std::floor((area.width - gap * (columns - 1.0F)) / columns);

@@ -194,7 +194,8 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     const float height = ImGui::GetTextLineHeightWithSpacing();
     const std::vector<Result> results = results_of(session.trajectory(), width);
     if (results.empty()) return show_none(session, {left, area.y + units(padding)}, width);
-    const auto fitting = static_cast<int>((area.height - 2.0F * units(padding)) / height);
+    // A window stands on whole pixels: a strip of results_height() may have one less.
+    const auto fitting = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / height);
     const int lines_shown = std::min(lines_in(area.width), fitting);
     if (lines_shown < 1) return;
     const std::size_t all = turns(session.trajectory(), true).size();

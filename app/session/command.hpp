@@ -210,6 +210,17 @@ struct UseTheme {
         Said("theme", "write: theme light, or: theme dark", Change::view,
              Field(&UseTheme::dark, {.yes = "dark", .no = "light", .complaint = "there is no theme '{}'"}));
 };
+constexpr double smallest = 0.5, largest = 3.0;
+struct Enlarge {
+    double value = 1.0;  // of everything: letters, strokes, panels
+    static constexpr auto said =
+        Said("enlarge", "write: enlarge NUMBER, 1 is as at first", Change::view, &Enlarge::value);
+};
+struct Present {
+    bool on = true;  // to a class: the mechanism, one plot, the results, all of it larger
+    static constexpr auto said =
+        Said("present", "write: present on, or: present off", Change::view, Field(&Present::on, on_off));
+};
 inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots"};
 struct Size {
     std::string panel;   // the editor in place of the controls has a width of its own
@@ -273,8 +284,8 @@ using AnyCommand =
                  command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
                  command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Speed,
                  command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::Lens,
-                 command::UseTheme, command::Size, command::Reset, command::Done, command::Export, command::Copy,
-                 command::Wait, command::Say, command::Replay>;
+                 command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset, command::Done,
+                 command::Export, command::Copy, command::Wait, command::Say, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -57,6 +57,10 @@ constexpr std::array keys{
     Shortcut{"Ctrl+2", "plots", "Plots"},
     Shortcut{"Ctrl+3", "events", "Events"},
     Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
+    Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
+    Shortcut{"Ctrl+Minus", "smaller", "Smaller"},
+    Shortcut{"Ctrl+0", "as large as at first", "As large as at first"},
+    Shortcut{"F11", "for a class", "Presentation"},
     Shortcut{"Ctrl+C", "copy the chosen event"},
     Shortcut{"Ctrl+Q", "close the window"},
     Shortcut{"Space", "play, pause"},
@@ -65,6 +69,7 @@ constexpr std::array keys{
     Shortcut{"Escape", "close what is open"},
     Shortcut{"Enter", "a tour's next step"},
     Shortcut{"double click", "type a slider's value"},
+    Shortcut{"Shift+drag", "a slider in fine steps"},
     Shortcut{"right click", "the file's value"},
     Shortcut{"drag a body", "start there"},
 };

@@ -66,6 +66,15 @@ void Scene::perform(const command::Size& command) {
 
 void Scene::perform(const command::Say& command) { caption_ = command.text; }
 
+void Scene::perform(const command::Enlarge& command) {
+    if (!(command.value >= command::smallest && command.value <= command::largest))
+        throw refusal(fmt::format("everything can be {} to {} times as large, not {}", command::smallest,
+                                  command::largest, command.value));
+    enlarged_ = command.value;
+}
+
+void Scene::perform(const command::Present& command) { presents_ = command.on; }
+
 std::vector<Command> steps_to(const Scene& scene) {
     std::vector<Command> steps;
     if (scene.look()) steps.emplace_back(*scene.look());
@@ -76,6 +85,8 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.loops()) steps.emplace_back(command::Loop{true});
     for (const std::string& panel : command::sized_panels)
         if (scene.share(panel) > 0.0) steps.emplace_back(command::Size{panel, scene.share(panel)});
+    if (scene.enlarged() != 1.0) steps.emplace_back(command::Enlarge{scene.enlarged()});
+    if (scene.presents()) steps.emplace_back(command::Present{true});
     if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
     return steps;
 }
@@ -93,6 +104,8 @@ std::string to_text(const Scene& scene) {
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";
+    if (scene.enlarged() != 1.0) text += fmt::format("enlarge {:.9g}\n", scene.enlarged());
+    if (scene.presents()) text += "present on\n";
     if (!scene.finds().empty()) text += fmt::format("finds {}\n", scene.finds());
     if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
     return text;

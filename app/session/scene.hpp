@@ -28,6 +28,11 @@ class Scene {
     // The share of the window that the user gave a panel; 0: as it fits.
     double share(const std::string& panel) const;
 
+    double enlarged() const { return enlarged_; }  // as the user wants it
+    bool presents() const { return presents_; }
+    // What the surface's scale is multiplied by: so large, and larger for a class.
+    double text_scale() const { return enlarged_ * (presents_ ? presentation_scale : 1.0); }
+
     // Each throws InputError and changes nothing where it makes no sense.
     void perform(const command::Look& command);
     void perform(const command::LookAll& command);
@@ -38,6 +43,8 @@ class Scene {
     void perform(const command::Lens& command);
     void perform(const command::Size& command);
     void perform(const command::Say& command);
+    void perform(const command::Enlarge& command);
+    void perform(const command::Present& command);
 
     // Another system: another world, but the same taste.
     void forget_place() { look_.reset(), lens_.reset(); }
@@ -50,6 +57,9 @@ class Scene {
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
     std::string caption_, finds_;
+    static constexpr double presentation_scale = 1.5;
+    double enlarged_ = 1.0;
+    bool presents_ = false;
 };
 
 // What leads from a new scene to this one, but for the lens, which needs a Zeno point to look at.

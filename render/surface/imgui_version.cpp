@@ -75,6 +75,7 @@ constexpr int first_code = ' ', last_code = key::right_super;
 ImGuiKey name_of(int code) {
     if (code >= 'A' && code <= 'Z') return static_cast<ImGuiKey>(ImGuiKey_A + (code - 'A'));
     if (code >= '0' && code <= '9') return static_cast<ImGuiKey>(ImGuiKey_0 + (code - '0'));
+    if (code == '=' || code == '-') return code == '=' ? ImGuiKey_Equal : ImGuiKey_Minus;
     if (code >= key::f1 && code < key::f1 + 12) return static_cast<ImGuiKey>(ImGuiKey_F1 + (code - key::f1));
     for (const auto& [name, known] : widget_keys)
         if (known == code) return name;

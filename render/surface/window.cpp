@@ -64,12 +64,14 @@ std::pair<int, int> fitting_size(const SurfaceOptions& surface) {
     return {fit(surface.width, width, across), fit(surface.height, height, down)};
 }
 
-// A letter key by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard.
+// A letter key, plus and minus by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard. The key of
+// plus is that of '=', which it is where it takes Shift.
 int code_of(int code, int scancode) {
-    if (code < GLFW_KEY_A || code > GLFW_KEY_Z) return code;
     const char* name = glfwGetKeyName(code, scancode);
     const bool one_letter = name != nullptr && name[0] != '\0' && name[1] == '\0';
     const auto letter = one_letter ? static_cast<unsigned char>(name[0]) : 0;
+    if (letter == '+' || letter == '-') return letter == '+' ? '=' : '-';
+    if (code < GLFW_KEY_A || code > GLFW_KEY_Z) return code;
     return letter < 128 && std::isalpha(letter) != 0 ? std::toupper(letter) : code;
 }
 

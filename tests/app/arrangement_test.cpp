@@ -52,6 +52,35 @@ void expect_no_overlap(const Arrangement& arrangement, const Measures& m, const 
     }
 }
 
+// To a class: the mechanism beside one plot, the results and the player; at every size that is promised.
+TEST(Arrangement, shows_a_class_what_it_looks_at) {
+    Scene scene;
+    scene.perform(command::Present{true});
+    EXPECT_DOUBLE_EQ(scene.text_scale(), 1.5);
+    for (const auto& [width, height, unit] : {std::tuple{1024.0F, 700.0F, 1.5F},
+                                              {1366.0F, 768.0F, 1.5F},
+                                              {2560.0F, 1440.0F, 1.5F},
+                                              {2560.0F, 1440.0F, 3.0F},
+                                              {640.0F, 480.0F, 1.5F}}) {
+        for (const float error : {0.0F, 120.0F}) {
+            const Measures m = measures(width, height, unit, error);
+            const Arrangement parts = arrange(scene, m);
+            expect_no_overlap(parts, m, "to a class ");
+            for (const Rectangle* hidden : {&parts.bar, &parts.controls, &parts.events, &parts.status})
+                EXPECT_EQ(hidden->height, 0.0);
+            EXPECT_TRUE(parts.splitters.empty());
+            EXPECT_GE(parts.mechanism.height, 90.0 * double{unit}) << width << " " << unit;
+            EXPECT_NEAR(parts.mechanism.width, parts.plots.width, 0.1 * double{width});
+            EXPECT_EQ(parts.error.height, double{error});
+        }
+        EXPECT_GT(arrange(scene, measures(width, height, unit)).results.height, 0.0);
+    }
+    scene.perform(command::Show{"plots", false});
+    const Arrangement alone = arrange(scene, measures(1366.0F, 768.0F, 1.5F));
+    EXPECT_EQ(alone.plots.width, 0.0);
+    EXPECT_GT(alone.mechanism.width, 1300.0);
+}
+
 TEST(Arrangement, nothing_covers_anything_in_any_state) {
     for (const auto& [width, height, unit] : {std::tuple{1280.0F, 800.0F, 1.0F},
                                               {1600.0F, 1000.0F, 1.0F},

@@ -212,6 +212,9 @@ const State states[] = {
     {"narrow panels", "ball_on_table", {"size controls 0.01", "size plots 0.9", "size events 0.01"}},
     {"the plane", "triple_pendulum", {"show plane", "show accuracy", "seek 2"}},
     {"a certificate of angles", "double_pendulum", {"select 11", "pin"}},
+    {"to a class", "ball_on_sine", {"present on", "seek 3"}},
+    {"a contact to a class", "double_pendulum", {"present on", "select 11"}},
+    {"a caption to a class", "double_pendulum", {"present on", "say \"The knee locks, and opens at the vertical.\""}},
     {"all that differs",
      "triple_pendulum",
      {"show accuracy", "set g 3", "eps 1e-3 1e-4 1e-5", "method dopri5", "memory 2e8"}},
@@ -235,6 +238,7 @@ TEST_P(Clipping, cuts_no_letter) {
         if (is_own) session.apply(command::Text{state.system[1] == 'o' ? long_names : large_world()});
         ASSERT_TRUE(session.document().problems.empty());
         for (const char* line : state.journal) session.apply(parse_command(line));
+        interface.restyle(scale * session.scene().text_scale(), false);
         for (const char* theme : {"theme light", "theme dark"}) {
             session.apply(parse_command(theme));
             // What a refused command says goes with the next; here it is to be seen.

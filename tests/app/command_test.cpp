@@ -40,6 +40,8 @@ const std::vector<Command> one_of_each{
     command::Save{"a folder/mine\n.toml", true},
     command::Show{"editor", true},
     command::Find{"grid 3"},
+    command::Enlarge{1.25},
+    command::Present{true},
     command::Show{"trail", false},
     command::Start{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
     command::Look{-1.5, 1e-7, 3.0},
@@ -184,7 +186,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 50u) << list;
+    EXPECT_EQ(all.size(), 52u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.

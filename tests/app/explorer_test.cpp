@@ -56,7 +56,7 @@ TEST(Explorer, every_value_has_a_slider_that_works) {
             std::erase(hands.all, Command(command::Done{}));                // of the slider before
             ASSERT_FALSE(hands.all.empty()) << system << ": " << name;
             EXPECT_EQ(to_text(hands.all[0]).rfind(name.substr(0, name.rfind("eps ", 0) == 0 ? 3 : name.size()), 0), 0U)
-                << to_text(hands.all[0]);
+                << system << ": " << name << ": " << to_text(hands.all[0]);
         }
     }
 }

@@ -1,13 +1,17 @@
-// Finding things: the card of keys and words, the command palette.
+// Finding things: the card of keys and words, the command palette, large letters.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "app/hands.hpp"
+#include "app/program.hpp"
 #include "cli/manual.hpp"
+#include "image/image.hpp"
 #include "session/finder.hpp"
 #include "session/glossary.hpp"
+#include "session/recipe.hpp"
 
 namespace achilles {
 namespace {
@@ -230,6 +234,83 @@ TEST(Palette, takes_the_place_of_the_help) {
     EXPECT_TRUE(hands.says("Enter or Tab completes it"));
     hands.press(key::escape);
     EXPECT_FALSE(hands.session.scene().shows("palette"));
+}
+
+// ---- how large everything is, and for whom ----
+
+std::string record(Hands& hands) {
+    std::string text;
+    for (const Command& command : std::exchange(hands.all, {})) text += to_text(command) + "; ";
+    return text;
+}
+
+TEST(Enlarged, goes_by_steps_and_back) {
+    Hands hands("ball_on_sine");
+    for (int i = 0; i < 3; ++i) hands.press_with_control('=');
+    hands.press_with_control('-');
+    hands.press_with_control('0');
+    hands.press_with_control('0');
+    hands.press_with_control('-');
+    EXPECT_EQ(record(hands), "enlarge 1.1; enlarge 1.25; enlarge 1.5; enlarge 1.25; enlarge 1; enlarge 0.9; ");
+    hands.session.apply(parse_command("enlarge 3"));
+    hands.press_with_control('=');
+    EXPECT_EQ(record(hands), "") << "as large as it gets";
+    hands.session.apply(parse_command("enlarge 3.5"));
+    EXPECT_NE(hands.session.error().find("0.5 to 3 times as large"), std::string::npos) << hands.session.error();
+    EXPECT_EQ(hands.session.scene().enlarged(), 3.0);
+}
+
+TEST(Presentation, comes_and_goes_and_keeps_the_keys) {
+    Hands hands("ball_on_sine");
+    hands.press(key::f11);
+    EXPECT_EQ(record(hands), "present on; ");
+    hands.rest(2);
+    EXPECT_FALSE(hands.says("Parameters"));
+    EXPECT_FALSE(hands.says("impacts taylor"));
+    EXPECT_TRUE(hands.says("Zeno 1"));
+    const auto plots = hands.session.plotted().list().size();
+    EXPECT_EQ(plots, 4U) << "those that are not seen are there all the same";
+    hands.press_with_control('D');
+    hands.press(key::right);
+    hands.press_with_control('=');
+    EXPECT_EQ(record(hands), "theme dark; step 1; enlarge 1.1; ");
+    hands.press(key::escape);
+    EXPECT_FALSE(hands.session.scene().presents()) << record(hands);
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("Parameters"));
+}
+
+// Both lines of the strip are used, wherever the panels begin.
+TEST(Presentation, shows_as_many_results_as_the_strip_has_lines) {
+    SurfaceOptions surface = test::surface(1366, 768);
+    surface.scale = 1.5;
+    Hands hands("double_pendulum", surface);
+    hands.session.apply(parse_command("present on"));
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("Zeno 3"));
+    EXPECT_FALSE(hands.says("1 more"));
+}
+
+// A picture of it has larger letters, by the command alone.
+TEST(Presentation, is_drawn_larger_without_a_window) {
+    const test::Folder folder;
+    for (const auto& [name, more] : {std::pair{"plain.png", ""}, std::pair{"twice.png", "--do 'enlarge 2'"},
+                                     std::pair{"scaled.png", "--scale 2"}, std::pair{"class.png", "--do 'present on'"}})
+        EXPECT_EQ(folder.run(std::string("screenshot ball_on_sine --size 900x600 --out ") + name + " " + more).status,
+                  0);
+    const auto pixels = [&](const char* name) { return read_png(folder.path() / name).rgb; };
+    EXPECT_EQ(pixels("twice.png"), pixels("scaled.png"));
+    EXPECT_NE(pixels("class.png"), pixels("plain.png"));
+}
+
+// What was asked for leads to the same again: a session's journal and its text have it.
+TEST(Presentation, is_in_the_sessions_recipe) {
+    Hands hands("ball_on_sine");
+    for (const char* line : {"present on", "enlarge 1.25", "find \"grid\""}) hands.session.apply(parse_command(line));
+    std::string steps;
+    for (const Command& step : explorer_steps(hands.session)) steps += to_text(step) + "; ";
+    for (const char* line : {"present on; ", "enlarge 1.25; ", "find \"grid\"; "})
+        EXPECT_NE(steps.find(line), std::string::npos) << steps;
 }
 
 }  // namespace
