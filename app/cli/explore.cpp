@@ -140,7 +140,7 @@ class Explorer {
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
             session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
-            session_.under_way() != nullptr ? progress_seconds : 0.0);
+            session_.under_way() != nullptr || derives_equations(state_) ? progress_seconds : 0.0);
     }
 
     // The window was closed: what is not saved was given up. Tells the record what is not told yet.

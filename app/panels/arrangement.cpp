@@ -53,7 +53,7 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     if (scene.presents()) return arrange_presented(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
-    const bool has_plots = scene.shows("plots"), has_events = scene.shows("events");
+    const bool has_plots = scene.shows("plots"), has_events = scene.shows("events") || scene.shows("equations");
     const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
     Arrangement parts;
     parts.bar = {0.0F, 0.0F, m.width, m.bar};
@@ -69,7 +69,10 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float left =
         has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
     // Where there is room for it, what a certificate says stands there without scrolling.
-    const float fitting_events = std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
+    // Equations are higher than lines of text.
+    const float fitting_events = scene.shows("equations")
+                                     ? std::max(180.0F * u, 0.38F * m.height)
+                                     : std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
     const float low =
         has_events ? size_of(scene.share("events"), m.height, fitting_events, least_events * u, all - least_top * u)
                    : 0.0F;

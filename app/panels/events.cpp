@@ -186,8 +186,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
         ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
     const float copy_width = button_width("copy");
     const float buttons = right - width - units(16.0F) - copy_width - units(button_gap) - comparing_width();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Events");
+    show_lower_tabs(session, state, commands);
     ImGui::SameLine(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");

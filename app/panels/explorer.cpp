@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "panels/arrangement.hpp"
 #include "panels/print.hpp"
@@ -143,6 +144,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     use_theme(session.theme().dark);
     begin_change(state, commands);
     state.escape = escape_pressed();
+    state.lit = std::exchange(state.lights, {});
+    state.pointed_slider.clear();
     // Of a slider that is shown no longer.
     if (ImGui::GetTime() - state.pressed.clicked_since > 1.0) state.pressed.clicked.clear();
     const std::string message = card_text(session);
@@ -172,7 +175,12 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         else
             show_plots(session, state, commands);
     });
-    part("events", parts.events, still_window, [&] { show_events(session, state, commands); });
+    part("events", parts.events, still_window, [&] {
+        if (session.scene().shows("equations"))
+            show_equations(session, state, commands);
+        else
+            show_events(session, state, commands);
+    });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
     for (const Arrangement::Splitter& splitter : parts.splitters)
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,

@@ -135,6 +135,8 @@ struct PlaneView {
     const PreparedView* gap_of = nullptr;
 };
 
+class EquationsView;
+
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
     std::vector<SystemEntry> systems;                                  // to choose from
@@ -164,7 +166,10 @@ struct PanelState {
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
     bool changing = false;   // a change was made that more commands may go on with
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
-    int followed = -1;                                 // the row the event list scrolled to last
+    std::shared_ptr<EquationsView> equations;          // once they were shown
+    // A name that the mouse is over: in the equations, in this frame and in the last; in the controls, on its slider.
+    std::string lights, lit, pointed_slider;
+    int followed = -1;                        // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
 
@@ -214,6 +219,12 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state);
 void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
+// In the same place: the equations of motion, each contact's, and the Zeno conditions with their present values.
+void show_equations(const Session& session, PanelState& state, Commands& commands);
+// Which of the two.
+void show_lower_tabs(const Session& session, PanelState& state, Commands& commands);
+// Frames must go on until they are there.
+bool derives_equations(const PanelState& state);
 // What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
 // decided.
 std::vector<std::string> certificate_lines(const Event& event);

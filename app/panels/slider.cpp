@@ -251,6 +251,19 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
     return value != std::exchange(slider.value, value);
 }
 
+// The row is lit while its name is pointed at in the equations, and the other way round.
+void point_at(const Slider& slider, PanelState& state) {
+    if (!slider.id.starts_with("set ")) return;
+    const std::string name = slider.id.substr(4);
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const ImVec2 high{low.x + ImGui::GetContentRegionAvail().x, low.y + ImGui::GetFrameHeight()};
+    if (ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem) && ImGui::IsMouseHoveringRect(low, high))
+        state.pointed_slider = name;
+    if (name == state.lit)
+        ImGui::GetWindowDrawList()->AddRectFilled({low.x - units(4.0F), low.y}, {high.x + units(4.0F), high.y},
+                                                  packed(current_theme().accent, 0.22F), units(3.0F));
+}
+
 }  // namespace
 
 double roundest(double low, double high) {
@@ -278,6 +291,7 @@ void mark_changed() {
 bool moved(Slider& slider, PanelState& state) {
     const std::string about = explanation(slider);
     const bool is_changed = slider.value != slider.original;
+    point_at(slider, state);
     label(slider.label, units(label_width));
     tooltip(about);
     if (is_changed) mark_changed();

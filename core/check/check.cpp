@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "algebra/writer.hpp"
+#include "check/equation_sheet.hpp"
 #include "check/flat_gap.hpp"
 #include "check/simplified.hpp"
 #include "model/derived_values.hpp"
@@ -25,12 +26,12 @@ std::size_t terms(const Fraction& f) { return f.numerator.terms().size() + f.den
 
 class Report {
  public:
-    Report(const Model& model, const Run& run, const Simplified& simplified, Notation notation)
+    Report(const Model& model, const Run& run, const Simplified& simplified, Page page)
         : model_(model),
           run_(run),
           simplified_(simplified),
-          page_(notation),
-          writer_(simplified.algebra(), model.slot_names(), simplified.ranks(), notation) {}
+          page_(std::move(page)),
+          writer_(simplified.algebra(), model.slot_names(), simplified.ranks(), page_.notation()) {}
 
     std::string write(const Disagreement& disagreement, double deriving) {
         const SystemDescription& system = model_.description();
@@ -56,6 +57,30 @@ class Report {
         page_.heading("Checks");
         checks(disagreement, deriving);
         return page_.finish();
+    }
+
+    // The equations alone, in LaTeX, each formula in one piece.
+    EquationSheet sheet() {
+        EquationSheet result;
+        const bool forces = has_forces(model_.equations());
+        page_.heading({"Motion", fmt::format("Motion: $M \\ddot{{q}} + b = {}$", forces ? "Q" : "0")});
+        page_.caption("mass matrix");
+        matrix({"M", "M"}, simplified_.M, model_.layout().dof);
+        page_.caption("bias: inertia of the rates, and the potential's forces");
+        matrix({"bias", "b"}, simplified_.bias, 1);
+        if (forces) page_.caption("forces");
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, 1);
+        for (std::size_t i = 0; i < model_.contacts(); ++i) {
+            contact(i, forces, true);
+            condition(result, i, {}, simplified_.contacts[i].zeno);
+        }
+        for (const HeldCondition& held : simplified_.while_held) condition(result, held.contact, held.held, held.zeno);
+        unwritten_conditions();
+        result.blocks = page_.blocks();
+        const Layout& layout = model_.layout();
+        for (std::uint32_t slot = 0; slot <= layout.t(); ++slot)
+            result.symbols.push_back({name(model_.slot_names()[slot]), model_.slot_names()[slot]});
+        return result;
     }
 
  private:
@@ -102,20 +127,32 @@ class Report {
         return fmt::format(fmt::runtime(words), model_.description().constraints[contact].name);
     }
 
-    void contact(std::size_t index, bool forces) {
+    // With `named` everything is said in words, too, and the gap stands there.
+    void contact(std::size_t index, bool forces, bool named = false) {
         const SimplifiedContact& c = simplified_.contacts[index];
+        const auto caption = [&](const char* words) {
+            if (named) page_.caption(words);
+        };
         const bool moves = !model_.equations().free.contacts[index].gap_t.is_zero();
         page_.heading("Contact" + of(" {}", index));
+        caption("gap");
+        if (named)
+            page_.formula({"h", "h"},
+                          achilles::write(model_.equations().gaps[index], model_.slot_names(), page_.notation()).text);
+        caption("gradient of the gap");
         matrix({"dh", "\\mathrm{d}h"}, c.dh, model_.layout().dof);
         flat(index);
+        caption("rate of the gap");
         formula({"hdot", "\\dot{h}"}, c.hdot,
                 {moves ? "dh q' + h_t" : "dh q'", moves ? "\\mathrm{d}h\\,\\dot{q} + h_t" : "\\mathrm{d}h\\,\\dot{q}"});
+        caption("acceleration of the gap in free motion");
         formula({"hddot", "\\ddot{h}"}, c.hddot,
                 {fmt::format("q'^T Hess(h) q'{} {}", moves ? " + 2 dh_t q' + h_tt" : "",
                              forces ? "+ dh M^-1 (Q - bias)" : "- dh M^-1 bias"),
                  fmt::format("\\dot{{q}}^{{\\top}}\\,\\mathrm{{Hess}}(h)\\,\\dot{{q}}{} {}",
                              moves ? " + 2\\,\\mathrm{d}h_t\\,\\dot{q} + h_{tt}" : "",
                              forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
+        caption("contact force while it is held");
         formula({"lambda", "\\lambda"}, c.lambda,
                 {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
     }
@@ -141,6 +178,10 @@ class Report {
                             constraints[condition.contact].name, joined_names(model_, condition.held)));
             zeno(condition.zeno);
         }
+        unwritten_conditions();
+    }
+
+    void unwritten_conditions() {
         if (is_one() || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
         const std::string left_out =
             fmt::format("The conditions while {} others are held are not written out; runs derive what they need.",
@@ -309,6 +350,31 @@ class Report {
         page_.sentence({line, line});
     }
 
+    // The same for a sheet.
+    void condition(EquationSheet& sheet, std::size_t contact, ContactSet held,
+                   const std::optional<ZenoCondition>& found) {
+        const std::string who = of("of {} ", contact);
+        const std::string while_held = held.empty() ? "" : fmt::format("while {} is held", joined_names(model_, held));
+        const std::string where = held.empty() ? "$h = \\dot{h} = 0$" : "$h = \\dot{h} = 0$ of both";
+        const std::string plain = fmt::format("Zeno condition {}{}", who, while_held);
+        const std::size_t first = page_.blocks().size();
+        page_.heading({plain, fmt::format("Zeno condition {}{}: $\\ddot{{h}} < 0$ where {}", Page::escaped(who),
+                                          Page::escaped(while_held), where)});
+        zeno(found);
+        if (!found) return;
+        Algebra& algebra = *found->algebra;
+        Expression value = algebra.graph().number(1);
+        for (const auto& [base, exponent] : found->decisive.factors)
+            value = value * power_of(algebra.expression(base), exponent);
+        if (found->decisive.number < 0) value = -value;
+        if (found->decisive.number == 0) value = algebra.graph().number(0);
+        sheet.conditions.push_back({contact, held, first, page_.blocks().size(),
+                                    Program(std::span(&value, 1), model_.layout().slots()),
+                                    found->verdict == ZenoCondition::Verdict::depends});
+    }
+
+    static Expression power_of(Expression base, int exponent) { return exponent == 1 ? base : power(base, exponent); }
+
     void checks(const Disagreement& disagreement, double deriving) {
         const auto list = [](const std::vector<Disagreement::Quantity>& quantities) {
             std::vector<std::string> parts;
@@ -343,7 +409,13 @@ std::string check_report(const Model& model, const Run& run, double deriving, No
     const Simplified simplified(model, run);
     const Disagreement found = compare_with_differences(model, run, simplified);
     disagreement = found.largest();
-    return Report(model, run, simplified, notation).write(found, deriving);
+    return Report(model, run, simplified, Page(notation)).write(found, deriving);
+}
+
+EquationSheet equation_sheet(const Model& model, const Run& run) {
+    constexpr std::size_t no_limit = 1000000;  // who sets them breaks lines himself
+    const Simplified simplified(model, run);
+    return Report(model, run, simplified, Page(Notation::latex, no_limit)).sheet();
 }
 
 }  // namespace achilles
