@@ -15,7 +15,7 @@ using Ink = SetSheet::Ink;
 
 // Shares of the letters' size.
 constexpr float caption_size = 0.867F, leading = 0.42F, before_heading = 1.0F, before_caption = 0.6F,
-                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 27.0F;
+                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 22.0F;
 constexpr int most_columns = 3;
 
 // What must not be torn apart: lines below one another, from (0, 0).
@@ -62,8 +62,35 @@ class Setter {
             case Block::Kind::title:
             case Block::Kind::lines:
             case Block::Kind::sentence:
-                return lines(read_sentence(left, names_), caption_size * size_, 0.0F, Ink::caption);
+                return lines(in_words(read_sentence(left, names_)), caption_size * size_, 0.0F, Ink::caption);
         }
+    }
+
+    // Fractions too wide for the column stand in a line of words as N/D.
+    Formula in_words(const Formula& row) const {
+        Formula result;
+        const auto bracketed = [&](const Formula& part) {
+            const bool is_alone = part.pieces.size() == 1;
+            if (!is_alone) result.pieces.emplace_back().kind = FormulaPiece::Kind::open;
+            if (!is_alone) result.pieces.back().label = "(";
+            for (const FormulaPiece& piece : part.pieces) result.pieces.push_back(piece);
+            if (!is_alone) result.pieces.emplace_back().kind = FormulaPiece::Kind::close;
+            if (!is_alone) result.pieces.back().label = ")";
+        };
+        for (const FormulaPiece& piece : row.pieces) {
+            const bool is_wide = piece.kind == FormulaPiece::Kind::fraction && width_of(piece) > column_;
+            if (!is_wide) {
+                result.pieces.push_back(piece);
+                continue;
+            }
+            bracketed(piece.parts[0]);
+            result.pieces.emplace_back().label = "/";
+            bracketed(piece.parts[1]);
+        }
+        return result;
+    }
+    float width_of(const FormulaPiece& fraction) const {
+        return std::max(display(fraction.parts[0]), display(fraction.parts[1])) + size_;
     }
 
     void begin(float space) {
@@ -97,8 +124,7 @@ class Setter {
         std::vector<std::pair<std::string, Formula>> below;
         for (FormulaPiece& piece : right.pieces) {
             if (piece.kind != FormulaPiece::Kind::fraction) continue;
-            const bool fits = std::max(display(piece.parts[0]), display(piece.parts[1])) + size_ <= column_;
-            if (fits) continue;
+            if (width_of(piece) <= column_) continue;
             const std::string number = below.empty() ? "" : fmt::format("_{{{}}}", below.size() / 2 + 1);
             below.emplace_back("N" + number, std::move(piece.parts[0]));
             below.emplace_back("D" + number, std::move(piece.parts[1]));

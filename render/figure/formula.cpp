@@ -36,7 +36,7 @@ std::size_t index_at(const std::string& label) {
 
 FormulaBox letters_of(const std::string& label, int name, float size, const FormulaFont& font) {
     FormulaBox box;
-    box.width = font.width(label, size);
+    box.width = std::ceil(font.width(label, size));  // letters stand on whole pixels
     const bool has_dots = label.find("\u0307") != std::string::npos || label.find("\u0308") != std::string::npos;
     box.ascent = size * (font.ascent + (has_dots ? 0.14F : 0.0F));
     box.descent = size * font.descent;
@@ -101,12 +101,10 @@ void raise(FormulaBox& box, const FormulaPiece& piece, float size, const Formula
     if (piece.power.is_empty()) return;
     const FormulaBox power = set(piece.power, size * small_size, font);
     // Over an index, beside everything else; as high as what it raises.
-    const bool is_name = piece.kind == Kind::letters && !box.letters.empty();
-    const std::size_t index = is_name ? index_at(piece.label) : piece.label.size();
-    const bool has_index = is_name && index < piece.label.size();
-    const float x = has_index ? font.width(piece.label.substr(0, index), size) : box.width;
+    const bool is_name = piece.kind == Kind::letters || piece.kind == Kind::function;
+    const float x = is_name ? font.width(piece.label.substr(0, index_at(piece.label)), size) : box.width;
     const float up = std::max(box.ascent - 0.45F * power.ascent, power.descent + 0.30F * size);
-    box.put(power, x + 0.04F * size, -up);
+    box.put(power, x, -up);
 }
 
 // A row while it is set: boxes with the space before each.
@@ -135,7 +133,7 @@ float space_between(const FormulaPiece& a, bool a_is_prefix, const FormulaPiece&
     if (b.kind == Kind::sign) return b_is_prefix ? 0.0F : b.label == "\u00b7" ? thin : wide;
     if (a.kind == Kind::sign) return a_is_prefix ? 0.04F : a.label == "\u00b7" ? thin : wide;
     if (a.kind == Kind::function) return b.kind == Kind::open ? 0.03F : thin;
-    if (b.kind == Kind::function) return 0.18F;
+    if (b.kind == Kind::function) return 0.2F;
     return thin;
 }
 
@@ -161,7 +159,8 @@ std::vector<Set> set_pieces(const Formula& formula, float size, const FormulaFon
         Set& one = result[i];
         one.kind = row[i].kind;
         one.is_prefix = is_prefix(row, i);
-        if (i > 0) one.space = size * space_between(row[i - 1], result[i - 1].is_prefix, row[i], one.is_prefix);
+        if (i > 0)
+            one.space = std::round(size * space_between(row[i - 1], result[i - 1].is_prefix, row[i], one.is_prefix));
         one.is_brick = i > 0 && row[i - 1].kind == Kind::function;
         depth -= row[i].kind == Kind::close ? 1 : 0;
         one.depth = depth;
@@ -216,7 +215,8 @@ int cost_of_break(const std::vector<Set>& all, std::size_t i) {
     if (all[i - 1].kind == Kind::space) return 0;  // between words
     if (here.kind == Kind::space || all[i - 1].kind == Kind::open) return never;
     if (here.kind == Kind::sign && !here.is_prefix && here.box.letters.front().label != "\u00b7") return here.depth;
-    if (here.kind == Kind::relation || all[i - 1].kind == Kind::relation || here.kind == Kind::sign) return never;
+    for (const Kind kind : {here.kind, all[i - 1].kind})
+        if (kind == Kind::relation || kind == Kind::sign) return never;
     return of_product + here.depth;
 }
 

@@ -128,8 +128,10 @@ class Reader {
         } else if (what == "text" || what == "mathrm" || what == "mathit") {
             take("{");
             const std::size_t end = std::min(text_.find('}', at_), text_.size());
-            const std::string label(text_.substr(at_, end - at_));
+            std::string label(text_.substr(at_, end - at_));
             at_ = std::min(end + 1, text_.size());
+            // A differential is one word with what it is of.
+            if (label == "d" && at_ < text_.size() && is_letter(text_[at_])) label += typeset(text_.substr(at_++, 1));
             row.pieces.push_back(plain(Kind::letters, label));
         } else if (what == "cdot") {
             row.pieces.push_back(plain(Kind::sign, "\u00b7"));
@@ -271,6 +273,21 @@ Formula read_sentence(std::string_view text, const std::vector<FormulaName>& nam
     return joined(std::move(parts));
 }
 
+namespace {
+
+// The label with upright letters.
+std::string upright(const std::string& label) {
+    std::string text;
+    for (std::size_t at = 0; at < label.size();) {
+        const std::string letter = utf8(next_code_point(label, at));
+        const std::vector<Letter> one = letters(letter);
+        text += !one.empty() && one.front().italic ? utf8(one.front().code) : letter;
+    }
+    return text;
+}
+
+}  // namespace
+
 std::string to_text(const Formula& formula) {
     std::string text;
     const auto in_brackets = [](const Formula& part) {
@@ -290,7 +307,7 @@ std::string to_text(const Formula& formula) {
         else if (piece.kind == Kind::root)
             text += "\u221a(" + to_text(piece.parts[0]) + ")";
         else
-            text += piece.kind == Kind::space ? " " : piece.label;
+            text += piece.kind == Kind::space ? " " : upright(piece.label);
         if (!piece.power.is_empty()) text += "^" + in_brackets(piece.power);
     }
     return text;

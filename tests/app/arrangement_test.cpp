@@ -81,6 +81,20 @@ TEST(Arrangement, shows_a_class_what_it_looks_at) {
     EXPECT_GT(alone.mechanism.width, 1300.0);
 }
 
+// Equations stand where the events do, and have their place without them.
+TEST(Arrangement, equations_share_the_place_of_the_events) {
+    Scene scene;
+    const Measures m = measures(1600.0F, 1000.0F);
+    const float height = arrange(scene, m).events.height;
+    scene.perform(command::Show{"equations", true});
+    EXPECT_GT(arrange(scene, m).events.height, height);
+    scene.perform(command::Show{"events", false});
+    EXPECT_GT(arrange(scene, m).events.height, height);
+    expect_no_overlap(arrange(scene, m), m, "equations");
+    scene.perform(command::Show{"equations", false});
+    EXPECT_EQ(arrange(scene, m).events.height, 0.0F);
+}
+
 TEST(Arrangement, nothing_covers_anything_in_any_state) {
     for (const auto& [width, height, unit] : {std::tuple{1280.0F, 800.0F, 1.0F},
                                               {1600.0F, 1000.0F, 1.0F},

@@ -1,0 +1,75 @@
+#include "check/equation_sheet.hpp"
+
+#include <fmt/format.h>
+
+#include "check/equations_on_page.hpp"
+#include "check/finite_differences.hpp"
+#include "output/contacts.hpp"
+
+namespace achilles {
+
+namespace {
+
+// What the run may end in stands first.
+class SheetWriter : EquationsOnPage {
+ public:
+    SheetWriter(const Model& model, const Run& run, const Simplified& simplified)
+        : EquationsOnPage(model, run, simplified, Page(Notation::latex, no_limit)) {}
+
+    EquationSheet write() {
+        EquationSheet result;
+        const bool forces = has_forces(model_.equations());
+        for (std::size_t i = 0; i < model_.contacts(); ++i) condition(result, i, {}, simplified_.contacts[i].zeno);
+        for (const HeldCondition& held : simplified_.while_held) condition(result, held.contact, held.held, held.zeno);
+        unwritten_conditions();
+        page_.heading({"Motion", fmt::format("Motion: $M \\ddot{{q}} + b = {}$", forces ? "Q" : "0")});
+        page_.caption("mass matrix");
+        matrix({"M", "M"}, simplified_.M, model_.layout().dof);
+        page_.caption("bias: inertia of the rates, and the potential's forces");
+        matrix({"bias", "b"}, simplified_.bias, 1);
+        if (forces) page_.caption("forces");
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, 1);
+        for (std::size_t i = 0; i < model_.contacts(); ++i) contact(i, forces, true);
+        result.blocks = page_.blocks();
+        const Layout& layout = model_.layout();
+        for (std::uint32_t slot = 0; slot <= layout.t(); ++slot)
+            result.symbols.push_back({name(model_.slot_names()[slot]), model_.slot_names()[slot]});
+        return result;
+    }
+
+ private:
+    static constexpr std::size_t no_limit = 1000000;  // who sets them breaks lines himself
+
+    void condition(EquationSheet& sheet, std::size_t contact, ContactSet held,
+                   const std::optional<ZenoCondition>& found) {
+        std::string plain = "Zeno condition" + of(" of {}", contact), where = "$h = \\dot{h} = 0$";
+        if (!held.empty()) {
+            plain += fmt::format(" while {} is held", joined_names(model_, held));
+            where += " of both";
+        }
+        const std::size_t first = page_.blocks().size();
+        page_.heading({plain, fmt::format("{}: $\\ddot{{h}} < 0$ where {}", Page::escaped(plain), where)});
+        zeno(found);
+        if (!found) return;
+        Algebra& algebra = *found->algebra;
+        Expression value = algebra.graph().number(1);
+        for (const auto& [base, exponent] : found->decisive.factors)
+            value = value * power_of(algebra.expression(base), exponent);
+        if (found->decisive.number < 0) value = -value;
+        if (found->decisive.number == 0) value = algebra.graph().number(0);
+        sheet.conditions.push_back({contact, held, first, page_.blocks().size(),
+                                    Program(std::span(&value, 1), model_.layout().slots()),
+                                    found->verdict == ZenoCondition::Verdict::depends});
+    }
+
+    static Expression power_of(Expression base, int exponent) { return exponent == 1 ? base : power(base, exponent); }
+};
+
+}  // namespace
+
+EquationSheet equation_sheet(const Model& model, const Run& run) {
+    const Simplified simplified(model, run);
+    return SheetWriter(model, run, simplified).write();
+}
+
+}  // namespace achilles

@@ -1,0 +1,197 @@
+#include "check/equations_on_page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "check/flat_gap.hpp"
+#include "model/flat.hpp"
+#include "output/wrap.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A formula of more terms than this is no longer read.
+constexpr std::size_t most_terms = 150;
+
+std::size_t terms(const Fraction& f) { return f.numerator.terms().size() + f.denominator.terms().size(); }
+
+}  // namespace
+
+void EquationsOnPage::contact(std::size_t index, bool forces, bool named) {
+    const SimplifiedContact& c = simplified_.contacts[index];
+    const auto caption = [&](const char* words) {
+        if (named) page_.caption(words);
+    };
+    const bool moves = !model_.equations().free.contacts[index].gap_t.is_zero();
+    page_.heading("Contact" + of(" {}", index));
+    caption("gap");
+    if (named)
+        page_.formula({"h", "h"},
+                      achilles::write(model_.equations().gaps[index], model_.slot_names(), page_.notation()).text);
+    caption("gradient of the gap");
+    matrix({"dh", "\\mathrm{d}h"}, c.dh, model_.layout().dof);
+    flat(index);
+    caption("rate of the gap");
+    formula({"hdot", "\\dot{h}"}, c.hdot,
+            {moves ? "dh q' + h_t" : "dh q'", moves ? "\\mathrm{d}h\\,\\dot{q} + h_t" : "\\mathrm{d}h\\,\\dot{q}"});
+    caption("acceleration of the gap in free motion");
+    formula({"hddot", "\\ddot{h}"}, c.hddot,
+            {fmt::format("q'^T Hess(h) q'{} {}", moves ? " + 2 dh_t q' + h_tt" : "",
+                         forces ? "+ dh M^-1 (Q - bias)" : "- dh M^-1 bias"),
+             fmt::format("\\dot{{q}}^{{\\top}}\\,\\mathrm{{Hess}}(h)\\,\\dot{{q}}{} {}",
+                         moves ? " + 2\\,\\mathrm{d}h_t\\,\\dot{q} + h_{tt}" : "",
+                         forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
+    caption("contact force while it is held");
+    formula({"lambda", "\\lambda"}, c.lambda,
+            {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
+}
+
+// A gap that no run can land on.
+void EquationsOnPage::flat(std::size_t index) {
+    const std::optional<State> place = flat_place(model_, run_, index);
+    if (!place) return;
+    std::string at;
+    for (int i = 0; i < model_.dof(); ++i)
+        at += fmt::format("{}{} = {:.2g}", at.empty() ? "" : ", ", model_.slot_names()[static_cast<std::size_t>(i)],
+                          place->q[i]);
+    const std::string told = fmt::format("dh = 0 where h = 0, near {}: no impact can be computed there", at);
+    for (const std::string& sentence : {told, std::string(flat_hint)})
+        page_.sentence({sentence, Page::escaped(sentence)});
+}
+
+void EquationsOnPage::unwritten_conditions() {
+    if (is_one() || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
+    const std::string left_out =
+        fmt::format("The conditions while {} others are held are not written out; runs derive what they need.",
+                    simplified_.while_held.empty() ? "any" : "two or more");
+    page_.sentence({left_out, left_out});
+}
+
+void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
+                             std::size_t columns) {
+    std::vector<std::vector<std::string>> rows;
+    std::vector<std::size_t> widths(columns, 0);
+    bool complete = true;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        if (i % columns == 0) rows.emplace_back();
+        complete = complete && entries[i] && terms(*entries[i]) <= most_terms;
+        rows.back().push_back(complete ? written(*entries[i]) : std::string());
+        widths[i % columns] = std::max(widths[i % columns], visible_length(rows.back().back(), page_.notation()) + 3);
+    }
+    std::size_t width = left.text.size() + 6;
+    for (const std::size_t column : widths) width += column;
+    if (complete && width <= page_.width()) return page_.matrix(left, rows);
+    const bool vector = rows.size() == 1 || columns == 1;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const std::size_t row = i / columns, column = i % columns;
+        if (!vector && column < row) continue;  // M is symmetric
+        const std::string number = vector ? fmt::format("{}", i + 1) : fmt::format("{}{}", row + 1, column + 1);
+        formula({left.text + number, fmt::format("{{{}}}_{{{}}}", left.latex, number)}, entries[i], {});
+    }
+}
+
+// The left hand side and what was found; where nothing was, what it would be simplified from.
+void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& fraction, const Both& definition) {
+    if (fraction && terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
+    page_.formula(left, is_text() ? definition.text : definition.latex);
+    const std::string why = fraction ? fmt::format("not written out: it has {} terms", terms(*fraction))
+                                     : "not simplified: it takes too many operations";
+    page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
+}
+
+EquationsOnPage::Quotient EquationsOnPage::factor_or_sum(const Fraction& fraction) const {
+    Algebra& algebra = simplified_.algebra();
+    algebra.work() = Work{1000000};
+    Quotient result{written(fraction), {}, {}};
+    if (fraction.denominator.is_number()) return result;
+    return split(factor(fraction, algebra), result.whole, writer_);
+}
+
+EquationsOnPage::Quotient EquationsOnPage::split(const Factored& factored, const std::string& whole,
+                                                 const Writer& writer) {
+    Factored top{numerator(factored.number), {}}, bottom{denominator(factored.number), {}};
+    for (const auto& [base, exponent] : factored.factors)
+        (exponent > 0 ? top : bottom).factors.push_back({base, std::abs(exponent)});
+    return {whole, writer.write(top).text, writer.write(bottom).text};
+}
+
+// A quotient too wide for a line is written as N/D with N and D below.
+void EquationsOnPage::long_formula(Page& page, const Both& left, const Quotient& quotient) {
+    const std::size_t length = visible_length(quotient.whole, page.notation()) + left.text.size() + 5;
+    const bool tall = page.notation() == Notation::latex && !quotient.top.empty();
+    const std::size_t across = tall ? std::max(visible_length(quotient.top, page.notation()),
+                                               visible_length(quotient.bottom, page.notation())) +
+                                          8
+                                    : length;
+    if (quotient.top.empty() || across <= page.width()) return page.formula(left, quotient.whole);
+    page.formula(left, page.notation() == Notation::text ? "N/D, where" : "N/D, \\quad\\text{where}");
+    page.formula({"N", "N"}, quotient.top, 2);
+    page.formula({"D", "D"}, quotient.bottom, 2);
+}
+
+void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
+    if (!found) {
+        page_.sentence(
+            {"(not simplified: it takes too many operations)", "(not simplified: it takes too many operations)"});
+        return;
+    }
+    const ZenoCondition& zeno = *found;
+    const auto plain = [&](Expression e) { return achilles::write(e, model_.slot_names(), page_.notation()).text; };
+    std::vector<Fraction> values;
+    for (const auto& [symbol, value] : zeno.solved) {
+        zeno.algebra->work() = Work{1000000};
+        values.push_back(zeno.algebra->simplify(value));
+    }
+    // It knows what the algebra has met so far.
+    const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
+    std::vector<std::string> there;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        there.push_back(
+            in_line(fmt::format("{} = {}", plain(zeno.solved[i].first), writer.write(values[i], *zeno.algebra).text)));
+    if (!there.empty()) {
+        const std::string line = fmt::format("there {}", fmt::join(there, ", "));
+        page_.sentence({line, line});
+    }
+    const Factored whole = zeno.positive * zeno.decisive;
+    const std::string hddot = writer.write(whole).text;
+    const bool divided = !zeno.positive.factors.empty() || zeno.positive.number != 1;
+    if (zeno.verdict == ZenoCondition::Verdict::depends) {
+        if (divided) {
+            long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
+            reason(zeno, writer);
+        }
+        page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
+        return;
+    }
+    long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
+    const std::string verdict = zeno.verdict == ZenoCondition::Verdict::always
+                                    ? "hddot < 0 at every contact"
+                                    : "hddot >= 0 at every contact: none of them ends in a Zeno point";
+    const std::string because = grounds(zeno);
+    page_.sentence({verdict + because, Page::escaped(verdict) + because});
+}
+
+// What the proof of a sign rests on.
+std::string EquationsOnPage::grounds(const ZenoCondition& zeno) const {
+    std::vector<std::string> names, reasons;
+    for (const Expression e : zeno.assumed)
+        names.push_back(in_line(achilles::write(e, model_.slot_names(), page_.notation()).text));
+    if (!names.empty())
+        reasons.push_back(fmt::format("by the range{} of {}", names.size() > 1 ? "s" : "", fmt::join(names, ", ")));
+    if (zeno.definite) reasons.emplace_back("where M is positive definite");
+    return reasons.empty() ? "" : fmt::format(", {}", fmt::join(reasons, " and "));
+}
+
+void EquationsOnPage::reason(const ZenoCondition& zeno, const Writer& writer) {
+    const std::string divisor = in_line(writer.write(zeno.positive).text);
+    const std::string because = grounds(zeno);
+    if (is_text() && divisor.size() > 60)
+        return page_.sentence({fmt::format("divided by the factors that are positive{}:", because), {}});
+    const std::string line = fmt::format("divided by {}, which is positive{}:", divisor, because);
+    page_.sentence({line, line});
+}
+
+}  // namespace achilles

@@ -1,0 +1,65 @@
+// The derived equations of a system on a page: what reports and sheets of equations have in common. For the files of this
+// library only: see algebra/multinomial.hpp.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algebra/writer.hpp"
+#include "check/simplified.hpp"
+#include "output/page.hpp"
+
+namespace achilles {
+
+class EquationsOnPage {
+ protected:
+    EquationsOnPage(const Model& model, const Run& run, const Simplified& simplified, Page page)
+        : model_(model),
+          run_(run),
+          simplified_(simplified),
+          page_(std::move(page)),
+          writer_(simplified.algebra(), model.slot_names(), simplified.ranks(), page_.notation()) {}
+
+    bool is_text() const { return page_.notation() == Notation::text; }
+    std::string name(const std::string& symbol) const { return write_name(symbol, page_.notation()).text; }
+    std::string in_line(const std::string& formula) const { return is_text() ? formula : fmt::format("${}$", formula); }
+    std::string words(const std::string& plain) const { return is_text() ? plain : Page::escaped(plain); }
+
+    bool is_one() const { return model_.contacts() == 1; }
+    // With the name of a contact, where there are several.
+    std::string of(const char* words, std::size_t contact) const {
+        if (is_one()) return "";
+        return fmt::format(fmt::runtime(words), model_.description().constraints[contact].name);
+    }
+
+    // With `named` everything is said in words, too, and the gap stands there.
+    void contact(std::size_t index, bool forces, bool named = false);
+    // In one piece if the page is wide enough, else entry by entry.
+    void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries, std::size_t columns);
+    // What was found about hddot on the surface.
+    void zeno(const std::optional<ZenoCondition>& found);
+    // Of more contacts than are looked at.
+    void unwritten_conditions();
+
+    const Model& model_;
+    const Run& run_;
+    const Simplified& simplified_;
+    Page page_;
+    Writer writer_;
+
+ private:
+    struct Quotient {
+        std::string whole, top, bottom;
+    };
+    void flat(std::size_t index);
+    std::string written(const Fraction& fraction) const { return writer_.write(fraction, simplified_.algebra()).text; }
+    void formula(const Both& left, const std::optional<Fraction>& fraction, const Both& definition);
+    Quotient factor_or_sum(const Fraction& fraction) const;
+    static Quotient split(const Factored& factored, const std::string& whole, const Writer& writer);
+    static void long_formula(Page& page, const Both& left, const Quotient& quotient);
+    std::string grounds(const ZenoCondition& zeno) const;
+    void reason(const ZenoCondition& zeno, const Writer& writer);
+};
+
+}  // namespace achilles

@@ -1,0 +1,211 @@
+// The equations in the window: what they say of systems, what a hand finds there, and that they are set once.
+#include "panels/equations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "app/hands.hpp"
+#include "figure/label.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+FormulaFont font() {
+    FormulaFont result;
+    result.width = [](const std::string& label, float size) {
+        return 0.6F * size * static_cast<float>(letters(label).size());
+    };
+    return result;
+}
+
+EquationSheet sheet_of(const std::string& system) {
+    const Model model(test::system(system));
+    return equation_sheet(model, model.default_run());
+}
+
+std::string name_of(const EquationSheet& sheet, const std::string& latex) {
+    std::vector<FormulaName> names;
+    for (const auto& symbol : sheet.symbols) names.push_back({symbol.latex, typeset_name(symbol.name)});
+    return to_text(read_sentence(latex, names));
+}
+
+// Every block as a line of text.
+std::string text_of(const EquationSheet& sheet) {
+    std::string text;
+    for (const Block& block : sheet.blocks) {
+        text += name_of(sheet, block.kind == Block::Kind::formula || block.kind == Block::Kind::matrix
+                                   ? "$" + block.words.latex + "$"
+                                   : block.words.latex);
+        if (!block.right.empty()) text += " = " + name_of(sheet, "$" + block.right + "$");
+        for (const auto& row : block.rows) {
+            text += " [";
+            for (const std::string& entry : row) text += " " + name_of(sheet, "$" + entry + "$") + " ";
+            text += "]";
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+void expect_lines(const std::string& text, const std::vector<std::string>& lines) {
+    std::size_t at = 0;
+    for (const std::string& line : lines) {
+        const std::size_t found = text.find(line + "\n", at);
+        ASSERT_NE(found, std::string::npos) << line << "\nis not in its place in\n" << text;
+        at = found;
+    }
+}
+
+TEST(Equations, of_the_ball) {
+    expect_lines(text_of(sheet_of("ball_on_sine")),
+                 {"Zeno condition: h\u0308 < 0 where h = h\u0307 = 0", " = x\u0307^2 sin x \u2212 g < 0",
+                  "Motion: M q\u0308 + b = 0", "mass matrix", "M [ m  0 ] [ 0  m ]", "b [ 0 ] [ m g ]", "gap",
+                  "h = y \u2212 sin x", "rate of the gap", "contact force while it is held"});
+}
+
+TEST(Equations, of_the_pendulum) {
+    const EquationSheet sheet = sheet_of("double_pendulum");
+    expect_lines(text_of(sheet), {"there \u03b8\u2082 = 0, \u03b8\u0307\u2082 = 0",
+                                  "h\u0308 = (3 g sin \u03b8\u2081 (m\u2081 (L\u2081 + 2 L\u2082) + m\u2082 L\u2082))/"
+                                  "(L\u2081 L\u2082 (4 m\u2081 + 3 m\u2082))",
+                                  " = g sin \u03b8\u2081 < 0"});
+    ASSERT_EQ(sheet.conditions.size(), 1U);
+    EXPECT_TRUE(sheet.conditions[0].depends);
+    EXPECT_EQ(sheet.blocks[sheet.conditions[0].last].kind, Block::Kind::heading);
+}
+
+TEST(Equations, of_forces_and_time) {
+    const std::string text = text_of(sheet_of("driven_double_pendulum"));
+    EXPECT_NE(text.find("Motion: M q\u0308 + b = Q\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("forces\nQ ["), std::string::npos) << text;
+    EXPECT_NE(text.find(" t"), std::string::npos);
+}
+
+TEST(Equations, of_several_contacts) {
+    const EquationSheet sheet = sheet_of("ball_in_sloped_box");
+    const std::string text = text_of(sheet);
+    EXPECT_NE(text.find("Zeno condition of "), std::string::npos) << text;
+    EXPECT_NE(text.find(" is held: h\u0308 < 0 where h = h\u0307 = 0 of both"), std::string::npos) << text;
+    EXPECT_GE(sheet.conditions.size(), 4U);
+    for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.held.contains(condition.contact));
+}
+
+// Lines stand below one another, none outside of the page, and no line of one column in the next.
+TEST(Equations, are_set_in_columns_that_fit) {
+    for (const char* system : {"ball_on_sine", "double_pendulum", "ball_in_sloped_box", "driven_double_pendulum"}) {
+        const EquationSheet sheet = sheet_of(system);
+        const bool has_forces = text_of(sheet).find("forces\n") != std::string::npos;
+        for (const float width : {420.0F, 800.0F, 1600.0F}) {
+            const SetSheet page = set_sheet(sheet, 15.0F, font(), width, 200.0F);
+            EXPECT_EQ(page.now.size(), sheet.conditions.size());
+            EXPECT_LE(page.width, width) << system;
+            std::size_t columns = 0;
+            for (std::size_t i = 0; i < page.lines.size(); ++i) {
+                const SetSheet::Line& a = page.lines[i];
+                EXPECT_GE(a.y - a.box.ascent, -0.01F) << system;
+                EXPECT_LE(a.y + a.box.descent, page.height) << system;
+                columns += i == 0 || a.x > page.lines[i - 1].x + 200.0F ? 1 : 0;
+                for (std::size_t j = 0; j < i; ++j) {
+                    const SetSheet::Line& b = page.lines[j];
+                    const bool beside = a.x >= b.x + b.box.width || b.x >= a.x + a.box.width;
+                    const bool below = a.y - a.box.ascent >= b.y + b.box.descent - 0.01F ||
+                                       b.y - b.box.ascent >= a.y + a.box.descent - 0.01F;
+                    EXPECT_TRUE(beside || below) << system << ", " << width << ": lines " << i << " and " << j;
+                }
+            }
+            EXPECT_TRUE(width > 420.0F || columns == 1) << system;
+            EXPECT_TRUE(width < 1600.0F || sheet.conditions.size() > 1 || has_forces || columns > 1) << system;
+        }
+    }
+}
+
+TEST(Equations, are_a_command_and_a_tab) {
+    Hands hands("double_pendulum");
+    EXPECT_FALSE(hands.session.scene().shows("equations"));
+    hands.click("tab equations");
+    EXPECT_TRUE(hands.session.scene().shows("equations"));
+    EXPECT_EQ(to_text(hands.all.back()), "show equations");
+    EXPECT_TRUE(hands.says("mass matrix"));
+    hands.click("tab events");
+    EXPECT_FALSE(hands.session.scene().shows("equations"));
+    EXPECT_FALSE(hands.says("mass matrix"));
+    // Where the events are hidden, the tab brings them back.
+    hands.session.apply(parse_command("hide events"));
+    hands.session.apply(parse_command("show equations"));
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("mass matrix"));
+    hands.click("tab events");
+    EXPECT_TRUE(hands.session.scene().shows("events"));
+}
+
+TEST(Equations, tell_what_the_condition_is_now) {
+    Hands hands("double_pendulum");
+    hands.session.apply(parse_command("show equations"));
+    hands.session.apply(parse_command("seek 1"));
+    hands.rest(2);
+    const double value = std::sin(hands.session.now().state.q[0]);  // g = 1
+    ASSERT_GT(value, 0.0);
+    EXPECT_TRUE(hands.says("now " + fmt::format("{:.4g}", value) + " \u2265 0"));
+    hands.session.apply(parse_command("seek 3"));
+    hands.rest(2);
+    ASSERT_LT(hands.session.now().state.q[0], 0.0);
+    EXPECT_TRUE(hands.says("< 0: bouncing would end at a Zeno point"));
+    hands.session.apply(parse_command("set g 2"));
+    hands.session.apply(parse_command("seek 1"));
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("now " + fmt::format("{:.4g}", 2.0 * std::sin(hands.session.now().state.q[0]))));
+    hands.session.apply(parse_command("set g 1"));
+    hands.session.apply(parse_command("seek 4.5"));
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("now the contact is held"));
+}
+
+TEST(Equations, and_sliders_light_each_other) {
+    Hands hands("double_pendulum");
+    hands.session.apply(parse_command("show equations"));
+    hands.rest(3);
+    hands.point("equation m1");
+    hands.rest(1);
+    EXPECT_EQ(hands.state.lit, "m1");
+    EXPECT_GT(hands.tooltip().height, 0.0F);
+    EXPECT_TRUE(hands.says("m1 = 1 kg") || hands.says("m1 = 1\u00a0kg"));
+    hands.point("set L2");
+    EXPECT_EQ(hands.state.lit, "");
+    EXPECT_EQ(hands.state.pointed_slider, "L2");
+}
+
+TEST(Equations, are_simplified_and_set_once) {
+    const auto model = std::make_shared<const Model>(test::system("double_pendulum"));
+    achilles::Run run = model->default_run();
+    EquationsView view;
+    const EquationSheet* const sheet = view.sheet(model, run, {});
+    ASSERT_NE(sheet, nullptr);
+    const SetSheet::Line* const line = view.set(15.0F, font(), 800.0F, 300.0F).lines.data();
+    run.parameters[0] *= 1.1;
+    EXPECT_EQ(view.sheet(model, run, {}), sheet) << "within its range a value changes no sign";
+    EXPECT_EQ(view.set(15.0F, font(), 800.0F, 300.0F).lines.data(), line);
+    EXPECT_NE(view.set(15.0F, font(), 500.0F, 300.0F).lines.data(), line);
+    // Beyond it nothing may be left out as positive that is not.
+    run.parameters[0] = -1.0;
+    const EquationSheet* const other = view.sheet(model, run, {});
+    ASSERT_NE(other, nullptr);
+    EXPECT_EQ(text_of(*other).find("ranges of m\u2081"), std::string::npos) << text_of(*other);
+}
+
+// A window does not wait.
+TEST(Equations, come_when_they_are_ready) {
+    Hands hands("double_pendulum");
+    hands.state.in_window = true;
+    hands.session.apply(parse_command("show equations"));
+    hands.rest(1);
+    const auto begin = std::chrono::steady_clock::now();
+    while (derives_equations(hands.state) && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))
+        hands.rest(1);
+    EXPECT_TRUE(hands.says("mass matrix"));
+}
+
+}  // namespace
+}  // namespace achilles
