@@ -15,7 +15,7 @@ using Ink = SetSheet::Ink;
 
 // Shares of the letters' size.
 constexpr float caption_size = 0.867F, leading = 0.42F, before_heading = 1.0F, before_caption = 0.6F,
-                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 22.0F;
+                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 20.0F;
 constexpr int most_columns = 3;
 
 // What must not be torn apart: lines below one another, from (0, 0).
@@ -247,9 +247,9 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
         model_ = model;
         signs_ = signs;
         is_under_way_ = true;
-        worker_->start([model, run](const std::stop_token&) -> Made {
+        worker_->start([model, run](const std::stop_token& stop) -> Made {
             try {
-                return std::make_shared<const EquationSheet>(equation_sheet(*model, run));
+                return std::make_shared<const EquationSheet>(equation_sheet(*model, run, stop));
             } catch (const std::exception& too_large) {  // for the graph, or for the memory
                 EquationSheet sheet;
                 const std::string why = Page::escaped(too_large.what());

@@ -67,8 +67,8 @@ class SheetWriter : EquationsOnPage {
 
 }  // namespace
 
-EquationSheet equation_sheet(const Model& model, const Run& run) {
-    const Simplified simplified(model, run);
+EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop) {
+    const Simplified simplified(model, run, std::move(stop));
     return SheetWriter(model, run, simplified).write();
 }
 

@@ -2,6 +2,7 @@
 // that name it, and the Zeno conditions as programs.
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,8 @@ struct EquationSheet {
 };
 
 // M, bias and forces; of each contact h, dh, hdot, hddot, lambda and the conditions. Simplifies: a hundredth of a second
-// for two links, seconds for a robot with several contacts. Signs are taken over the parameters' ranges and the run's values.
-EquationSheet equation_sheet(const Model& model, const Run& run);
+// for two links, seconds for a robot with several contacts. Signs are taken over the parameters' ranges and the run's values. Told to stop,
+// it returns soon, whatever it has.
+EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop = {});
 
 }  // namespace achilles

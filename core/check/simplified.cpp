@@ -27,6 +27,7 @@ std::unique_ptr<HeldMotions> derived_motions(const Model& model) {
 }  // namespace
 
 std::optional<Fraction> Simplified::simplify(Expression expression) {
+    if (stop_.stop_requested()) return std::nullopt;
     algebra_->work() = Work{work_of_a_formula};
     try {
         return algebra_->simplify(graph_.adopt(expression));
@@ -34,6 +35,12 @@ std::optional<Fraction> Simplified::simplify(Expression expression) {
     } catch (const TooLarge&) {
     }
     return std::nullopt;
+}
+
+std::optional<ZenoCondition> Simplified::condition(const Model& model, const Run& run,
+                                                   const std::vector<const ContactEquations*>& involved) {
+    if (stop_.stop_requested()) return std::nullopt;
+    return zeno_condition(model, run, involved, graph_);
 }
 
 SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::size_t contact) {
@@ -51,14 +58,15 @@ SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::
         } catch (const TooLong&) {
         }
     }
-    result.zeno = zeno_condition(model, run, {&c}, graph_);
+    result.zeno = this->condition(model, run, {&c});
     return result;
 }
 
-Simplified::Simplified(const Model& model, const Run& run)
+Simplified::Simplified(const Model& model, const Run& run, std::stop_token stop)
     : motions_(derived_motions(model)),
       graph_(motions_ ? motions_->graph() : model.equations().energy.graph()),
-      algebra_(std::make_unique<Algebra>(graph_, Work{})) {
+      algebra_(std::make_unique<Algebra>(graph_, Work{})),
+      stop_(std::move(stop)) {
     const Equations& e = model.equations();
     const Layout& layout = model.layout();
     ranks_.assign(layout.count(), 0);
@@ -76,7 +84,7 @@ Simplified::Simplified(const Model& model, const Run& run)
             HeldCondition& condition = while_held.emplace_back();
             condition.contact = i;
             condition.held = ContactSet::of(j);
-            condition.zeno = zeno_condition(model, run, {&held_equations(condition), &e.free.contacts[j]}, graph_);
+            condition.zeno = this->condition(model, run, {&held_equations(condition), &e.free.contacts[j]});
         }
 }
 

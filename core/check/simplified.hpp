@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,7 +46,8 @@ struct HeldCondition {
 // Nothing stands where simplifying took too long.
 class Simplified {
  public:
-    Simplified(const Model& model, const Run& run);
+    // Once it is told to stop, nothing more is simplified: who told it does not want the result.
+    Simplified(const Model& model, const Run& run, std::stop_token stop = {});
     Simplified(const Simplified&) = delete;
 
     std::vector<std::optional<Fraction>> M, bias, Q;  // as Equations has them
@@ -66,11 +68,14 @@ class Simplified {
  private:
     std::optional<Fraction> simplify(Expression expression);
     SimplifiedContact simplify(const Model& model, const Run& run, std::size_t contact);
+    std::optional<ZenoCondition> condition(const Model& model, const Run& run,
+                                           const std::vector<const ContactEquations*>& involved);
 
     std::unique_ptr<HeldMotions> motions_;  // those of while_held, derived before their graph is copied
     Graph graph_;
     std::unique_ptr<Algebra> algebra_;
     std::vector<int> ranks_;
+    std::stop_token stop_;
 };
 
 }  // namespace achilles

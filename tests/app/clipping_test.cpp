@@ -224,7 +224,7 @@ const State states[] = {
     {"no command", "ball_on_sine", {"find \"qqq\""}},
     {"systems to open", "ball_on_sine", {"find \"open \""}},
     {"equations", "double_pendulum", {"show equations", "seek 4.5"}},
-    {"equations of several contacts", "ball_in_sloped_box", {"show equations"}},
+    {"equations of several contacts", "double_pendulum_two_stops", {"show equations"}},
     {"equations of long names", "long", {"show equations"}},
     {"equations in a narrow place", "ball_on_table", {"show equations", "show editor", "size editor 0.6"}},
     {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},

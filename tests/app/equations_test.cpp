@@ -195,6 +195,16 @@ TEST(Equations, are_simplified_and_set_once) {
     EXPECT_EQ(text_of(*other).find("ranges of m\u2081"), std::string::npos) << text_of(*other);
 }
 
+// Nobody waits for what nobody will see: another system is opened, the window is closed.
+TEST(Equations, stop_when_they_are_told_to) {
+    const Model model(test::system("kneed_leg"));  // seconds
+    std::stop_source stop;
+    stop.request_stop();
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_TRUE(equation_sheet(model, model.default_run(), stop.get_token()).conditions.empty());
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
 // A window does not wait.
 TEST(Equations, come_when_they_are_ready) {
     Hands hands("double_pendulum");

@@ -66,6 +66,10 @@ void frames() {
         say(fmt::format("{} ({} impacts): lists of a frame, 6 plots", what,
                         desk.session.trajectory().statistics.impacts),
             still, 5.0);
+        desk.session.apply(parse_command("show equations"));
+        for (int i = 0; i < 3; ++i) desk.frame();
+        say("    the same with the equations", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
+        desk.session.apply(parse_command("hide equations"));
         desk.session.apply(parse_command("select 1"));
         for (int i = 0; i < 3; ++i) desk.frame();
         say("    the same with an event chosen", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
