@@ -14,7 +14,7 @@ namespace {
 using Ink = SetSheet::Ink;
 
 // Shares of the letters' size.
-constexpr float caption_size = 0.867F, leading = 0.42F, before_heading = 1.0F, before_caption = 0.6F,
+constexpr float caption_size = 0.867F, leading = 0.38F, before_heading = 1.0F, before_caption = 0.3F,
                 before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 20.0F;
 constexpr int most_columns = 3;
 
