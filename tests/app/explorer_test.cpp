@@ -141,6 +141,8 @@ TEST(Explorer, tells_where_the_slider_of_g_is) {
     const Rectangle r = hands.state.places.at("set g");
     const int x = static_cast<int>(r.x), y = static_cast<int>(r.y + 0.5F * r.height), width = static_cast<int>(r.width);
     std::printf("slider %d %d %d\n", x, y, width);
+    const Point tab = hands.middle("tab equations");
+    std::printf("tab %d %d\n", static_cast<int>(tab.x), static_cast<int>(tab.y));
     ASSERT_GE(x, 0);
     ASSERT_LE(x + width, 1280);
     ASSERT_GE(width, 50);  // tenths of it are a drag

@@ -8,7 +8,9 @@
 "$build/test_app" --gtest_filter='ExplorerOnDisplay.*' | tee "$folder/bytes"
 grep -q '\[  PASSED  \] 1 test' "$folder/bytes" || fail "the window does not show the bytes of the picture"
 
-read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is | grep '^slider ')
+"$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is > "$folder/places"
+read -r _ x y width < <(grep '^slider ' "$folder/places")
+read -r _ tab_x tab_y < <(grep '^tab ' "$folder/places")
 
 open_window "" ball_on_sine --record "$folder/journal"
 sleep 0.5
@@ -26,6 +28,11 @@ if grep '^set ' "$folder/journal" | grep -qv '^set g '; then fail "another value
 "$build/achilles" screenshot double_pendulum --size 1280x800 --journal "$folder/journal" --out "$folder/after.png"
 "$build/achilles" screenshot ball_on_sine --size 1280x800 --out "$folder/before.png"
 cmp -s "$folder/before.png" "$folder/after.png" && fail "nothing changed"
+
+# The equations take the place of the events.
+xdotool mousemove --window "$window" "$tab_x" "$tab_y" sleep 0.3 click 1
+await grep -q '^show equations' "$folder/journal" || fail "the equations are not shown"
+settle
 
 xdotool key --window "$window" space
 await grep -q '^play' "$folder/journal" || xdotool key space
