@@ -157,7 +157,10 @@ void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
 void show_content(const Session& session, PanelState& state, Commands& commands) {
     PaletteState& palette = state.palette;
     if (ImGui::IsWindowAppearing()) {
-        palette = {.text = session.scene().finds(), .revision = palette.revision + 1};
+        const int revision = palette.revision + 1;
+        palette = {};
+        palette.text = session.scene().finds();
+        palette.revision = revision;
         palette.to_end = true;
     }
     // The command that was run is done by now: it was refused, or there is nothing more to say.

@@ -180,7 +180,8 @@ std::string EquationsOnPage::grounds(const ZenoCondition& zeno) const {
     for (const Expression e : zeno.assumed)
         names.push_back(in_line(achilles::write(e, model_.slot_names(), page_.notation()).text));
     if (!names.empty())
-        reasons.push_back(fmt::format("by the range{} of {}", names.size() > 1 ? "s" : "", fmt::join(names, ", ")));
+        reasons.push_back(fmt::format("by the range{} of {}{}", names.size() > 1 ? "s" : "", fmt::join(names, ", "),
+                                      zeno.vanishing ? " where not 0" : ""));
     if (zeno.definite) reasons.emplace_back("where M is positive definite");
     return reasons.empty() ? "" : fmt::format(", {}", fmt::join(reasons, " and "));
 }

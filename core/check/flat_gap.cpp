@@ -9,26 +9,40 @@ namespace achilles {
 
 namespace {
 
-// Newton's method for h = 0 along dh. True if |h| has fallen, for the last few steps, by the factor (1 - 1/m)^m of a zero of order
-// m > 1: 1/4 and a little more, short of the 1/e of a gap that never closes. Where dh stays it falls faster and faster.
+// A step of Newton's method for h = 0 along dh: |h| before it. Nothing where dh = 0.
+std::optional<double> newton_step(ContactTerms<Evaluator<double>>& terms, State& state) {
+    set_state(terms, state);
+    terms.run();
+    const auto dof = static_cast<std::size_t>(state.q.size());
+    double slope = 0.0;
+    for (std::size_t i = 0; i < dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
+    if (!(slope > 0.0)) return std::nullopt;
+    for (std::size_t i = 0; i < dof; ++i)
+        state.q[static_cast<Eigen::Index>(i)] -= terms.h() / slope * terms.gradient(i);
+    return std::abs(terms.h());
+}
+
+// True if |h| has fallen, for the last few steps, by the factor (1 - 1/m)^m of a zero of order m > 1: 1/4 and a little more, short
+// of the 1/e of a gap that never closes. Where dh stays it falls faster and faster. Then the state is brought near to the zero:
+// steps shorten by 1 - 1/m.
 bool falls_to_flat(const Model& model, const Run& run, std::size_t contact, State& state) {
-    constexpr int steps = 12, looked_at = 4;
+    constexpr int steps = 12, looked_at = 4, until_near = 60;
     constexpr double least = 0.2, most = 0.35;
     auto terms = model.evaluator(model.programs_of(contact).contact_terms, run.parameters);
     double before = 0.0;
+    State near = state;  // after `steps`
     for (int round = 0; round <= steps; ++round) {
-        set_state(terms, state);
-        terms.run();
-        const double h = terms.h(), share = std::abs(h) / before;
+        near = state;
+        const auto h = newton_step(terms, state);
+        const double share = h.value_or(0.0) / before;
         if (round > steps - looked_at && !(share > least && share < most)) return false;
-        before = std::abs(h);
-        double slope = 0.0;
-        const auto dof = static_cast<std::size_t>(state.q.size());
-        for (std::size_t i = 0; i < dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
-        if (round == steps || !(slope > 0.0)) break;
-        for (std::size_t i = 0; i < dof; ++i) state.q[static_cast<Eigen::Index>(i)] -= h / slope * terms.gradient(i);
+        before = h.value_or(0.0);
+        if (!h) break;
     }
-    return before > 0.0 && is_flat(model, run.parameters, state, contact);
+    if (!(before > 0.0 && is_flat(model, run.parameters, near, contact))) return false;
+    for (int round = 0; round < until_near && newton_step(terms, state); ++round) {
+    }
+    return true;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where a gap comes to 0 without crossing it, as y^2 does: there is no normal, and no impact can be computed.
+// Where dh vanishes with a gap, as of y^2 or y^3: there is no normal, and no impact can be computed.
 #pragma once
 
 #include <optional>

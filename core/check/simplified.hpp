@@ -24,7 +24,8 @@ struct ZenoCondition {
     // hddot = positive * decisive. `positive` was proved to be: see `assumed`, and, where `definite`, M is positive
     // definite.
     Factored positive, decisive;
-    std::vector<Expression> assumed;  // of parameters alone, positive over the parameters' ranges
+    std::vector<Expression> assumed;  // of parameters alone, positive over the parameters' ranges,
+    bool vanishing = false;           // or some not negative: where they are not 0, as is assumed of a divisor
     bool definite = false;
     enum class Verdict { depends, always, never } verdict = Verdict::depends;
 };

@@ -266,7 +266,10 @@ class Search {
         }
         if (!unknown) dropped_for.merge(known_for);
         for (const std::size_t atom : dropped_for)
-            if (signs_.of_parameters(algebra.atom(atom))) zeno.assumed.push_back(algebra.atom(atom));
+            if (const Expression assumed = algebra.atom(atom); signs_.of_parameters(assumed)) {
+                zeno.assumed.push_back(assumed);
+                zeno.vanishing = zeno.vanishing || signs_(assumed) == Sign::not_negative;
+            }
         if (!unknown)
             zeno.verdict = zeno.decisive.number < 0 ? ZenoCondition::Verdict::always : ZenoCondition::Verdict::never;
     }

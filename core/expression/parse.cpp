@@ -265,8 +265,8 @@ class Parser {
         const std::string_view word = text_.substr(at_, end - at_);
         if (scope_.allowed.find(word) != scope_.allowed.end() || is_reserved(word)) return;
         throw ParseError(at_, in_quotes(word) +
-                                  " may not follow a number: a unit stands in the key unit, and a product "
-                                  "is written with '*'");
+                                  " may not follow a number: it is written without its unit (a file has the "
+                                  "key unit for that), and a product with '*'");
     }
 
     Expression number() {
@@ -342,6 +342,8 @@ class Parser {
             if (reason.starts_with("the rate ")) rates.push_back(word);
         if (const std::string hint = rates_are_written(full, rates); !hint.empty())
             throw ParseError(begin, "unknown name " + in_quotes(full) + hint, full);
+        if (peek() == '=')
+            throw ParseError(begin, "an expression stands alone, without " + in_quotes(full) + " and '='");
         const std::string habit = instead_of_name(
             full, [&](std::string_view word) { return scope_.allowed.find(word) != scope_.allowed.end(); });
         throw ParseError(begin, "unknown name " + in_quotes(full) + (habit.empty() ? did_you_mean(full, known) : habit),

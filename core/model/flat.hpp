@@ -1,4 +1,4 @@
-// Gaps that touch 0 without crossing it, x^2 in place of x: where h = 0 there is no normal.
+// Gaps whose dh vanishes where h = 0, x^2 or x^3 in place of x: there is no normal there.
 #pragma once
 
 #include <span>
@@ -12,7 +12,6 @@ namespace achilles {
 bool is_flat(const Model& model, std::span<const double> parameters, const State& state, std::size_t contact = 0);
 
 // What would be right.
-inline constexpr const char* flat_hint =
-    "the gap comes to 0 without crossing it: write one whose dh is not 0 there, as x in place of x^2";
+inline constexpr const char* flat_hint = "write a gap whose dh is not 0 where h = 0, as x in place of x^2 or x^3";
 
 }  // namespace achilles

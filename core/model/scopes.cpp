@@ -197,13 +197,16 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     forbid_primes(scope, system);
     scope.allowed.emplace("t", graph.symbol(layout.t()));
     const std::vector<std::array<Expression, 4>> values = contact_values(layout, graph, equations);
+    const bool have_names = std::none_of(system.constraints.begin(), system.constraints.end(),
+                                         [](const ConstraintDescription& c) { return c.name.empty(); });
     for (std::size_t i = 0; i < contact_outputs.size(); ++i) {
         const std::vector<std::string> names = output_names(system, contact_outputs[i]);
         for (std::size_t k = 0; k < names.size(); ++k) scope.allowed.emplace(names[k], values[k][i]);
         if (names.size() > 1)
-            scope.forbidden.emplace(contact_outputs[i],
-                                    fmt::format("{} is of one constraint, and there are several: {}",
-                                                in_quotes(contact_outputs[i]), fmt::join(names, ", ")));
+            scope.forbidden.emplace(
+                contact_outputs[i],
+                fmt::format("{} is of one constraint, and there are several{}", in_quotes(contact_outputs[i]),
+                            have_names ? fmt::format(": {}", fmt::join(names, ", ")) : ", of which each needs a name"));
     }
     scope.allowed.emplace("energy", graph.adopt(equations.energy));
     Expression power = graph.adopt(equations.power);

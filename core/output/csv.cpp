@@ -69,12 +69,13 @@ std::string heading(const Model& model, const CsvStyle& style) {
             add("rate_" + constraint.name, "gap_" + constraint.name + "'");
             add("lambda_" + constraint.name, "lambda_" + constraint.name);
         }
-        add("energy", "energy");
-        add("j");
-        add("held");
     } else {
-        for (const char* column : {"gap", "gap rate", "lambda", "energy", "j"}) add(column);
+        for (const auto& [column, of] : {std::pair{"gap", "gap"}, {"gap rate", "gap'"}, {"lambda", "lambda"}})
+            add(column, of);
     }
+    add("energy", "energy");
+    add("j");
+    if (is_of_several(model)) add("held");
     if (has_work(model)) {
         add("work", "work");
         add("loss", "loss");

@@ -7,6 +7,7 @@
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "simulate/least_gap.hpp"
+#include "simulate/sampler.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -146,6 +147,17 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
     return result;
 }
 
+// Those that an event is of; of an impact also those that touched without being held and are pushed by it.
+ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
+    const Event& event = trajectory.events[index];
+    ContactSet all = event.contacts;
+    const ContactSet held = held_before(trajectory, index);
+    if (event.joint)
+        for (const auto& [contact, impulse] : event.joint->impulses)
+            if (impulse > 0.0 && !held.contains(contact)) all = all.with(contact);
+    return all;
+}
+
 // What is only said where several contacts took part in an impact.
 void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
     result["order_matters"] = joint.order_matters;
@@ -163,7 +175,7 @@ void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
 Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulses) {
     const Event& event = trajectory.events[index];
     Json result = {{"kind", to_text(event.kind)}, {"t", number(event.t)}};
-    const Json contacts = names(trajectory, event.contacts);
+    const Json contacts = names(trajectory, taking_part(trajectory, index));
     if (contacts.size() == 1)
         result["contact"] = contacts[0];
     else
@@ -210,6 +222,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                           {"impacts", phase.impacts}});
     Impulses impulses(trajectory);
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) events.push_back(event_of(trajectory, i, impulses));
+    Json warnings = Json::array();
+    for (const Remark& remark : remarks(trajectory)) warnings.push_back(remark.sentence);
     const Statistics& s = trajectory.statistics;
     Json result = {{"achilles", version()},
                    {"system", system_of(trajectory)},
@@ -226,6 +240,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"loss", number(trajectory.loss)},
                      {"by_convention", trajectory.by_convention}}},
                    {"outcome", outcome_of(trajectory)},
+                   {"warnings", warnings},
                    {"start",
                     {{"t", number(trajectory.run.options.start_time)},
                      {"q", list(trajectory.run.q)},

@@ -135,7 +135,7 @@ class Course {
         std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
                                        event.t, contacts, named(model_, 0, event.q, scale_.q));
         if (is_plastic)
-            text += "            plastic: it comes to rest on the surface by its first impact, without a bounce;\n";
+            text += "            plastic: it comes to rest on the surface by this impact, without another bounce;\n";
         else if (event.kind == Event::Kind::zeno)
             text += fmt::format(
                 "            after {} impacts, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
@@ -238,6 +238,10 @@ std::string summary(const Trajectory& trajectory) {
     if (has_power || model.contacts() > 1) text += balance(trajectory);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
+    const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
+        return event.certificate && event.certificate->others && !event.certificate->others->held.empty();
+    });
+    if (has_forces) text += "Forces are lambda, the multiplier of the gap: the force itself only where |grad h| = 1.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });

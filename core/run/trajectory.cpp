@@ -25,6 +25,23 @@ State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::
     return state;
 }
 
+double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event) {
+    const Event& zeno = trajectory.events[zeno_event];
+    const Event* first = nullptr;  // impact of the bouncing
+    for (std::size_t i = zeno_event; i-- > 0 && trajectory.events[i].kind == Event::Kind::impact;)
+        if (trajectory.events[i].contacts.without(zeno.contacts).empty()) first = &trajectory.events[i];
+    if (first == nullptr || !(first->impact_speed > 0.0)) return 0.0;
+    const auto& pieces = trajectory.pieces;
+    const auto after = std::lower_bound(pieces.begin(), pieces.end(), first->t,
+                                        [](const Piece& piece, double t) { return piece.start < t; });
+    const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
+    double state = integration_error(used, static_cast<double>(after - pieces.begin()));
+    for (std::size_t i = 0; i < zeno_event; ++i)
+        if (const auto& cut = trajectory.events[i].certificate)
+            state += std::max(cut->shadowing_position.value_or(0.0), cut->shadowing_velocity.value_or(0.0));
+    return state * (1.0 + zeno.t - first->t) / first->impact_speed;
+}
+
 State scale_of(const Trajectory& trajectory) {
     State scale{trajectory.run.q.cwiseAbs(), trajectory.run.v.cwiseAbs()};
     const auto take = [&](const Vector& q, const Vector& v) {

@@ -27,7 +27,9 @@ void Execution::land(std::size_t which, const Contact& contact) {
         const bool elastic = restitutions_[which] >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
              fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
-                         next_.state.t, elastic ? ": with restitution 1 the bouncing does not converge" : ""));
+                         next_.state.t,
+                         elastic ? ": with restitution 1 the bouncing does not converge"
+                                 : "; more are allowed by --max-impacts"));
         return;
     }
     if (surfaces_->count() > 1) {

@@ -90,9 +90,7 @@ std::string edge_of_domain(const Model& model, const Run& run, const State& stat
 }
 
 std::string edge_of_contact(const Model& model, const Run& run, const State& state) {
-    Values box = box_of(state);
-    const std::string found = undefined_in(model, run, state, box);
-    return found.empty() ? "dh = 0 where contact happens: the normal is not defined" : found;
+    return undefined_in(model, run, state, box_of(state));
 }
 
 }  // namespace achilles

@@ -14,7 +14,7 @@ namespace achilles {
 // two floating-point numbers is not missed. A sentence without a full stop; empty if there is none.
 std::string edge_of_domain(const Model& model, const Run& run, const State& state);
 
-// The same at the state itself, to within rounding, for a contact: also where dh = 0, so that there is no normal.
+// The same at the state itself, to within rounding, for a contact. Empty where it is dh that vanishes.
 std::string edge_of_contact(const Model& model, const Run& run, const State& state);
 
 }  // namespace achilles

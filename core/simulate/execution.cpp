@@ -109,7 +109,8 @@ const StepRequest* Execution::next() {
         stop(Outcome::Kind::end_time, "reached the end time");
     } else if (record_.steps() >= run_.options.max_steps) {
         stop(Outcome::Kind::too_many_steps,
-             fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time",
+             fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time; more are "
+                         "allowed by --max-steps",
                          record_.steps(), next_.state.t));
     } else if (record_.bytes() >= run_.options.memory) {
         stop(Outcome::Kind::out_of_memory,
@@ -158,7 +159,7 @@ bool Execution::is_cancelled() {
 // What the steps so far may have made the state wrong by, relative to its size: a tenth of the tolerance each, as
 // measured; and what the cuts of bouncings have, as certified.
 double Execution::state_error() const {
-    return 0.1 * run_.options.tolerance * static_cast<double>(record_.steps()) + cut_error_;
+    return integration_error(run_.options, static_cast<double>(record_.steps())) + cut_error_;
 }
 
 // ---- what came ----
@@ -256,8 +257,10 @@ void Execution::stop_at(StepFailure failure) {
 }
 
 void Execution::fail_projection() {
+    const std::string edge = edge_of_contact(*model_, run_, next_.state), place = where(next_.state);
+    if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, at {}", edge, place));
     stop(Outcome::Kind::left_the_domain,
-         fmt::format("{}, at {}", edge_of_contact(*model_, run_, next_.state), where(next_.state)));
+         fmt::format("dh = 0 where contact happens: the normal is not defined, at {}; {}", place, flat_hint));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }

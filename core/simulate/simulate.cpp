@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
+#include <string>
+#include <utility>
 
 #include "number/ground.hpp"
 #include "simulate/event_stepper.hpp"
@@ -40,8 +42,10 @@ Trajectory simulate(const std::shared_ptr<const Model>& model, const Run& run, W
         exact.options.tolerance = exact_tolerance;
         for (double* eps : {&exact.options.truncation.eps_q, &exact.options.truncation.eps_v})
             *eps = std::min(*eps, 1e-12);
+        std::string undecided = std::move(trajectory.outcome.message);
         trajectory = execute(model, exact, watch, keep);
         trajectory.run = used;
+        trajectory.undecided = std::move(undecided);
         trajectory.made_again_by = exact.options;
     }
     trajectory.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();

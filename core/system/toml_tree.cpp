@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <tuple>
 
 #include <toml++/toml.h>
@@ -237,6 +238,11 @@ std::string right_value(const std::string& line) {
                            value.find(',') < value.size() - 1 ? "decimals have a point" : "write the number alone", key,
                            number);
     }
+    const std::size_t end = std::min(value.find(' '), value.size());
+    const std::string number = value.substr(0, end), unit = trimmed(value.substr(end));
+    if (!unit.empty() && number_meant(number) == number && !unit.starts_with("deg") &&
+        std::isalpha(static_cast<unsigned char>(unit[0])) != 0)
+        return fmt::format("write the number alone, without its unit: {} = {}", key, number);
     return fmt::format("put it in quotes: {} = \"{}\"", key, shown(value));
 }
 

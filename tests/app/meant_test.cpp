@@ -103,14 +103,26 @@ TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
     }
 }
 
+TEST(Meant, AnEndingThatSaysOtherwiseIsAWarning) {
+    const Folder folder;
+    folder.put("drop.toml", drop);
+    const Answer crossed = folder.run("simulate drop.toml --end 0.1 --json a.csv --csv a.json");
+    EXPECT_EQ(crossed.status, 0);
+    EXPECT_EQ(crossed.err,
+              "achilles: warning: --json a.csv: what is written there is not csv, whatever its name says\n"
+              "achilles: warning: --csv a.json: what is written there is not json, whatever its name says\n");
+    EXPECT_EQ(folder.run("simulate drop.toml --end 0.1 --json b.json --csv b.csv").err, "");
+}
+
 TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
     const Folder folder;
     folder.put("drop.toml", drop);
     folder.put("square.toml", with("gap = \"y\"", "gap = \"y^2\""));
     folder.put("broken.toml", with("value = 0.5", "value = 1.5"));
     const std::string flat =
-        "dh = 0 at the start, which is in contact: the normal is not defined\nthe gap comes to 0 without crossing it: "
-        "write one whose dh is not 0 there, as x in place of x^2\n";
+        "dh = 0 at the start, which is in contact: the normal is not defined\nwrite a gap whose dh is not 0 where h = "
+        "0, "
+        "as x in place of x^2 or x^3\n";
     const std::string large = "the restitution must lie in [0, 1], but it is 1.5\n";
     const std::pair<std::string, std::string> mistakes[] = {
         {"simulate drop.toml --set y=2 --set e=1.5", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},

@@ -129,7 +129,10 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     for (const Option* option : told_options()) {
         const std::string flag(option->flag), common = common_flag(*option);
         if (common != flag && option == &options_set_by(option->command)[0])
-            add_option(command, *option, common, "the error the cut may cost: position, velocity and time", overrides);
+            add_option(command, *option, common,
+                       "the error the cut may cost in position, velocity and time: all three of"
+                       " those below",
+                       overrides);
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
         add_option(command, *option, flag, std::string(option->about) + unit, overrides);
     }

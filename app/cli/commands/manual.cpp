@@ -9,6 +9,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/write_files.hpp"
+#include "pictures/origin.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -26,6 +27,8 @@ std::string contents() {
 
 // Writes the skeleton where nothing is yet.
 void write_new(const std::string& name) {
+    if (name.find_first_not_of(' ') == std::string::npos)
+        throw InputError("new", {}, "the name is empty", "write achilles new mine: that is mine.toml");
     std::filesystem::path file = name;
     if (file.extension() != ".toml") file += ".toml";
     std::error_code problem;
@@ -35,7 +38,8 @@ void write_new(const std::string& name) {
     files.add(file.string());
     files.put(file.string(), skeleton_system());
     files.commit();
-    fmt::print("{0} is written; achilles simulate {1}{0} runs it\n", file.string(), file.has_parent_path() ? "" : "./");
+    const std::string path = (file.has_parent_path() ? "" : "./") + file.string();
+    fmt::print("{} is written; {} runs it\n", file.string(), shell_line({"simulate", path}));
 }
 
 }  // namespace

@@ -52,6 +52,15 @@ void check_files(const SimulateArguments& arguments) {
         throw InputError("--samples", {}, "the instants are those of --times already");
 }
 
+// A name that says otherwise than what is in the file is most likely a slip.
+void warn_of_endings(const SimulateArguments& arguments) {
+    for (const auto& [flag, path, other] :
+         {std::tuple{"--json", &arguments.json, ".csv"}, std::tuple{"--csv", &arguments.csv, ".json"}})
+        if (path->ends_with(other))
+            print_clean(stderr, "achilles: warning: {} {}: what is written there is not {}, whatever its name says\n",
+                        flag, *path, other + 1);
+}
+
 Instants instants_of(const SimulateArguments& arguments, const Run& run) {
     const double start = run.options.start_time, end = run.options.end_time;
     if (arguments.samples) return equidistant(*arguments.samples, start, end);
@@ -70,6 +79,7 @@ int run(const SimulateArguments& arguments) {
     check_asked(*model, run, arguments.settings);
     const Instants instants = instants_of(arguments, run);
     warn(description, run);
+    warn_of_endings(arguments);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
     OutputFiles files;
     files.spare(find_system(arguments.system));

@@ -288,9 +288,24 @@ restitution = 0.5
     EXPECT_EQ(report.find("1 - 1"), std::string::npos);
 }
 
+// A range from 0 on proves no sign where its end is meant, too.
+TEST(CheckReport, TellsWhereARangeHasAZero) {
+    const auto told = [](const std::string& range) {
+        const auto model = test::typed(
+            "title = \"a\"\n[[coordinate]]\nname = \"th\"\nstart = 1\n[[parameter]]\nname = \"L\"\nvalue = 1\n" +
+            range +
+            "[lagrangian]\nkinetic = \"L^2*th'^2\"\npotential = \"sin(th)\"\n[[constraint]]\ngap = \"L*th\"\n"
+            "restitution = 0.5\n");
+        double disagreement = 1.0;
+        return check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
+    };
+    EXPECT_NE(told("").find("where not 0"), std::string::npos) << told("");
+    EXPECT_EQ(told("range = [0.1, 2]\n").find("where not 0"), std::string::npos) << told("range = [0.1, 2]\n");
+}
+
 // Where dh = 0 with h = 0 no impact can be computed; a gap that is only steep or bent, or that never closes, is none of these.
-TEST(CheckReport, TellsOfAGapThatComesToZeroWithoutCrossingIt) {
-    const auto told = [](const std::string& gap) {
+TEST(CheckReport, TellsOfAGapWhoseNormalVanishes) {
+    const auto told = [](const std::string& gap, const std::string& near = {}) {
         const auto model = test::typed(
             "title = \"a\"\n[[coordinate]]\nname = \"x\"\nstart = 0.5\n[[coordinate]]\nname = "
             "\"y\"\nstart = 2\n[lagrangian]\nkinetic = \"x'^2 + y'^2\"\npotential = "
@@ -299,11 +314,15 @@ TEST(CheckReport, TellsOfAGapThatComesToZeroWithoutCrossingIt) {
         double disagreement = 1.0;
         const std::string report = check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
         return report.find("dh = 0 where h = 0, near ") != std::string::npos &&
-               report.find("as x in place of x^2") != std::string::npos;
+               report.find("as x in place of x^2 or x^3") != std::string::npos &&
+               report.find("without crossing") == std::string::npos &&
+               (near.empty() || report.find("near " + near + ":") != std::string::npos);
     };
     for (const char* flat :
          {"y^2", "(y - x)^2", "y^3", "1 - cos(y - 1)", "x^2 + y^2", "1e-6*y^4", "1 + y^2 - sqrt(1 + y^4)"})
         EXPECT_TRUE(told(flat)) << flat;
+    // Though steps towards it shorten slowly.
+    for (const char* flat : {"(y - 0.1)^3", "(y - 0.1)^2"}) EXPECT_TRUE(told(flat, "x = 0.5, y = 0.1")) << flat;
     for (const char* steep : {"y", "y - sin(x)", "x^2 + y^2 - 1", "1 + y^2", "y*(1 + y^2)", "1e-9*y", "exp(y) - 1",
                               "exp(y)", "y + 100*x^2", "1 - x^2/9 - y^2/9"})
         EXPECT_FALSE(told(steep)) << steep;

@@ -81,15 +81,13 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
     EXPECT_EQ(told("1e999"), "0 '1e999' is not a finite number");
     EXPECT_EQ(told("log(0)"), "0 'log(0)' is not a finite number");
     EXPECT_EQ(told("1/0"), "1 '1/0' is not a finite number: division by zero");
-    EXPECT_EQ(
-        told("0x10"),
-        "1 '0x10' is not a finite number: 'x10' may not follow a number: a unit stands in the key unit, and a product "
-        "is written with '*'");
+    EXPECT_EQ(told("0x10"),
+              "1 '0x10' is not a finite number: 'x10' may not follow a number: it is written without its unit (a file "
+              "has the key unit for that), and a product with '*'");
     for (const char* unit : {"", "m", "rad"})
-        EXPECT_EQ(
-            told("1.0 m/s^2", unit),
-            "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: a unit stands in the key unit, and "
-            "a product is written with '*'");
+        EXPECT_EQ(told("1.0 m/s^2", unit),
+                  "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: it is written without its unit "
+                  "(a file has the key unit for that), and a product with '*'");
     EXPECT_EQ(told("2pi"), "1 '2pi' is not a finite number: an operator is missing here; write '*' for a product");
     EXPECT_EQ(told("30 deg", "m"),
               "3 '30 deg' is not a finite number: 'deg' may follow a number where the unit is rad, and here it is m");

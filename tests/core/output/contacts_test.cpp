@@ -144,6 +144,18 @@ end_time = 4.0
     EXPECT_FALSE(certificate.contains("given"));
 }
 
+// A ball strikes the first of two that touch: the impact is of both contacts, though only one lands.
+TEST(SeveralContacts, AreOfAnImpactThatPushesThem) {
+    const auto balls = test::typed(
+        "title = \"balls\"\n[[coordinate]]\nname = \"a\"\nstart = -1\nrate = 1\n[[coordinate]]\nname = \"b\"\n"
+        "[[coordinate]]\nname = \"c\"\n[lagrangian]\nkinetic = \"(a'^2 + b'^2 + c'^2)/2\"\npotential = \"0\"\n"
+        "[[constraint]]\nname = \"ab\"\ngap = \"b - a\"\nrestitution = 0.5\n"
+        "[[constraint]]\nname = \"bc\"\ngap = \"c - b\"\nrestitution = 0.5\n[run]\nend_time = 1.5\n");
+    const Json first = Json::parse(to_json(simulate(balls, balls->default_run())))["events"][0];
+    EXPECT_EQ(first["contacts"], (Names{"ab", "bc"})) << first;
+    EXPECT_GT(first["impulses"]["bc"].get<double>(), 0.0);
+}
+
 TEST(SeveralContacts, LandingsWhoseOrderMattersHaveAlternatives) {
     const auto rod = test::flat_rod();
     auto long_enough = rod->default_run();

@@ -225,7 +225,7 @@ TEST_F(Outputs, CsvCanBeHeadedForPythonAndWithUnits) {
     style.plain_names = style.units = true;
     const std::vector<std::string> lines = split(to_csv(trajectory, style), '\n');
     EXPECT_EQ(lines[0], "t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j");
-    EXPECT_EQ(lines[1], "s,,m,m,m/s,m/s,,,,,");
+    EXPECT_EQ(lines[1], "s,,m,m,m/s,m/s,m,m/s,N,J,");
     EXPECT_EQ(lines[2].substr(0, 13), "0,hybrid,0,2,");
     // Names that Python keeps, and one that is taken.
     const auto odd = test::typed(
@@ -333,12 +333,26 @@ TEST(Summary, ABoundAsLargeAsTheMotionIsARemark) {
                                      "impact, t = 0.000201"),
               std::string::npos)
         << large[0].sentence;
+    EXPECT_EQ(nlohmann::json::parse(to_json(simulate(floor, run)))["warnings"], nlohmann::json{large[0].sentence});
     EXPECT_NE(large[0].sentence.find("the gap is never above 2e-07: try --eps 1e-11"), std::string::npos)
         << large[0].sentence;
     run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-11;
     const Trajectory better = simulate(floor, run);
     EXPECT_GT(better.statistics.impacts, 3);
     EXPECT_TRUE(remarks(better).empty());
+}
+
+// So it is where a later impact is cut while what is proved is large beside the motion.
+TEST(Summary, ABoundAsLargeAsTheMotionIsARemarkAfterSeveralImpacts) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "y=0.06002");  // 2e-5 m above
+    assign(run, floor->description(), "y'=0");
+    assign(run, floor->description(), "e=0.7");
+    run.options.end_time = 0.1;
+    const std::vector<Remark> large = remarks(simulate(floor, run));
+    ASSERT_EQ(large.size(), 1u);
+    EXPECT_NE(large[0].sentence.find("the bouncing was cut after "), std::string::npos) << large[0].sentence;
 }
 
 // Samples from the cut to the Zeno point are in the hybrid phase, as the contract has it, and say what they hold.

@@ -77,6 +77,15 @@ const Edge edges[] = {
 
 INSTANTIATE_TEST_SUITE_P(Domain, Edges, testing::ValuesIn(edges), [](const auto& edge) { return edge.param.name; });
 
+// What would be right is told where the run ends, too.
+TEST(Domain, AFlatGapIsToldWithAdvice) {
+    const auto model = test::typed(
+        "title = \"flat\"\n[[coordinate]]\nname = \"x\"\nstart = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
+        "potential = \"x\"\n[[constraint]]\ngap = \"x^3\"\nrestitution = 0.5\n");
+    const std::string message = simulate(model, model->default_run()).outcome.message;
+    EXPECT_NE(message.find("; write a gap whose dh is not 0 where h = 0"), std::string::npos) << message;
+}
+
 // A run away to infinity crosses no edge: it has another outcome.
 TEST(Domain, InfinityIsNoEdge) {
     const auto model = test::typed(

@@ -71,11 +71,16 @@ const Change with_advice[] = {
      "values "
      "in degrees as \"30 deg\""},
     {"start = 1\n", "start = \"1.0 m\"\n",
-     "f.toml:4:14: 'start' in [[coordinate]]: '1.0 m' is not a finite number: 'm' may not follow a number: a unit "
-     "stands in "
-     "the key unit, and a product is written with '*'\n    start = \"1.0 m\"\n                 ^"},
+     "f.toml:4:14: 'start' in [[coordinate]]: '1.0 m' is not a finite number: 'm' may not follow a number: it is "
+     "written without its unit (a file has the key unit for that), and a product with '*'\n    start = \"1.0 m\"\n     "
+     "            ^"},
+    {"start = 1\n", "start = 1 m\n",
+     "f.toml:4:11: not valid TOML: expected a comment or whitespace, saw 'm'\n    start = 1 m\n              ^\nwrite "
+     "the "
+     "number alone, without its unit: start = 1"},
     {"value = 2\n", "value = \"5 s\"\n",
-     "f.toml:10:12: 's' may not follow a number: a unit stands in the key unit, and a product is written with '*'\n    "
+     "f.toml:10:12: 's' may not follow a number: it is written without its unit (a file has the key unit for that), "
+     "and a product with '*'\n    "
      "value = \"5 s\"\n               ^"},
     {"rate = 0.5", "rate = \"20 deg\"\nunit = \"m\"",
      "f.toml:5:12: 'rate' in [[coordinate]]: '20 deg' is not a finite number: 'deg' may follow a number where the unit "
@@ -96,6 +101,8 @@ const Change of_other_languages[] = {
     {"\"m*x\"", "\"m.*x\"", "f.toml:16:15: unexpected '.'; write '*'\n    potential = \"m.*x\"\n                  ^"},
     {"\"m*x\"", "\"pi()*x\"",
      "f.toml:16:14: 'pi' is not a function; write '*' for a product\n    potential = \"pi()*x\"\n                 ^"},
+    {"\"m*x\"", "\"V = m*x\"",
+     "f.toml:16:14: an expression stands alone, without 'V' and '='\n    potential = \"V = m*x\"\n                 ^"},
     {"\"m*x\"", "\"pow(x, 2)\"",
      "f.toml:16:14: unknown function 'pow'; a power is written x^2\n    potential = \"pow(x, 2)\"\n                 ^"},
     {"\"m*x\"", "\"np.sin(x)\"",

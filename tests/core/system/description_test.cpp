@@ -319,8 +319,8 @@ TEST(Description, assigns) {
     EXPECT_EQ(assignment_error("mas=2"),
               "--set mas=2: 'mas' is no parameter, coordinate or rate of this system; did you mean 'mass'?");
     EXPECT_EQ(assignment_error("mass=1x"),
-              "--set mass=1x: '1x' is not a finite number: 'x' may not follow a number: a unit stands in the key unit, "
-              "and a product is written with '*'");
+              "--set mass=1x: '1x' is not a finite number: 'x' may not follow a number: it is written without its unit "
+              "(a file has the key unit for that), and a product with '*'");
     EXPECT_EQ(assignment_error("mass=inf"), "--set mass=inf: 'inf' is not a finite number");
     EXPECT_EQ(assignment_error("mass"),
               "--set mass: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");

@@ -371,7 +371,7 @@ const Change in_start[] = {
      "\"m/2*(x'^2 + theta'^2)\"\n               ^\nevery coordinate needs a positive inertia"},
     {"\"x - sin(theta)/9\"", "\"(x - 1)^2\"",
      "f.toml:18:8: dh = 0 at the start, which is in contact: the normal is not defined\n    gap = \"(x - 1)^2\"\n      "
-     "     ^\nthe gap comes to 0 without crossing it: write one whose dh is not 0 there, as x in place of x^2"},
+     "     ^\nwrite a gap whose dh is not 0 where h = 0, as x in place of x^2 or x^3"},
     {"\"x - sin(theta)/9\"", "\"log(x - 2)\"",
      "f.toml:18:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n    gap = \"log(x - 2)\"\n      "
      "     ^"},
