@@ -171,7 +171,7 @@ void paint_titles(const Session& session, ImVec2 at, float width) {
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(faint_color()), "event");
     title(time_at, "t (s)");
     if (!alone) return;
-    title(proof_at, "\u00b1");
+    title(proof_at, "\u00b1 from cut");
     title(speed_at, "gap speed");
     const float first = first_column(session);
     if (is_of_several(session)) title(first - state_width, "held");
@@ -211,7 +211,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, float wid
     cell({std::floor(at.x + units(kind_at)), at.y}, name, units(kind_width), text_color());
     number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
     if (has_card(session)) return;
-    const std::string proof = event.kind == Event::Kind::zeno ? time_text(event) : "";
+    const std::string proof = event.kind == Event::Kind::zeno ? time_text(session.trajectory(), index) : "";
     if (const std::size_t sign = proof.find("\u00b1 "); sign != std::string::npos)
         number_cell(at, proof_at, proof.substr(sign + 3), text_color());
     if (event.kind == Event::Kind::impact)
@@ -302,6 +302,11 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
     // As wide as the rows are where they can be scrolled.
     paint_titles(session, ImGui::GetCursorScreenPos(),
                  ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize);
+    const ImVec2 head = ImGui::GetCursorPos();
+    ImGui::SetCursorPosX(head.x + units(proof_at - state_width));
+    ImGui::Dummy({units(state_width), ImGui::GetTextLineHeight()});
+    if (!has_card(session)) tooltip(precision_text());
+    ImGui::SetCursorPos(head);
     ImGui::Dummy({1.0F, ImGui::GetTextLineHeight()});
     const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);

@@ -205,9 +205,11 @@ float results_height(float width);
 // At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
 void show_state(const Session& session, const Rectangle& panel);
 float state_height(const Session& session, float panel_width);
-// "2.7251422 ± 7.4e-7": the time of a Zeno point to the digits that are proved, and how far the true one can be from it;
-// without a proof the time alone.
-std::string time_text(const Event& event);
+// "2.7251422 ± 7.4e-7": the time of a Zeno point, and how far that of the exact motion from the computed state at the cut can be
+// from it, or the measure of the integration's error where that is larger; without a proof the time alone.
+std::string time_text(const Trajectory& trajectory, std::size_t event);
+// What that stands for.
+std::string precision_text();
 // In place of the mechanism, of any system: two coordinates, where the gap is open, the run, and its start to drag. With one
 // coordinate its phase plane.
 void show_plane(const Session& session, const Rectangle& area, PanelState& state, Commands& commands);

@@ -223,11 +223,19 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
     if (quantities.size() < 3) return right;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = 0.87F * ImGui::GetFontSize(), line = units(16.0F), space = units(5.0F);
+    const float room = 0.7F * row.width, around = line + 3.0F * space;  // the title needs some room
+    // Where they have none for all names each is shortened to its share.
+    constexpr float longest = 110.0F, shortest = 14.0F;
+    float wanted = 0.0F;
+    for (std::size_t i = 1; i < quantities.size(); ++i)
+        wanted += around + label_width(fitted(quantities[i].label, units(longest)), size);
+    const float share = room / static_cast<float>(quantities.size() - 1) - around,
+                widest = wanted > room && share > units(shortest) ? share / 0.87F : units(longest);
     for (std::size_t i = quantities.size() - 1; i >= 1; --i) {
         const bool hidden = shown.framing.hidden.contains(i - 1);
-        const std::string name = fitted(quantities[i].label, units(110.0F));
+        const std::string name = fitted(quantities[i].label, widest);
         const float width = line + space + label_width(name, size) + 2.0F * space;
-        if (right - width < row.x + 0.3F * row.width) break;  // the title needs some room
+        if (right - width < row.x + row.width - room - 0.5F) break;
         right -= width;
         ImGui::SetCursorScreenPos({right, row.y});
         const std::string id = "curve " + std::to_string(plot + 1) + " " + std::to_string(i);
@@ -237,7 +245,8 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
         if (ImGui::IsItemHovered())
             list->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(), packed(text_color(), 0.06F),
                                 units(3.0F));
-        tooltip(hidden ? "show this curve" : "hide this curve");
+        tooltip((name == quantities[i].label ? "" : shown.view.y[i - 1].text + "\n") +
+                (hidden ? "show this curve" : "hide this curve"));
         const float middle = std::floor(row.y + 0.5F * row.height) + 0.5F;
         list->AddLine({right + space, middle}, {right + space + line, middle},
                       packed(color_of(session, plot, i - 1), hidden ? 0.25F : 1.0F), units(2.0F));

@@ -14,6 +14,7 @@
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "simulate/explain.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -55,11 +56,13 @@ std::optional<Inequality> failed(const Certificate& certificate) {
     return std::nullopt;
 }
 
-std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several) {
+std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once) {
     if (reason.cut)
         return "Cut here: what follows is proved to stay within the tolerances of what is drawn. The next event, the "
                "Zeno point, tells by how much.";
-    if (!reason.contact) return "Not cut: more than one contact moves here, all at once by Moreau's law.";
+    if (!reason.contact || all_at_once)
+        return "Not cut: more than one contact moves here, all at once by Moreau's law.";
+    if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
     if (!(reason.normal_acceleration < 0.0))
         return fmt::format("Not cut: the surface falls away here, the gap would accelerate by {}.",
                            number(reason.normal_acceleration));
@@ -127,15 +130,27 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
-    row("gap speed |h\u0307|", number(event.impact_speed, "{:.9g}"));
-    row("energy", number(reason.energy_before), number(reason.energy_after));
+    const SystemDescription& description = session.description();
+    // In the units of the file; of several contacts that of the first that lands.
+    std::size_t first = 0;
+    while (first + 1 < session.model()->contacts() && !event.contacts.contains(first)) ++first;
+    const auto with = [&](const std::string& value, const std::string& of) {
+        const std::string unit = typeset_unit(unit_of_expression(description, of));
+        return unit.empty() ? value : value + " " + unit;
+    };
+    row("gap speed |h\u0307|", with(number(event.impact_speed, "{:.9g}"), output_names(description, "gap'")[first]));
+    row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))), number(reason.energy_before),
+        number(reason.energy_after));
     row("energy lost",
-        number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))));
+        with(number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))),
+             "energy"));
     const bool several = session.model()->contacts() > 1;
-    std::string words = why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several);
+    std::string words =
+        why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr);
     if (several) {
         for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
-            row("impulse on " + session.description().constraints[contact].name, number(impulse));
+            row("impulse on " + description.constraints[contact].name,
+                with(number(impulse), output_names(description, "lambda")[contact] + "*t"));
         words = what_is_held(session, event, reason) + words;
     }
     paragraph(words, remaining().width, text_color());

@@ -49,8 +49,8 @@ std::string explanation(const Trajectory& trajectory, const Event& event) {
     if (is_plastic_landing(event))
         return fmt::format("landing{} at t = {:.10g} s\n{}", of, event.t, typeset_sentence(*event.certificate));
     const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
-    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}", event_name(event), of, event.t, event.impacts,
-                       proof);
+    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}\n{}", event_name(event), of, event.t, event.impacts,
+                       proof, precision_text());
 }
 
 // "Zeno 2", "landing", "release knee", "wall opens knee".
@@ -79,7 +79,7 @@ std::vector<Result> results_of(const Trajectory& trajectory, float width) {
             zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
             continue;
         }
-        Result result{turn, name_of(trajectory, event, zeno), "  " + time_text(event)};
+        Result result{turn, name_of(trajectory, event, zeno), "  " + time_text(trajectory, turn)};
         const auto length = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
         result.text = fitted(result.text, std::max(width - units(sign_width) - length(result.rest), units(40.0F)));
         result.width = units(sign_width) + length(result.text + result.rest);
@@ -146,12 +146,18 @@ void show_result(const Session& session, const Result& result, ImVec2 at, const 
 void show_none(const Session& session, ImVec2 at, float width) {
     const Trajectory& trajectory = session.trajectory();
     const auto impacts = trajectory.statistics.impacts;
-    const std::string text = fmt::format("{}, no Zeno point until t = {:.6g} s",
-                                         impacts == 0   ? std::string("no impact")
-                                         : impacts == 1 ? std::string("one impact")
-                                                        : fmt::format("{} impacts", impacts),
-                                         trajectory.end_time);
-    ImGui::GetWindowDrawList()->AddText({at.x, at.y + units(1.0F)}, packed(faint_color()), fitted(text, width).c_str());
+    const bool is_early = trajectory.outcome.kind != Outcome::Kind::end_time;
+    std::string text = fmt::format("{}, no Zeno point until t = {:.6g} s",
+                                   impacts == 0   ? std::string("no impact")
+                                   : impacts == 1 ? std::string("one impact")
+                                                  : fmt::format("{} impacts", impacts),
+                                   trajectory.end_time);
+    if (is_early)
+        text = fmt::format("{} at t = {:.6g} s: {}", to_text(trajectory.outcome.kind), trajectory.end_time,
+                           trajectory.outcome.message);
+    ImGui::SetCursorScreenPos({at.x, at.y + units(1.0F)});
+    ImGui::TextDisabled("%s", fitted(text, width).c_str());
+    if (is_early) tooltip(trajectory.outcome.message);
 }
 
 // "3 before, 12 more".
@@ -170,16 +176,24 @@ std::string rounded_up(double bound) {
 
 }  // namespace
 
-std::string time_text(const Event& event) {
+std::string precision_text() {
+    return "\u00b1: proved of the Zeno time from the computed state at the cut.\n"
+           "The integration and the cuts before it are not covered: where their\n"
+           "rough measure is larger, that stands here, and nothing is proved of it.";
+}
+
+std::string time_text(const Trajectory& trajectory, std::size_t index) {
+    const Event& event = trajectory.events[index];
     const bool is_proved = event.certificate && event.certificate->certified;
     const double low = is_proved ? event.certificate->zeno_low : 0.0,
                  high = is_proved ? event.certificate->zeno_high : 0.0;
     const double half = 0.5 * (high - low);
     if (!is_proved || !(half > 0.0)) return number(event.t, "{:.6f}");
-    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(half))), 0, 12);
+    const double integration = integration_error_of_time(trajectory, index);  // digits that it may change mean nothing
+    const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(half, integration)))), 0, 12);
     const std::string text = fmt::format("{:.{}f}", event.t, digits);
     const double value = std::strtod(text.c_str(), nullptr);
-    return text + " \u00b1 " + rounded_up(std::max(high - value, value - low));
+    return text + " \u00b1 " + rounded_up(std::max({high - value, value - low, integration}));
 }
 
 float results_height(float width) {

@@ -108,7 +108,7 @@ void show_status(const Session& session, const PanelState& state) {
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
     const std::string impacts = s.impacts == 1 ? std::string("1 impact") : fmt::format("{} impacts", s.impacts);
     const std::string text = fmt::format(
-        "{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy error {}   \u00b7   {}", seconds, impacts,
+        "{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}", seconds, impacts,
         s.steps, number(without_noise(session.least_gap(), session.scale().q.maxCoeff()), "{:.2g}"),
         s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
         to_text(trajectory.run.options.method));

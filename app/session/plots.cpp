@@ -39,20 +39,34 @@ std::vector<ViewDescription> more_views(const Model& model) {
     for (const auto& c : coordinates) add("t", c.name);
     for (const auto& c : coordinates) add("t", c.name + "'");
     for (const auto& c : coordinates) add(c.name, c.name + "'");
-    for (const char* y : {"gap'", "gap''"}) add("t", y);
+    const auto of_gaps = [&](std::string_view quantity) { return output_names(model.description(), quantity); };
+    for (const char* rate : {"gap'", "gap''"})
+        for (const std::string& y : of_gaps(rate)) add("t", y);
     for (std::size_t i = 0; i < coordinates.size(); ++i)
         for (std::size_t j = i + 1; j < coordinates.size(); ++j) add(coordinates[i].name, coordinates[j].name);
-    for (const char* y : {"gap'", "lambda", "energy"}) add("gap", y);
-    for (const char* y : {"gap", "lambda", "energy"}) add(coordinates[0].name, y);
-    for (const char* y : {"gap", "energy"}) add(coordinates[0].name + "'", y);
+    const std::vector<std::string> gaps = of_gaps("gap"), rates = of_gaps("gap'"), forces = of_gaps("lambda");
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+        for (const std::string& y : {rates[i], forces[i], std::string("energy")}) add(gaps[i], y);
+    for (std::size_t i = 0; i < gaps.size(); ++i)
+        for (const std::string& y : {gaps[i], forces[i]}) add(coordinates[0].name, y);
+    add(coordinates[0].name, "energy");
+    for (const std::string& y : gaps) add(coordinates[0].name + "'", y);
+    add(coordinates[0].name + "'", "energy");
     return views;
 }
 
 }  // namespace
 
 Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), choices_(model_->description().views) {
-    for (const auto& [name, y] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}, {"energy", "energy"}})
-        offer(view_of(name, "t", {y}));
+    // Of each contact: "gap", and where there are several "gap knee".
+    const bool is_one = model_->contacts() == 1;
+    for (const auto& [name, quantity] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}}) {
+        const std::vector<std::string> expressions = output_names(model_->description(), quantity);
+        for (std::size_t i = 0; i < expressions.size(); ++i)
+            offer(view_of(is_one ? name : fmt::format("{} {}", name, model_->description().constraints[i].name), "t",
+                          {expressions[i]}));
+    }
+    offer(view_of("energy", "t", {"energy"}));
     // As many as the largest grid has places, each another one.
     for (const ViewDescription& view : more_views(*model_))
         if (choices_.size() < most_columns * most_rows) offer(view);

@@ -24,6 +24,24 @@ TEST(Plots, ShowTheViewsOfTheFileFirst) {
     EXPECT_EQ(session.plots().size(), 4U);
 }
 
+// "gap" is of one constraint: with several, what fills the places that the file leaves empty is of each, and everything that is
+// offered can be shown.
+TEST(Plots, FillEveryPlaceWithSeveralContacts) {
+    Session session = test::session("../../tests/reference/gaps/pendulum_two_stops");
+    std::string text = session.document().text;
+    const std::size_t first = text.find("[[view]]");
+    text.erase(std::min(first, text.size()));
+    for (const char* y : {"t", "2*t", "3*t"})
+        text += fmt::format("[[view]]\nname = \"{0}\"\nx = \"t\"\ny = [\"{0}\"]\n", y);
+    session.apply(command::Text{text});
+    ASSERT_TRUE(session.document().problems.empty());
+    ASSERT_EQ(session.plotted().list().size(), 4U);
+    EXPECT_EQ(session.plotted().list()[3].view.name, "gap knee");
+    apply(session, {"grid 4 4"});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.plotted().list().size(), 16U);
+}
+
 TEST(Plots, AnyExpressionAgainstAnyOther) {
     Session session = test::session("ball_on_sine");
     apply(session, {"plot 2 x y sin(x) gap'"});
@@ -121,6 +139,16 @@ struct PlotHand : test::Hands {
     const Axis& x(std::size_t plot = 1) const { return session.plots()[plot].x; }
     const Axis& y(std::size_t plot = 1) const { return session.plots()[plot].y; }
 };
+
+// In a small window names are shortened rather than left out.
+TEST(PlotHand, EveryCurveOfTwoIsNamedInASmallWindow) {
+    test::Hands hands("ball_on_sine", test::surface(1000, 700));
+    hands.session.apply(parse_command("plot 1 t energy*1.000001+y*0.0001 y*1.000001+x*0.0001"));
+    ASSERT_EQ(hands.session.error(), "");
+    hands.rest(3);
+    EXPECT_TRUE(hands.state.places.contains("curve 1 1"));
+    EXPECT_TRUE(hands.state.places.contains("curve 1 2"));
+}
 
 TEST(PlotHand, TheWheelZoomsAtThePointer) {
     PlotHand hand;

@@ -66,8 +66,8 @@ const Refusal refusals[] = {
     {"end_not_positive", "simulate ball_on_sine --end -1", "--end: the end time -1 is not after the start time 0\n"},
     {"not_a_number", "simulate ball_on_sine --eps nan", "--eps nan: 'nan' is not a finite number\n"},
     {"number_with_a_tail", "simulate ball_on_sine --tolerance 1e-8x",
-     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: a unit stands in the key unit, "
-     "and a product is written with '*'\n"},
+     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: it is written without its unit "
+     "(a file has the key unit for that), and a product with '*'\n"},
     {"no_impacts", "simulate ball_on_sine --max-impacts 0", "--max-impacts: at least one impact must be allowed\n"},
     {"no_steps", "simulate ball_on_sine --max-steps 0", "--max-steps: at least one step must be allowed\n"},
     {"half_a_step", "simulate ball_on_sine --max-steps 1.5", "--max-steps 1.5: this is not a whole number\n"},
