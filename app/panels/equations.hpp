@@ -32,7 +32,8 @@ struct SetSheet {
     float width = 0.0F, height = 0.0F;
 };
 
-// In columns side by side where there is room for them, and as few as make it as high as asked for. `size`: of the letters.
+// In columns side by side where there is room for them, and as few as make it as high as asked for. `size`: of the
+// letters.
 SetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height);
 
 class EquationsView {

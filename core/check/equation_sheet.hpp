@@ -1,5 +1,5 @@
-// The equations that `achilles check` says, for whoever sets them himself: the same formulas, in LaTeX, each under words
-// that name it, and the Zeno conditions as programs.
+// The equations that `achilles check` says, for whoever sets them himself: the same formulas, in LaTeX, each under
+// words that name it, and the Zeno conditions as programs.
 #pragma once
 
 #include <stop_token>
@@ -11,8 +11,8 @@
 
 namespace achilles {
 
-// A Zeno condition that was found: bouncing of the contact, while others are held, ends at a Zeno point where the value is
-// negative.
+// A Zeno condition that was found: bouncing of the contact, while others are held, ends at a Zeno point where the value
+// is negative.
 struct SheetCondition {
     std::size_t contact = 0;
     ContactSet held;
@@ -31,9 +31,9 @@ struct EquationSheet {
     std::vector<Symbol> symbols;
 };
 
-// M, bias and forces; of each contact h, dh, hdot, hddot, lambda and the conditions. Simplifies: a hundredth of a second
-// for two links, seconds for a robot with several contacts. Signs are taken over the parameters' ranges and the run's values. Told to stop,
-// it returns soon, whatever it has.
+// M, bias and forces; of each contact h, dh, hdot, hddot, lambda and the conditions. Simplifies: a hundredth of a
+// second for two links, seconds for a robot with several contacts. Signs are taken over the parameters' ranges and the
+// run's values. Told to stop, it returns soon, whatever it has.
 EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop = {});
 
 }  // namespace achilles

@@ -1,6 +1,8 @@
-// The derived equations of a system on a page: what reports and sheets of equations have in common. For the files of this
-// library only: see algebra/multinomial.hpp.
+// The derived equations of a system on a page: what reports and sheets of equations have in common. For the files of
+// this library only: see algebra/multinomial.hpp.
 #pragma once
+
+#include <fmt/format.h>
 
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
-// Formulas as boxes: read from the LaTeX that the library itself writes (expression/notation.hpp), measured and set with
-// fractions, roots, powers and indices, in lines that fit a width. Numbers only: paint/formula.hpp draws them.
+// Formulas as boxes: read from the LaTeX that the library itself writes (expression/notation.hpp), measured and set
+// with fractions, roots, powers and indices, in lines that fit a width. Numbers only: paint/formula.hpp draws them.
 //
 // Letters are labels (label.hpp), so a name looks the same here as at an axis.
 #pragma once
@@ -86,8 +86,8 @@ struct FormulaBox {
 };
 
 FormulaBox set(const Formula& formula, float size, const FormulaFont& font);
-// In lines no wider than `width` wherever they can be broken: at + and - outside of brackets, then inside, at last between
-// factors. Those after the first are to stand `indent` further right, and have so much less room.
+// In lines no wider than `width` wherever they can be broken: at + and - outside of brackets, then inside, at last
+// between factors. Those after the first are to stand `indent` further right, and have so much less room.
 std::vector<FormulaBox> set_in_lines(const Formula& formula, float size, const FormulaFont& font, float width,
                                      float indent);
 // Rows and columns in brackets.
