@@ -158,7 +158,7 @@ std::optional<int> event_at(const Session& session, const Axes& axes, const Pane
     NearestEvent nearest(ImGui::GetIO().MousePos, units(marker_reach));
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (events.size() > most && events[i].kind == Event::Kind::impact) continue;
-        State state = sample_at(events[i]).state;
+        State state = sample_at(session.trajectory(), events[i]).state;
         nearest.ask(static_cast<int>(i) + 1, events[i].kind, map.x(axes.first.of(state) * quantities[0].factor),
                     map.y(axes.second.of(state) * quantities[1].factor));
     }

@@ -214,12 +214,14 @@ std::string version() { return ACHILLES_VERSION; }
 std::string to_json(const Trajectory& trajectory, const Instants& instants) {
     const Ground ground;
     Json phases = Json::array(), events = Json::array();
-    for (const Phase& phase : trajectory.phases)
+    for (const Phase& phase : trajectory.phases) {
         phases.push_back({{"kind", to_text(phase.kind)},
                           {"held", names(trajectory, phase.held)},
                           {"start", number(phase.start)},
                           {"end", number(phase.end)},
                           {"impacts", phase.impacts}});
+        if (phase.not_unique()) phases.back()["not_unique"] = true;
+    }
     Impulses impulses(trajectory);
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) events.push_back(event_of(trajectory, i, impulses));
     Json warnings = Json::array();

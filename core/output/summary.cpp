@@ -73,8 +73,9 @@ class Course {
     std::string names(ContactSet contacts) const { return joined_names(model_, contacts); }
 
     std::string phase_line(const Phase& phase) const {
-        return fmt::format("{} phase{}, t = {:.10g} to {:.10g} s\n", to_text(phase.kind),
-                           holding(trajectory_, phase.held), phase.start, phase.end);
+        return fmt::format("{} phase{}, t = {:.10g} to {:.10g} s{}\n", to_text(phase.kind),
+                           holding(trajectory_, phase.held), phase.start, phase.end,
+                           phase.not_unique() ? ", forces not unique" : "");
     }
 
     std::string chatter_line(const Chatter& chatter) const {

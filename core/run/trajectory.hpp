@@ -28,7 +28,8 @@ struct Piece {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    ContactSet held;                // on whose surfaces it lies: a sample is projected to h = 0, hdot = 0
+    ContactSet held;      // those of its phase, or of the phase to come: the way to a Zeno point is in contact
+    ContactSet carriers;  // of them, whose motion it is: a sample is projected to their h = 0, hdot = 0
     double work = 0.0, loss = 0.0;  // of the run, until it starts
 };
 
@@ -39,6 +40,10 @@ struct Phase {
     enum class Kind { hybrid, constrained };
     Kind kind = Kind::hybrid;  // exactly where none is held
     ContactSet held;
+    // Of them, whose motion it is: all, or where gradients depend on one another some, which may change inside the phase (the
+    // last ones). The forces could be shared otherwise, then (theory-gaps.md 2.5).
+    ContactSet carriers;
+    bool not_unique() const { return carriers != held; }
     double start = 0.0, end = 0.0;
     int impacts = 0;
     std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time

@@ -204,7 +204,13 @@ void Execution::pass_zeno_point() {
 // What is held has changed.
 void Execution::enter_phase() {
     record_.close(next_.state.t);
-    record_.open(next_.held, next_.state.t);
+    record_.open(next_.resting(), next_.held, next_.state.t);
+}
+
+// If it has. Else others of it may carry now.
+void Execution::enter_or_stay() {
+    if (next_.resting() != record_.held()) return enter_phase();
+    record_.carry_on(next_.held);
 }
 
 // ---- release ----
@@ -218,11 +224,11 @@ void Execution::release(std::size_t which) {
     const ContactSet held = next_.held;
     const bool leaves = certainly_positive(surfaces_->of(which, held.without(which)).normal(next_.state).jerk);
     if (surfaces_->count() > 1 && (!leaves || !next_.touching.empty() || not_unique_)) {
-        const ContactSet closed = held.with(next_.touching);
-        decide(closed);
-        const ContactSet gone = closed.without(next_.held).without(next_.touching);
-        if (!outcome_ && next_.held != held) leave(gone.empty() ? held.without(next_.held) : gone);
-        return;
+        const ContactSet resting = next_.resting();
+        decide(held.with(next_.touching));
+        if (outcome_) return;
+        const ContactSet gone = resting.without(next_.resting());
+        return gone.empty() ? carry_on() : leave(gone);
     }
     if (!leaves) {
         stop(Outcome::Kind::undecided,
@@ -239,7 +245,7 @@ void Execution::leave(ContactSet contacts) {
     Event event;
     event.kind = Event::Kind::release;
     event.contacts = contacts;
-    event.held = next_.held;
+    event.held = next_.resting();
     if (not_unique_) {
         auto joint = std::make_shared<Joint>();
         joint->not_unique = true;

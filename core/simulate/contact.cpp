@@ -42,7 +42,11 @@ bool EventStepper::end_on_surface() {
 
 // Whether the force vanishes cannot be told from theta on: the step ends there.
 StepResult::End EventStepper::doubt_force(double theta) {
-    if (end_step_at(theta) && !end_on_surface()) return End::off_surface;
+    if (!end_step_at(theta)) return End::doubt;
+    if (!end_on_surface()) return End::off_surface;
+    const std::size_t contact = contact_;
+    settle_gaps({}, result_.gap);
+    contact_ = contact;
     return End::doubt;
 }
 
@@ -70,7 +74,8 @@ Descent EventStepper::force_descent() {
 // The same as locate_impact, for hddot = 0 along the constrained motion.
 std::optional<StepResult::End> EventStepper::locate_release(double theta) {
     ContactKinematics& leaving = surfaces_->of(contact_, held().without(contact_));
-    double duration = theta * flow_->duration();
+    const double longest = flow_->duration();  // where the force only touches zero Newton's method would run away
+    double duration = theta * longest;
     for (int round = 0; round < 8; ++round) {
         known_ = {};
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
@@ -86,7 +91,7 @@ std::optional<StepResult::End> EventStepper::locate_release(double theta) {
             break;
         }
         if (!std::isfinite(correction)) break;  // a touch: the release decides
-        duration = std::max(duration + correction, 0.5 * duration);
+        duration = std::clamp(duration + correction, 0.5 * duration, longest);
     }
     const std::size_t contact = contact_;
     double least = surfaces_->of(contact).at(flow_->end()).h;

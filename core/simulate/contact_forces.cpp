@@ -1,18 +1,28 @@
 #include "simulate/contact_forces.hpp"
 
+#include <Eigen/QR>
+
+#include "contacts/complementarity.hpp"
+
 namespace achilles {
 
 ContactForces::ContactForces(const Model& model, std::span<const double> parameters)
     : model_(&model), parameters_(parameters.begin(), parameters.end()), surfaces_(model.contacts()) {}
 
-void ContactForces::set(const State& state, ContactSet held) {
+void ContactForces::set(const State& state, ContactSet held, ContactSet carriers) {
     state_ = state;
     held_ = held;
+    carriers_ = carriers;
+    shared_.clear();
     motion_ = nullptr;
 }
 
 double ContactForces::force(std::size_t contact) {
     if (!held_.contains(contact)) return 0.0;
+    if (carriers_ != held_) {
+        if (shared_.empty()) share();
+        return shared_[contact];
+    }
     const ContactSet others = held_.without(contact);
     const std::pair key(others, contact);
     auto known = forces_.find(key);
@@ -23,10 +33,32 @@ double ContactForces::force(std::size_t contact) {
     return known->second.output(0);
 }
 
+// W lambda = -hddot over all that is held: of all lambda >= 0 those of least norm. hddot is first freed of what no force could
+// answer, the rounding by which dependent gaps do not move together; where nothing presses so, lambda = W^+ (-hddot).
+void ContactForces::share() {
+    if (!all_) {
+        Run run;
+        run.parameters = parameters_;
+        all_.emplace(*model_, run);
+    }
+    const Closed closed = all_->at(state_, held_);
+    ContactVector<double> hddot(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        hddot[static_cast<Eigen::Index>(i)] = all_->of(closed.which[i]).normal_acceleration(state_);
+    const Eigen::MatrixXd W = closed.W;
+    const Eigen::VectorXd least = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(-hddot);
+    const auto pressing = solve_complementarity(closed.W, -closed.W * least);
+    shared_.assign(surfaces_.size(), 0.0);
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        shared_[closed.which[i]] = pressing ? pressing->p[k] : least[k];
+    }
+}
+
 double ContactForces::acceleration(std::size_t contact) {
     if (held_.contains(contact)) return 0.0;
     if (motion_ == nullptr) {
-        motion_ = &model_->lazily(motions_, held_, parameters_);
+        motion_ = &model_->lazily(motions_, carriers_, parameters_);
         set_state(*motion_, state_);
         motion_->run();
     }

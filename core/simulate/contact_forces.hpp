@@ -9,6 +9,7 @@
 
 #include "model/model.hpp"
 #include "simulate/sampler.hpp"
+#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -17,11 +18,13 @@ class ContactForces {
  public:
     ContactForces(const Model& model, std::span<const double> parameters);
 
-    // What is asked next is asked of this state, in the motion that holds these.
-    void set(const State& state, ContactSet held);
-    void set(const Sample& sample) { set(sample.state, sample.held); }
+    // What is asked next is asked of this state, where these are held, in the motion of the carriers among them.
+    void set(const State& state, ContactSet held, ContactSet carriers);
+    void set(const State& state, ContactSet held) { set(state, held, held); }
+    void set(const Sample& sample) { set(sample.state, sample.held, sample.carriers); }
 
-    // lambda_i, that which holds contact i while the others of them are held; 0 where it is not held.
+    // lambda_i, that which holds contact i while the others of them are held; 0 where it is not held. Where not all of them are
+    // carriers it is one choice of several: the forces of least norm that press (solve_complementarity).
     double force(std::size_t contact);
     // hddot_i of the motion; 0 where contact i is held.
     double acceleration(std::size_t contact);
@@ -33,15 +36,18 @@ class ContactForces {
 
  private:
     const ContactTerms<Evaluator<double>>& surface(std::size_t contact);
+    void share();
 
     const Model* model_;
     std::vector<double> parameters_;
     State state_;
-    ContactSet held_;
+    ContactSet held_, carriers_;
+    std::vector<double> shared_;  // of all contacts, where the forces are not unique; empty until they are asked for
     Model::MotionEvaluators motions_;
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until it is asked for
     std::map<std::pair<ContactSet, std::size_t>, Evaluator<double>> forces_;
     std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
+    std::optional<Surfaces> all_;  // where forces are shared
 };
 
 }  // namespace achilles

@@ -58,7 +58,9 @@ class EventStepper {
     bool knows_its_start() const;
     bool is_last() const;
     ContactSet held() const { return request_->held; }
-    bool is_watched(std::size_t contact) const { return !request_->touching.contains(contact); }
+    bool is_watched(std::size_t contact) const {
+        return !request_->touching.with(request_->unwatched).contains(contact);
+    }
     const EventStart& start_of(std::size_t contact) const { return request_->starts[contact]; }
 
     const Model* model_;

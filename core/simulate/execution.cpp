@@ -46,7 +46,7 @@ bool Execution::restart(const Run& run) {
     for (OfContact& known : all_conditions_) known.conditions->forget();
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
-    stalled_ = 0;
+    stalled_ = changes_of_carriers_ = 0;
     evaluations_ = 0;
     completion_.reset();
     outcome_.reset();
@@ -58,7 +58,7 @@ bool Execution::restart(const Run& run) {
 
 // In flight, in contact, or at an impact, which comes first.
 void Execution::begin() {
-    next_.touching = {};
+    forget_held();
     next_.state = run_.start();
     next_.starts.assign(surfaces_->count(), {});
     begin_stretch({}, run_.options.end_time);
@@ -79,7 +79,7 @@ void Execution::begin() {
         }
     }
     if (landing.empty()) start_at_rest(resting);
-    record_.open(next_.held, next_.state.t);
+    record_.open(next_.resting(), next_.held, next_.state.t);
     if (landing.empty() || outcome_) return;
     if (surfaces_->count() == 1) return land(0, last);
     next_.touching = resting;
@@ -105,6 +105,8 @@ void Execution::start_at_rest(ContactSet resting) {
 const StepRequest* Execution::next() {
     if (outcome_ || (watch_ != nullptr && is_cancelled())) return nullptr;
     if (!is_time_left() && completing() && completion_->t < run_.options.end_time) pass_zeno_point();
+    if (!next_.unwatched.empty() && !is_time_left() && next_.until < run_.options.end_time) end_sharing();
+    if (outcome_) return nullptr;
     if (!is_time_left()) {
         stop(Outcome::Kind::end_time, "reached the end time");
     } else if (record_.steps() >= run_.options.max_steps) {
@@ -130,6 +132,7 @@ const StepRequest* Execution::next() {
     next_.most = run_.options.max_steps - record_.steps();
     const EventStart& start = next_.starts.front();  // of the only contact, where it is asked for
     next_.plain = stalled_ == 0 && !start.asked_again && (in_contact || start.multiplicity <= 1);
+    if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
 }
@@ -167,7 +170,8 @@ double Execution::state_error() const {
 void Execution::accept(const StepResult& result) {
     using End = StepResult::End;
     evaluations_ += result.evaluations;
-    if (result.end == End::doubt && may_ask_exactly()) return ask_exactly();
+    const bool shared = result.end == End::doubt && carry_on_without(result.which, *result.state);
+    if (result.end == End::doubt && !shared && may_ask_exactly()) return ask_exactly();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
     switch (result.end) {
@@ -179,7 +183,7 @@ void Execution::accept(const StepResult& result) {
         case End::force_vanishes:
             return release(result.which);
         case End::doubt:
-            return stop(Outcome::Kind::undecided, doubt(result));
+            return shared ? carry_on() : stop(Outcome::Kind::undecided, doubt(result));
         case End::off_surface:
             return fail_projection();
         case End::no_step:
@@ -190,7 +194,7 @@ void Execution::accept(const StepResult& result) {
 // To the end of the steps that were made.
 void Execution::advance(const StepResult& result) {
     if (result.flow != nullptr) {
-        record_.step(*result.flow, result.gap);
+        record_.step(*result.flow, result.gap, next_.resting());
     } else {
         record_.steps(result.steps, result.gap);
     }

@@ -14,6 +14,7 @@
 
 #include "certify/pair.hpp"
 #include "certify/truncation.hpp"
+#include "contacts/complementarity.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/simulate.hpp"
 #include "simulate/step.hpp"
@@ -119,6 +120,7 @@ class Execution {
     void release(std::size_t which);
     void leave(ContactSet contacts);
     void enter_phase();
+    void enter_or_stay();
     // Where several contacts are closed (several.cpp).
     ContactSet landing_with(std::size_t which, const Contact& contact);
     bool stays_held(std::size_t which, const Contact& contact);
@@ -130,9 +132,7 @@ class Execution {
                        const Vector& v_after, bool below_rounding);
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed);
-    bool hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
-    bool is_stuck(const Closed& closed, ContactSet active);
-    ContactSet carriers(const Closed& closed, const ContactVector<double>& hddot, ContactSet active);
+    ContactVector<double> accelerations(const Closed& closed);
     bool judge(ContactSet closed, ContactSet active);
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
     bool is_chatter() const;
@@ -142,6 +142,27 @@ class Execution {
     bool is_at_rest(ContactSet held);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
+    // Where gradients of closed contacts depend on one another (carriers.cpp).
+    ContactVector<double> rounding_of(const Closed& closed);
+    struct Carriers {
+        ContactSet places, opening;  // in what is closed; others that leave at once
+        double least = 0.0;          // of their forces, as a part of the largest,
+        double most = 0.0;           // this
+    };
+    std::vector<Carriers> carriers_of(const Closed& closed, const ContactVector<double>& hddot);
+    bool hold_dependent(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces,
+                        ContactSet doubted = {});
+    bool share(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces);
+    void end_sharing();
+    double end_of_sharing() const;
+    bool carry(const Closed& closed, const Carriers& carriers);
+    void hold(ContactSet held, ContactSet touching);
+    void note_carried(const Closed& closed, ContactSet pressed);
+    bool is_stuck(const Closed& closed, ContactSet pressed);
+    ContactSet enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed);
+    bool carry_on_without(std::size_t which, const State& state);
+    void forget_held() { next_.held = next_.touching = next_.carried = next_.unwatched = {}; }
+    void carry_on();
 
     StepRequest next_;        // where the motion stands, and how it goes on
     double last_step_ = 0.0;  // s
@@ -172,9 +193,11 @@ class Execution {
     TruncationConditions* conditions_ = nullptr;  // of them, those of which_; null: not met yet
     std::size_t which_ = 0;                       // the contact whose event this is
     std::vector<double> restitutions_;
-    bool not_unique_ = false;  // the forces that hold what is held could be shared otherwise
-    double cut_error_ = 0.0;   // of the state, by the cuts so far: what is certified at their Zeno times
-    double proving_ = 0.0;     // s, the clock's
+    bool not_unique_ = false;      // the forces that hold what is held could be shared otherwise
+    double carriers_since_ = 0.0;  // s; who carries was last changed then, and so often at that time
+    int changes_of_carriers_ = 0;
+    double cut_error_ = 0.0;  // of the state, by the cuts so far: what is certified at their Zeno times
+    double proving_ = 0.0;    // s, the clock's
 };
 
 }  // namespace achilles

@@ -39,7 +39,8 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     if (impact.contacts.count() != 1 || !impact.opened.empty()) return reason;
     const std::size_t which = first_of(impact.contacts, model);
     reason.contact = which;
-    ContactKinematics surface(model, run, which, reason.held);
+    const ContactSet carriers = carriers_of(trajectory, reason.held, impact.t);
+    ContactKinematics surface(model, run, which, carriers);
     const State before{impact.q, impact.v_before, impact.t};
     const Contact contact = surface.at(before);
     const Collision collision{before, std::abs(contact.hdot),
@@ -47,7 +48,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
     reason.normal_acceleration = surface.normal_acceleration(collision.with(collision.restart));
     if (reason.normal_acceleration < 0.0)
-        reason.attempt = truncation_conditions(model, run, which, reason.held)->prove_any(collision);
+        reason.attempt = truncation_conditions(model, run, which, carriers)->prove_any(collision);
     return reason;
 }
 
@@ -57,7 +58,10 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const State state{release.q, release.v_after, release.t};
     ReleaseReason reason;
     const std::size_t which = reason.contact = first_of(release.contacts, model);
-    ContactKinematics surface(model, trajectory.run, which, held_before(trajectory, event).without(which));
+    const ContactSet held = held_before(trajectory, event);
+    const bool unique = carriers_of(trajectory, held, release.t) == held;
+    ContactKinematics surface(model, trajectory.run, which,
+                              unique ? held.without(which) : carriers_of(trajectory, release.held, release.t));
     const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);

@@ -85,7 +85,7 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     Piece piece;
     piece.start = t_;
     piece.end = end_;
-    piece.held = held_;
+    piece.held = piece.carriers = held_;
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;

@@ -11,7 +11,7 @@ namespace achilles {
 // Contacts with h = 0 and hdot = 0: who of them is held, who leaves, who merely touches (theory-gaps.md 2.2). What was held
 // before counts no more.
 void Execution::decide(ContactSet closed) {
-    next_.held = next_.touching = {};
+    forget_held();
     not_unique_ = false;
     if (closed.empty()) return;
     if (closed.count() > most_contacts)
@@ -19,16 +19,14 @@ void Execution::decide(ContactSet closed) {
                     fmt::format("{} contacts are closed at once, more than the {} that can be decided: {}, at {}",
                                 closed.count(), most_contacts, names_of(closed), where(next_.state)));
     const Closed all = surfaces_->at(next_.state, closed);
-    ContactVector<double> hddot(all.W.rows());
-    for (std::size_t i = 0; i < all.which.size(); ++i)
-        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(all.which[i]).normal_acceleration(next_.state);
+    const ContactVector<double> hddot = accelerations(all);
     const auto forces = solve_complementarity(all.W, hddot);
     if (!forces)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("no forces hold {}, at {}", names_of(closed), where(next_.state)));
     not_unique_ = !forces->unique;
-    const ContactSet active = all.contacts_at(forces->active);
-    const bool decided = forces->unique ? judge(closed, active) : hold_independent(all, hddot, forces->active);
+    const bool decided =
+        forces->unique ? judge(closed, all.contacts_at(forces->active)) : hold_dependent(all, hddot, *forces);
     if (!decided)
         stop(Outcome::Kind::undecided,
              fmt::format("the contact force and its rate are zero to within rounding: contact or release cannot be "
@@ -37,88 +35,12 @@ void Execution::decide(ContactSet closed) {
                          where(next_.state)));
 }
 
-// Contacts whose gradients depend on one another are held by some of them, which carry all: the gaps of the others stay 0
-// with theirs.
-bool Execution::hold_independent(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
-    ContactSet all;
-    for (std::size_t i = 0; i < closed.which.size(); ++i) all = all.with(i);
-    constexpr double pressed = 1e-9;  // a force below that part of the others is in doubt, and carries nothing
-    const std::size_t count = closed.which.size();
-    for (int size = static_cast<int>(count); size > 0; --size)
-        for (std::uint32_t bits = 1; bits < 1u << count; ++bits) {
-            ContactSet some;
-            for (std::size_t i = 0; i < count; ++i)
-                if (bits >> i & 1u) some = some.with(i);
-            if (some.count() != size || !some.without(active).empty()) continue;
-            const auto block = HeldBlock<double>::of(closed.W, some);
-            if (!block) continue;
-            const ContactVector<double> lambda = -block->solve(hddot);
-            const ContactVector<double> y = hddot + closed.W * lambda;
-            bool valid = true;
-            ContactSet carried, others;
-            for (std::size_t i = 0; i < count; ++i) {
-                const auto k = static_cast<Eigen::Index>(i);
-                const double scale = 1e-12 * (std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs()));
-                if (some.contains(i)) valid = valid && lambda[k] > pressed * lambda.cwiseAbs().maxCoeff();
-                if (some.contains(i)) continue;
-                valid = valid && y[k] >= -scale;
-                const bool depends = block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
-                // What neither depends on them nor leaves at once is told by its rates, as what has a force of its own.
-                (depends ? carried : others) = (depends ? carried : others).with(i);
-            }
-            if (!valid) continue;
-            next_.touching = closed.contacts_at(carried);
-            // What is carried is so by all of these.
-            if (judge(closed.contacts_at(some.with(others)), closed.contacts_at(some)) &&
-                closed.contacts_at(some).without(next_.held).empty() &&
-                HeldBlock<double>::of(closed.W, closed.places_of(next_.held)))
-                return true;
-        }
-    // At rest for ever nothing has to be told apart.
-    const ContactSet pressed_ones = closed.contacts_at(active);
-    const bool rests = is_at_rest(pressed_ones);
-    if (!rests && !is_stuck(closed, active)) return false;
-    const ContactSet carrying = rests ? pressed_ones : closed.contacts_at(carriers(closed, hddot, active));
-    if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
-    next_.held = carrying;
-    next_.touching = closed.contacts_at(all).without(carrying);
-    for (std::size_t i = 0; i < next_.starts.size(); ++i)
-        if (carrying.contains(i)) next_.starts[i] = {};
-    return true;
-}
-
-// Whether these, pressed, leave no motion at all: nothing moves, no surface does, and the gradients span everything.
-bool Execution::is_stuck(const Closed& closed, ContactSet active) {
-    if (next_.state.v != Vector::Zero(next_.state.v.size())) return false;
-    ContactSet basis;
-    for (std::size_t i = 0; i < closed.which.size(); ++i) {
-        if (closed.contacts[i].gap_t != 0.0) return false;
-        if (active.contains(i) && HeldBlock<double>::of(closed.W, basis.with(i))) basis = basis.with(i);
-    }
-    return basis.count() == model_->dof();
-}
-
-// Of contacts that hold everything still, some that press by themselves and leave no acceleration; all of them if there are
-// none such.
-ContactSet Execution::carriers(const Closed& closed, const ContactVector<double>& hddot, ContactSet active) {
-    const std::size_t count = closed.which.size();
-    for (std::uint32_t bits = 1; bits < 1u << count; ++bits) {
-        ContactSet some;
-        for (std::size_t i = 0; i < count; ++i)
-            if (bits >> i & 1u) some = some.with(i);
-        const auto block = some.without(active).empty() ? HeldBlock<double>::of(closed.W, some) : std::nullopt;
-        if (!block) continue;
-        const ContactVector<double> lambda = -block->solve(hddot), y = hddot + closed.W * lambda;
-        bool valid = true;
-        for (std::size_t i = 0; i < count; ++i) {
-            const auto k = static_cast<Eigen::Index>(i);
-            const double size = std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs());
-            valid = valid && (some.contains(i) ? lambda[k] > 1e-9 * lambda.cwiseAbs().maxCoeff()
-                                               : std::abs(y[k]) <= 1e-12 * size);
-        }
-        if (valid) return some;
-    }
-    return active;
+// hddot of the free motion, at the state where the run stands.
+ContactVector<double> Execution::accelerations(const Closed& closed) {
+    ContactVector<double> hddot(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i]).normal_acceleration(next_.state);
+    return hddot;
 }
 
 // Those of the doubtful whose force grows from 0, while these are held.

@@ -67,13 +67,19 @@ void Recorder::go_back(const Mark& mark) {
     any_gap_ = mark.any_gap;
 }
 
-void Recorder::open(ContactSet held, double t) {
+void Recorder::open(ContactSet held, ContactSet carriers, double t) {
     Phase phase;
     phase.kind = held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained;
     phase.held = held;
+    phase.carriers = carriers;
     phase.start = phase.end = t;
     phase.first_piece = phase.last_piece = trajectory_.pieces.size();
     trajectory_.phases.push_back(phase);
+}
+
+void Recorder::carry_on(ContactSet carriers) {
+    Phase& phase = trajectory_.phases.back();
+    if (carriers != phase.held) phase.carriers = carriers;
 }
 
 void Recorder::close(double t) {
@@ -96,7 +102,7 @@ void Recorder::steps(long count, double least_gap) {
     any_gap_ = true;
 }
 
-void Recorder::step(const Flow& flow, double gap) {
+void Recorder::step(const Flow& flow, double gap, ContactSet held) {
     steps(1, gap);
     if (keep_ == Keep::end) return;
     Statistics& statistics = trajectory_.statistics;
@@ -106,6 +112,7 @@ void Recorder::step(const Flow& flow, double gap) {
     make_room(trajectory_.coefficients, most_coefficients, memory);
     make_room(trajectory_.pieces, 1, memory);
     Piece& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
+    piece.held = held;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
     if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);

@@ -31,14 +31,18 @@ class Recorder {
     }
     void go_back(const Mark& mark);
 
-    void open(ContactSet held, double t);
+    // A phase begins. Where not all that is held carries, its forces are not unique.
+    void open(ContactSet held, ContactSet carriers, double t);
+    // The phase goes on with other carriers.
+    void carry_on(ContactSet carriers);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
+    ContactSet held() const { return trajectory_.phases.back().held; }
 
     // A smooth stretch begins: the energy at its start is what later ends of steps are compared with.
     void stretch(const State& state);
-    // The flow's last step, as it stands; `gap` is h at its end.
-    void step(const Flow& flow, double gap);
+    // The flow's last step, as it stands, while these rest; `gap` is h at its end.
+    void step(const Flow& flow, double gap, ContactSet held);
     // Steps of which the end alone is kept.
     void steps(long count, double least_gap);
     // An impact at this state before it, and what it does to the energy.

@@ -12,6 +12,13 @@ ContactSet held_before(const Trajectory& trajectory, std::size_t event) {
     return event == 0 ? trajectory.phases.front().held : trajectory.events[event - 1].held;
 }
 
+ContactSet carriers_of(const Trajectory& trajectory, ContactSet held, double t) {
+    if (held.count() < 2) return held;
+    const auto fits = [&](const Phase& one) { return one.start <= t && one.held == held; };
+    const auto phase = std::find_if(trajectory.phases.rbegin(), trajectory.phases.rend(), fits);
+    return phase == trajectory.phases.rend() ? held : phase->carriers;
+}
+
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
 struct Sampler::Projection {
     explicit Projection(const Trajectory& trajectory)
@@ -28,7 +35,7 @@ State Sampler::state(const Piece& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
     if (!piece.held.empty()) {
         State projected = state;
-        if (projection_->surfaces.project(projected, piece.held, piece.held)) return projected;
+        if (projection_->surfaces.project(projected, piece.carriers, piece.carriers)) return projected;
     }
     return state;
 }
@@ -50,6 +57,7 @@ Sample Sampler::at(double t) {
     sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
         sample.held = trajectory_.end_held;
+        sample.carriers = trajectory_.phases.back().carriers;
         sample.contact = !sample.held.empty();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
@@ -58,6 +66,7 @@ Sample Sampler::at(double t) {
     }
     sample.contact = !std::prev(piece)->held.empty();
     sample.held = std::prev(piece)->held;
+    sample.carriers = std::prev(piece)->carriers;
     sample.state = state(*std::prev(piece), t);
     sample.work = work(*std::prev(piece), t);
     sample.loss = std::prev(piece)->loss;
@@ -66,6 +75,7 @@ Sample Sampler::at(double t) {
         const auto& events = trajectory_.events;
         if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
             sample.held = events.back().held;
+            sample.carriers = trajectory_.phases.back().carriers;
             sample.contact = !sample.held.empty();
         }
         sample.state = trajectory_.end;
@@ -90,11 +100,12 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         while (phase + 1 < trajectory_.phases.size() && trajectory_.phases[phase + 1].start <= start) ++phase;
         return trajectory_.phases[phase].kind;
     };
-    const auto add = [&](double t, Phase::Kind in, ContactSet held, const State& state, double work, double loss) {
-        samples.push_back({t, static_cast<int>(j), in, !held.empty(), held, state, work, loss});
+    const auto add = [&](double t, Phase::Kind in, ContactSet held, ContactSet carriers, const State& state,
+                         double work, double loss) {
+        samples.push_back({t, static_cast<int>(j), in, !held.empty(), held, state, work, loss, carriers});
     };
     const auto add_from = [&](const Piece& piece, double t, Phase::Kind in) {
-        add(t, in, piece.held, state(piece, t), work(piece, t), piece.loss);
+        add(t, in, piece.held, piece.carriers, state(piece, t), work(piece, t), piece.loss);
     };
     // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
     const auto pass_events = [&](double until) {
@@ -107,8 +118,8 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
             if (event.kind == Event::Kind::impact && !shown && !is_left_out) {
                 const ContactSet before = held_before(trajectory_, j);
                 add(event.t, before.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained, before,
-                    {event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
-                    j == 0 ? 0.0 : events[j - 1].loss);
+                    carriers_of(trajectory_, before, event.t), {event.q, event.v_before, event.t},
+                    j == 0 ? 0.0 : events[j - 1].work, j == 0 ? 0.0 : events[j - 1].loss);
             }
             ++j;
         }
@@ -129,8 +140,8 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
         add_from(piece, piece.end, in);
     }
     if (pass_events(trajectory_.end_time) || samples.empty())
-        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_held, trajectory_.end, trajectory_.work,
-            trajectory_.loss);
+        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_held, trajectory_.phases.back().carriers,
+            trajectory_.end, trajectory_.work, trajectory_.loss);
     return samples;
 }
 

@@ -17,10 +17,13 @@ struct Sample {
     ContactSet held;       // these are
     State state;
     double work = 0.0, loss = 0.0;  // of the run until then
+    ContactSet carriers{};          // of those held, whose motion it is (Phase)
 };
 
 // What is held just before an event: what the last one left, or the start.
 ContactSet held_before(const Trajectory& trajectory, std::size_t event);
+// Of what is held at a time, the carriers (Phase).
+ContactSet carriers_of(const Trajectory& trajectory, ContactSet held, double t);
 
 // The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
 class Sampler {

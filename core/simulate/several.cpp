@@ -111,7 +111,8 @@ double Execution::plastic_work(const State& before, ContactSet contacts) {
 
 // An impact of several at once, by Newton's law in Moreau's form.
 void Execution::collide(ContactSet landing) {
-    const ContactSet held = next_.held, still = held.with(next_.touching), all = still.with(landing);
+    const ContactSet held = next_.held, resting = next_.resting(), still = held.with(next_.touching),
+                     all = still.with(landing);
     if (all.count() > most_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, more than the {} that can be decided: {}, at {}",
@@ -138,7 +139,7 @@ void Execution::collide(ContactSet landing) {
     joint->not_unique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
-    const ContactSet open = closed.places_of(all.without(held));
+    const ContactSet open = closed.places_of(all.without(resting));
     if (open.count() > 1) {
         const auto order = order_dependence(enclosure(closed.W, radius_of(closed.W)), e, places, open);
         joint->order_matters = order.matters();
@@ -177,19 +178,19 @@ void Execution::collide(ContactSet landing) {
     record_.impact(next_.state, v_after, speed, exchange, landing, std::move(joint));
     next_.state.v = v_after;
     // Who leaves at once, and who may be held.
-    ContactSet resting;
-    next_.touching = {};
+    ContactSet left;
+    next_.touching = next_.carried = next_.unwatched = {};
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t contact = closed.which[i];
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         next_.starts[contact] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
-        if (!(hdot > 0.0)) resting = resting.with(contact);
+        if (!(hdot > 0.0)) left = left.with(contact);
     }
     next_.held = {};
     change_rates(v_before, all);
-    decide(resting);
-    record_.after_impact(held.without(next_.held), next_.held);
-    if (next_.held != held) enter_phase();
+    decide(left);
+    record_.after_impact(resting.without(next_.resting()), next_.resting());
+    enter_or_stay();
     if (!outcome_) begin_stretch(next_.held, run_.options.end_time);
 }
 
@@ -258,7 +259,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     event.contacts = ContactSet::of(first).with(second);
     event.held = all;
     next_.state = restart;
-    next_.touching = {};
+    next_.touching = next_.carried = next_.unwatched = {};
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (all.contains(i)) next_.starts[i] = {};
     change_rates(before.v, all);

@@ -21,8 +21,12 @@ struct EventStart {
 // A step of smooth motion, from the state's t to `until` at the latest, or to the first event in (t, until]: an open gap
 // closes, the force of a held contact vanishes. A zero at t itself is none, as often as multiplicity says.
 struct StepRequest {
-    ContactSet held;
+    ContactSet held;      // of independent gradients
     ContactSet touching;  // open as far as the motion goes, but their gap stays 0: no event of theirs is looked for
+    // Of those touching, what rests with the held ones since its gradient depends on theirs: it may bear a part of the
+    // forces that the held ones are reckoned to bear (theory-gaps.md 2.5). The others that touch bear none.
+    ContactSet carried;
+    ContactSet unwatched;  // of the held ones: no event of theirs is looked for, since others share what they bear
     State state;
     std::vector<EventStart> starts;  // at that state, of each contact
     double until = 0.0;              // s, > state.t
@@ -31,6 +35,8 @@ struct StepRequest {
     bool begins = true;    // a stretch of motion begins here; else the step goes on from where the last one ended
     bool exactly = false;  // at exact_tolerance instead of the run's
     bool plain = false;    // steps that show at once that they have no event, or just an impact, may answer it
+
+    ContactSet resting() const { return held.with(carried); }
 };
 
 // What came of a request: from its state to that of the result there is no event, and there what `end` says.

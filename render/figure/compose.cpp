@@ -48,7 +48,7 @@ struct Range {
 
 }  // namespace
 
-Sample sample_at(const Event& event) {
+Sample sample_at(const Trajectory& trajectory, const Event& event) {
     Sample sample;
     sample.t = event.t;
     sample.state = {event.q, event.v_after, event.t};
@@ -56,6 +56,7 @@ Sample sample_at(const Event& event) {
     sample.loss = event.loss;
     sample.held = event.held;
     sample.contact = !event.held.empty();
+    sample.carriers = carriers_of(trajectory, event.held, event.t);
     return sample;
 }
 
@@ -154,7 +155,7 @@ void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values&
         markers.label = events_name({&run, 1}, kind);
         for (const Event& event : trajectory.events) {
             if (event.kind != kind || event.t > end) continue;
-            values.set(sample_at(event));
+            values.set(sample_at(trajectory, event));
             for (std::size_t i = 0; i < curves; ++i) {
                 if (framing.hidden.contains(i)) continue;
                 const Point point = point_of(values[0], values[i + 1]);
@@ -170,7 +171,7 @@ void add_opened(Panel& panel, const Trajectory& trajectory, double end, Values& 
     Markers& markers = panel.markers.emplace_back(opened_markers(theme));
     for (const Event& event : trajectory.events) {
         if (event.opened.empty() || event.t > end) continue;
-        values.set(sample_at(event));
+        values.set(sample_at(trajectory, event));
         for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
             const Point point = point_of(values[0], values[i + 1]);
             if (!framing.hidden.contains(i) && !std::isnan(point.x)) markers.points.push_back(point);

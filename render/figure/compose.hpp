@@ -76,7 +76,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
 std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view);
 
 // What is drawn at an event: the state after it.
-Sample sample_at(const Event& event);
+Sample sample_at(const Trajectory& trajectory, const Event& event);
 
 // Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
 // gets room at the top.

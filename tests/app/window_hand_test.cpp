@@ -147,7 +147,7 @@ TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
             hands.session.apply(command::Select{0});
             hands.all.clear();
             const PanelMap map(hands.session.plots()[plot], hands.state.places.at("plot " + std::to_string(plot)));
-            const auto values = hands.session.values(plot, sample_at(events[wanted]));
+            const auto values = hands.session.values(plot, sample_at(hands.session.trajectory(), events[wanted]));
             hands.hand.mouse_x = map.x(values[0]) + 4.0;
             hands.hand.mouse_y = map.y(values[1]) - 3.0;
             hands.rest(2);

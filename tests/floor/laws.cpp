@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
+#include "contacts/complementarity.hpp"
 #include "model/model.hpp"
+#include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/surfaces.hpp"
 
@@ -19,6 +22,12 @@ double largest(const Vector& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxC
 // x with W x = b, of least norm where gradients depend on one another.
 Eigen::VectorXd least(const ContactMatrix<double>& W, const Eigen::VectorXd& b) {
     return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(b);
+}
+
+// The least eigenvalue of W beside the largest: 0 where gradients depend on one another.
+double least_pivot(const Closed& held) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(Eigen::MatrixXd(held.W), Eigen::EigenvaluesOnly);
+    return values.eigenvalues().minCoeff() / values.eigenvalues().maxCoeff();
 }
 
 // What a law asks of the model at a state.
@@ -67,6 +76,24 @@ class Probe {
         for (Eigen::Index i = 0; i < hddot.size(); ++i)
             hddot[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
         return least(held.W, -hddot);
+    }
+
+    // Of those forces, where they are not unique, one choice that presses if there is any.
+    Eigen::VectorXd pressing(const State& state, const Closed& held) {
+        const Eigen::VectorXd of_any_sign = forces(state, held);
+        if (least_pivot(held) > 1e-9) return of_any_sign;
+        const auto choice = solve_complementarity(held.W, ContactVector<double>(-held.W * of_any_sign));
+        return choice ? Eigen::VectorXd(choice->p) : of_any_sign;
+    }
+    // By how much such forces leave the gaps accelerated, beside what the largest does.
+    double off_balance(const State& state, const Closed& held, ContactForces& told) {
+        Eigen::VectorXd left(static_cast<Eigen::Index>(held.which.size())), lambda = left;
+        for (Eigen::Index i = 0; i < left.size(); ++i) {
+            left[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
+            lambda[i] = told.force(held.which[static_cast<std::size_t>(i)]);
+        }
+        const double size = 1e-300 + left.cwiseAbs().maxCoeff() + (held.W.cwiseAbs() * lambda.cwiseAbs()).maxCoeff();
+        return (left + held.W * lambda).cwiseAbs().maxCoeff() / size;
     }
 
     // What the force that holds a contact would be to stop the largest acceleration: its rounding refers to that.
@@ -366,6 +393,7 @@ Violations phases(const Trajectory& trajectory) {
 Violations contact_force(const Trajectory& trajectory) {
     Violations violations;
     Probe probe(trajectory);
+    ContactForces told(probe.model, trajectory.run.parameters);
     double strongest = 0.0;
     // The last instant is the release, or the end of the run.
     for (const Sample& sample : Sampler(trajectory).all(4)) {
@@ -373,6 +401,17 @@ Violations contact_force(const Trajectory& trajectory) {
                                         [&](const Phase& one) { return one.start <= sample.t && sample.t < one.end; });
         if (phase == trajectory.phases.end() || phase->held.empty() || sample.held != phase->held) continue;
         const Closed held = probe.surfaces.at(sample.state, phase->held);
+        if (phase->not_unique()) {
+            // One share of them presses, and is told.
+            told.set(sample);
+            const double off = probe.off_balance(sample.state, held, told);
+            complain(violations, off <= 1e-9,
+                     fmt::format("forces that are told are off by {:.3g} at t = {:.17g}", off, sample.t));
+            for (const std::size_t i : held.which)
+                complain(violations, told.force(i) >= 0.0,
+                         fmt::format("a force that is told pulls at t = {:.17g}", sample.t));
+            continue;
+        }
         const Eigen::VectorXd forces = probe.forces(sample.state, held);
         strongest = std::max(strongest, forces.maxCoeff());
         complain(violations, forces.minCoeff() > 0.0,
@@ -381,14 +420,15 @@ Violations contact_force(const Trajectory& trajectory) {
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::release) continue;
         const Closed held = probe.surfaces.at(after(event), event.held.with(event.contacts));
-        const Eigen::VectorXd forces = probe.forces(after(event), held);
+        const Eigen::VectorXd forces = probe.pressing(after(event), held);
         for (std::size_t i = 0; i < held.which.size(); ++i) {
             if (!event.contacts.contains(held.which[i])) continue;
             const double force = forces[static_cast<Eigen::Index>(i)];
             const double size = std::max(strongest, probe.force_scale(after(event), held.contacts[i]));
             complain(violations, std::abs(force) <= 1e-11 * size,
                      fmt::format("released while the force is {:.3g} of {:.3g} at t = {:.17g}", force, size, event.t));
-            complain(violations, probe.surfaces.of(held.which[i], event.held).jerk(after(event)) > 0.0,
+            const ContactSet carriers = carriers_of(trajectory, event.held, event.t);
+            complain(violations, probe.surfaces.of(held.which[i], carriers).jerk(after(event)) > 0.0,
                      fmt::format("released while h''' <= 0 at t = {:.17g}", event.t));
         }
     }

@@ -308,7 +308,8 @@ TEST(Composing, EveryContactShowsItsForce) {
     EXPECT_NEAR(force[2], values[1], 1e-12);
     // An event shows what is held after it.
     const Event& release = trajectory.events[test::event_near(trajectory, 13.775854797030098)];
-    const std::vector<double> after = values_at(trajectory, sample_at(release), PreparedView(*trajectory.model, view));
+    const std::vector<double> after =
+        values_at(trajectory, sample_at(trajectory, release), PreparedView(*trajectory.model, view));
     EXPECT_GT(after[1], 0.0);
     EXPECT_EQ(after[2], 0.0);
 }

@@ -1,0 +1,253 @@
+// Contacts whose gradients depend on one another, a table on four legs (theory-gaps.md 2.5): the motion holds some of them,
+// the carriers, whose gradients are independent and whose forces press; the gaps of the others stay 0 with theirs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/complementarity.hpp"
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Parts of the largest force: below the first a force is in doubt, above the second it presses whatever the integration has
+// made of it.
+constexpr double in_doubt = 1e-9, clearly = 1e-3;
+
+ContactSet all_places(const Closed& closed) {
+    ContactSet all;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) all = all.with(i);
+    return all;
+}
+
+bool depends(const Closed& closed, std::size_t place, ContactSet on) {
+    const auto k = static_cast<Eigen::Index>(place);
+    const auto block = HeldBlock<double>::of(closed.W, on);
+    return block && block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
+}
+
+// The largest set of independent gradients among these, or one of them.
+ContactSet basis_of(const Closed& closed, ContactSet set) {
+    ContactSet basis;
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        if (set.contains(i) && HeldBlock<double>::of(closed.W, basis.with(i))) basis = basis.with(i);
+    return basis;
+}
+
+}  // namespace
+
+// Of hddot, whose terms may cancel.
+ContactVector<double> Execution::rounding_of(const Closed& closed) {
+    ContactVector<double> rounding(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        rounding[static_cast<Eigen::Index>(i)] = 4.0 * width(surfaces_->of(closed.which[i]).normal(next_.state).hddot);
+    return rounding;
+}
+
+// All sets of closed contacts that could carry by the accelerations: independent, their forces press or are in doubt, and no
+// other gap closes. The larger ones first, of the same size those whose least force is the largest.
+std::vector<Execution::Carriers> Execution::carriers_of(const Closed& closed, const ContactVector<double>& hddot) {
+    std::vector<Carriers> found;
+    const std::size_t count = closed.which.size();
+    const ContactVector<double> unit = closed.W.diagonal().cwiseSqrt();  // of forces, whatever the units of the gaps
+    const ContactVector<double> rounding = rounding_of(closed);
+    for (std::uint32_t bits = 0; bits < 1u << count; ++bits) {
+        Carriers one;
+        for (std::size_t i = 0; i < count; ++i)
+            if (bits >> i & 1u) one.places = one.places.with(i);
+        const auto block = HeldBlock<double>::of(closed.W, one.places);
+        if (!block) continue;
+        const ContactVector<double> lambda = -block->solve(hddot), y = hddot + closed.W * lambda;
+        const double most = one.most = lambda.cwiseProduct(unit).cwiseAbs().maxCoeff();
+        bool possible = true;
+        one.least = 1.0;
+        for (std::size_t i = 0; possible && i < count; ++i) {
+            const auto k = static_cast<Eigen::Index>(i);
+            const double size = std::abs(hddot[k]) + closed.W.row(k).cwiseAbs().dot(lambda.cwiseAbs());
+            const double zero = 1e-12 * size + rounding[k];
+            if (one.places.contains(i)) {
+                one.least = std::min(one.least, most > 0.0 ? lambda[k] * unit[k] / most : 0.0);
+                possible = one.least >= -in_doubt;
+            } else {
+                possible = y[k] >= -zero;
+                if (y[k] > zero) one.opening = one.opening.with(i);
+            }
+        }
+        if (possible) found.push_back(one);
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Carriers& a, const Carriers& b) {
+        return a.places.count() != b.places.count() ? a.places.count() > b.places.count() : a.least > b.least;
+    });
+    return found;
+}
+
+// Contacts whose gradients depend on one another are held by some of them, which carry all; where one of their forces was in
+// doubt, by others than `doubted`, which press clearly.
+bool Execution::hold_dependent(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces,
+                               ContactSet doubted) {
+    const ContactSet pressed = forces.active;
+    const auto all = carriers_of(closed, hddot);
+    const auto now = std::find_if(all.begin(), all.end(), [&](const Carriers& one) { return one.places == doubted; });
+    const double known_to = doubted.empty() || now == all.end() ? 0.0 : now->least * now->most;
+    for (const Carriers& carriers : all) {
+        const bool sure = carriers.least > clearly && clearly * carriers.least * carriers.most > known_to;
+        if (!doubted.empty() && !sure) continue;
+        if (!carry(closed, carriers)) continue;
+        note_carried(closed, pressed);
+        return true;
+    }
+    // At rest for ever nothing has to be told apart.
+    const ContactSet pressed_ones = closed.contacts_at(pressed);
+    const bool rests = doubted.empty() && is_at_rest(pressed_ones);
+    if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))
+        return (doubted.empty() || !may_ask_exactly()) && share(closed, hddot, forces);
+    const ContactSet carrying = rests ? pressed_ones : closed.contacts_at(enough_of(closed, hddot, pressed));
+    if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
+    for (const std::size_t contact : closed.which) next_.starts[contact] = {};
+    hold(carrying, closed.contacts_at(all_places(closed)).without(carrying));
+    note_carried(closed, pressed);
+    return true;
+}
+
+// Where the force of every carrier may touch 0, as under a load that comes to the middle of a table and turns back, but all
+// together press, so that they would answer any small change: for a short time nobody asks who carries.
+bool Execution::share(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces) {
+    const ContactVector<double> rounding = rounding_of(closed);
+    const ContactVector<double> p = forces.p.cwiseProduct(closed.W.diagonal().cwiseSqrt());
+    for (Eigen::Index i = 0; i < p.size(); ++i)
+        if (contains(forces.active, i) &&
+            !(p[i] > clearly * p.maxCoeff() && clearly * forces.p[i] * closed.W(i, i) > rounding[i]))
+            return false;  // or they vanish all together
+    const ContactSet all = all_places(closed);
+    const auto carriers = carriers_of(closed, hddot);
+    if (carriers.empty() || carriers.front().least > clearly || !carriers.front().opening.empty() ||
+        carriers.front().places.count() != basis_of(closed, all).count() ||
+        basis_of(closed, forces.active).count() != carriers.front().places.count())
+        return false;
+    const ContactSet held = closed.contacts_at(carriers.front().places);
+    for (const std::size_t contact : closed.which) next_.starts[contact] = {};
+    hold(held, closed.contacts_at(all).without(held));
+    note_carried(closed, forces.active);
+    next_.unwatched = held;
+    return true;
+}
+
+// That time is over.
+void Execution::end_sharing() {
+    const ContactSet resting = next_.resting();
+    decide(next_.held.with(next_.touching));
+    if (outcome_) return;
+    if (next_.resting() == resting) return carry_on();
+    stop(Outcome::Kind::undecided,
+         fmt::format("which of {} let go just before cannot be decided, at {}", names_of(resting), where(next_.state)));
+}
+
+// Holds these, the carriers, if it can be proved that they do: each force presses, or grows from 0. The others rest with
+// them, or touch, or leave.
+bool Execution::carry(const Closed& closed, const Carriers& carriers) {
+    const ContactSet held = closed.contacts_at(carriers.places);
+    std::vector<EventStart> starts = next_.starts;
+    ContactSet touching;
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        const std::size_t contact = closed.which[i];
+        EventStart& start = starts[contact];
+        const bool carried = !held.contains(contact) && depends(closed, i, carriers.places);
+        if (carried) {
+            touching = carriers.opening.contains(i) ? touching : touching.with(contact);
+            start = {{0.0, 0.0}, 2};  // where it opens
+            continue;
+        }
+        const auto normal = surfaces_->of(contact, held.without(contact)).normal(next_.state);
+        if (held.contains(contact)) {
+            const bool presses = certainly_negative(normal.hddot);
+            if (!presses && (certainly_positive(normal.hddot) || !certainly_negative(normal.jerk))) return false;
+            start = presses ? EventStart{} : EventStart{{}, 1};
+        } else if (certainly_positive(normal.hddot)) {
+            start = {{0.0, 0.0}, 2};
+        } else if (certainly_negative(normal.hddot)) {
+            return false;
+        } else if (certainly_positive(normal.jerk)) {
+            start = {{0.0, 0.0}, 3};
+        } else if (!certainly_negative(normal.jerk) && stays_closed(contact, held)) {
+            touching = touching.with(contact);
+        } else {
+            return false;
+        }
+    }
+    next_.starts = std::move(starts);
+    hold(held, touching);
+    return true;
+}
+
+void Execution::hold(ContactSet held, ContactSet touching) {
+    next_.held = held;
+    next_.touching = touching;
+    next_.unwatched = {};
+    for (std::size_t i = 0; i < next_.starts.size(); ++i)
+        if (touching.contains(i)) next_.starts[i] = {{0.0, 0.0}, 1};
+}
+
+// Of those that touch, who may bear a part of the forces: whose gradients depend on those of others that do.
+void Execution::note_carried(const Closed& closed, ContactSet pressed) {
+    const ContactSet bearing = closed.places_of(next_.held).with(pressed);
+    next_.carried = {};
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        if (next_.touching.contains(closed.which[i]) &&
+            depends(closed, i, basis_of(closed, bearing.without(ContactSet::of(i)))))
+            next_.carried = next_.carried.with(closed.which[i]);
+}
+
+// Whether these, pressed, leave no motion at all: nothing moves, no surface does, and the gradients span everything.
+bool Execution::is_stuck(const Closed& closed, ContactSet pressed) {
+    if (next_.state.v != Vector::Zero(next_.state.v.size())) return false;
+    for (const Contact& contact : closed.contacts)
+        if (contact.gap_t != 0.0) return false;
+    return basis_of(closed, pressed).count() == model_->dof();
+}
+
+// Of contacts that hold everything still, some that press by themselves and leave no acceleration; all of them if there are
+// none such.
+ContactSet Execution::enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed) {
+    const auto found = carriers_of(closed, hddot);
+    const auto enough = std::find_if(found.rbegin(), found.rend(), [&](const Carriers& one) {
+        return !one.places.empty() && one.places.without(pressed).empty() && one.least > in_doubt &&
+               one.opening.empty();
+    });
+    return enough == found.rend() ? pressed : enough->places;
+}
+
+// The force of a carrier may touch 0, and whether it does cannot be told: others carry on without it, if they can.
+bool Execution::carry_on_without(std::size_t which, const State& state) {
+    if (next_.carried.empty() || !next_.held.contains(which)) return false;
+    const StepRequest before = next_;
+    next_.state = state;
+    const Closed closed = surfaces_->at(state, before.held.with(before.touching));
+    const ContactVector<double> hddot = accelerations(closed);
+    const auto forces = solve_complementarity(closed.W, hddot);
+    const bool goes_on = forces && hold_dependent(closed, hddot, *forces, closed.places_of(before.held)) &&
+                         next_.resting() == before.resting();
+    if (!goes_on) next_ = before;
+    return goes_on;
+}
+
+// The same rest, though others of them may carry now: the phase goes on.
+void Execution::carry_on() {
+    constexpr int many = 100;  // at one time, that would be for ever
+    changes_of_carriers_ = next_.state.t == carriers_since_ ? changes_of_carriers_ + 1 : 0;
+    carriers_since_ = next_.state.t;
+    if (changes_of_carriers_ > many)
+        return stop(Outcome::Kind::undecided, fmt::format("which of {} carry cannot be decided, at {}",
+                                                          names_of(next_.resting()), where(next_.state)));
+    enter_or_stay();
+    begin_stretch(next_.held, run_.options.end_time);
+}
+
+// How long nobody asks who carries: longer than a touch is in doubt, and short beside what the motion needs to change.
+double Execution::end_of_sharing() const {
+    constexpr double part = 1.0 / 16, least = 1e-6;
+    return next_.state.t + std::max(part * last_step_, least * (1.0 + std::abs(next_.state.t)));
+}
+
+}  // namespace achilles
