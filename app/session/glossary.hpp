@@ -12,7 +12,7 @@ struct Term {
     std::string_view
         formula;  // in the notation of a system file, for typeset(); v is the velocity, n the impulse's direction
     std::string_view meaning;  // one sentence
-    std::string_view source;   // in the paper, or in core/theory.md for what goes beyond it
+    std::string_view source;   // in the paper, or in the theory of core for what goes beyond it
 };
 // In the order in which a run meets them.
 std::span<const Term> glossary();
