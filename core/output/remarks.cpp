@@ -62,6 +62,20 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
     return std::nullopt;
 }
 
+// From a cut to its Zeno point the motion holds contacts that the phase does not hold yet.
+std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
+    if (trajectory.pieces.empty() || trajectory.events.empty() || trajectory.end_time < trajectory.pieces.back().end ||
+        trajectory.pieces.back().held.without(trajectory.phases.back().held).empty())
+        return std::nullopt;
+    const Event& cut = trajectory.events.back();
+    return Remark{
+        "ends before a Zeno point",
+        fmt::format("the run ends between the cut of a bouncing, t = {:.9g}, and its Zeno point: from there on it "
+                    "is the restarted motion, without the bounces that are left; a later end time tells what is "
+                    "proved about it",
+                    cut.t)};
+}
+
 }  // namespace
 
 std::vector<Remark> remarks(const Trajectory& trajectory) {
@@ -69,6 +83,7 @@ std::vector<Remark> remarks(const Trajectory& trajectory) {
     std::vector<Remark> all;
     if (trajectory.made_again_by) all.push_back(made_again(trajectory));
     if (auto remark = cut_too_soon(trajectory)) all.push_back(std::move(*remark));
+    if (auto remark = ended_on_the_way(trajectory)) all.push_back(std::move(*remark));
     return all;
 }
 

@@ -342,6 +342,26 @@ TEST(Summary, ABoundAsLargeAsTheMotionIsARemark) {
     EXPECT_TRUE(remarks(better).empty());
 }
 
+// A run that ends between a cut and its Zeno point has no event of it yet.
+TEST(Summary, AnEndBeforeTheZenoPointIsARemark) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    const Trajectory whole = simulate(floor, run);
+    const auto zeno = std::find_if(whole.events.begin(), whole.events.end(),
+                                   [](const Event& e) { return e.kind == Event::Kind::zeno; });
+    ASSERT_NE(zeno, whole.events.end());
+    EXPECT_TRUE(remarks(whole).empty());
+    run.options.end_time = 0.5 * (zeno->truncation->t + zeno->t);
+    const std::vector<Remark> told = remarks(simulate(floor, run));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_NE(told[0].sentence.find(
+                  fmt::format("the cut of a bouncing, t = {:.9g}, and its Zeno point", zeno->truncation->t)),
+              std::string::npos)
+        << told[0].sentence;
+    run.options.end_time = zeno->truncation->t - 1e-3;
+    EXPECT_TRUE(remarks(simulate(floor, run)).empty());
+}
+
 // So it is where a later impact is cut while what is proved is large beside the motion.
 TEST(Summary, ABoundAsLargeAsTheMotionIsARemarkAfterSeveralImpacts) {
     const auto floor = test::load("ball_on_floor");
