@@ -242,7 +242,10 @@ std::string summary(const Trajectory& trajectory) {
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.certificate && event.certificate->others && !event.certificate->others->held.empty();
     });
-    if (has_forces) text += "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between bodies.\n";
+    if (has_forces)
+        text +=
+            "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between "
+            "bodies.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });
