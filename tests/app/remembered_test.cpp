@@ -95,7 +95,7 @@ TEST(Remembered, takes_nothing_else_from_the_file) {
     const Home home;
     std::filesystem::create_directories(home.folder.path() / "achilles");
     std::ofstream(home.folder.path() / "achilles/preferences.journal")
-        << "theme blue\nsave /tmp/stolen overwrite\nnonsense\n\ntheme dark\nreplay evil\n\"\n\x01\xff\n";
+        << "theme blue\nsave stolen.toml overwrite\nnonsense\n\ntheme dark\nreplay evil\n\"\n\x01\xff\n";
     const Preferences read;
     EXPECT_EQ(read.looks(), std::vector<Command>{command::UseTheme{true}});
     EXPECT_TRUE(read.recent().empty());
