@@ -14,12 +14,6 @@ namespace achilles {
 
 namespace {
 
-std::string with_minus(std::string text) {
-    for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
-        text.replace(at, 1, "\u2212");
-    return text;
-}
-
 // The share of the right-hand side that the left one uses up: 0 is a wide margin, 1 none. An inequality whose right
 // side is 0 (a sign) has none.
 double share_of(const Inequality& inequality) {
@@ -55,8 +49,7 @@ void show_inequality(const Inequality& inequality, bool decisive) {
                             units(2.0F));
     }
     ImGui::Dummy({width, line});
-    tooltip(decisive ? "this one decided: it holds by the least margin"
-                     : "the bar is the share of the right side that is used");
+    tooltip(decisive ? "of these it has the least room" : "the bar is the share of the right side that is used");
 }
 
 }  // namespace

@@ -75,7 +75,14 @@ Now now_of(const Session& session, EquationsView& view, const SheetCondition& co
     const double value = view.value(index, model, session.trajectory().run, session.now().state, session.now().t);
     if (!std::isfinite(value)) return {"now it is not defined", true};
     const std::string shown = number(value, "{:.4g}");
-    if (value < 0.0) return {fmt::format("now {} < 0: bouncing would end at a Zeno point", shown), true};
+    if (value < 0.0) {
+        const double e = model.restitution(session.trajectory().run.parameters, condition.contact);
+        return {fmt::format("now {} < 0: {}", shown,
+                            e >= 1.0   ? "but with restitution 1 bounces never die out"
+                            : e <= 0.0 ? "with restitution 0 an impact ends on the surface"
+                                       : "bouncing would end at a Zeno point"),
+                true};
+    }
     return {fmt::format("now {} \u2265 0: bouncing would not end, the gap opens", shown), true};
 }
 

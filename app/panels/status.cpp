@@ -109,7 +109,7 @@ void show_status(const Session& session, const PanelState& state) {
     const std::string impacts = s.impacts == 1 ? std::string("1 impact") : fmt::format("{} impacts", s.impacts);
     const std::string text = fmt::format(
         "{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}", seconds, impacts,
-        s.steps, number(without_noise(session.least_gap(), session.scale().q.maxCoeff()), "{:.2g}"),
+        s.steps, with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
         s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
         to_text(trajectory.run.options.method));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));

@@ -199,6 +199,10 @@ std::string number(double value, const char* format) {
     std::string text = fmt::format(fmt::runtime(format), value + 0.0);
     // What is rounded to zero has no sign.
     if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') text.erase(0, 1);
+    return with_minus(std::move(text));
+}
+
+std::string with_minus(std::string text) {
     for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
         text.replace(at, 1, "\u2212");
     return text;

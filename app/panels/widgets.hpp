@@ -76,6 +76,8 @@ void name_event(const Session& session, int number);
 Vector start_towards(const Session& session, const Vector& q);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
+// A text of numbers with minus signs in place of hyphens.
+std::string with_minus(std::string text);
 // One of many numbers of this size below or beside one another, with so many decimals; powers of ten where these would show
 // nothing of it, or where it would be too long.
 std::string number_of_size(double value, double size, int decimals);

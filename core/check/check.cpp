@@ -35,6 +35,7 @@ class Report : EquationsOnPage {
             contact(i, forces);
             page_.heading(fmt::format("Zeno condition{}: hddot < 0 where h = 0 and hdot = 0", of(" of {}", i)));
             zeno(simplified_.contacts[i].zeno);
+            zeno_restitution(i);
         }
         while_held();
         page_.heading("Checks");

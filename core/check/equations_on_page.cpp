@@ -174,6 +174,16 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
     page_.sentence({verdict + because, Page::escaped(verdict) + because});
 }
 
+void EquationsOnPage::zeno_restitution(std::size_t contact) {
+    const double e = model_.restitution(run_.parameters, contact);
+    const std::string line =
+        e >= 1.0 ? "but no Zeno point: restitution is 1 here, and the bounces of an impact never die out"
+        : e <= 0.0
+            ? "but no Zeno point: restitution is 0 here, and the first impact ends on the surface (a plastic landing)"
+            : fmt::format("and 0 < restitution < 1: it is {} here", e);
+    page_.sentence({line, Page::escaped(line)});
+}
+
 // What the proof of a sign rests on.
 std::string EquationsOnPage::grounds(const ZenoCondition& zeno) const {
     std::vector<std::string> names, reasons;

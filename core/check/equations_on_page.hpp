@@ -41,6 +41,8 @@ class EquationsOnPage {
     void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries, std::size_t columns);
     // What was found about hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
+    // The other half of it: bounces pile up only if each impact leaves less of its speed, and some.
+    void zeno_restitution(std::size_t contact);
     // Of more contacts than are looked at.
     void unwritten_conditions();
 

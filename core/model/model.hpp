@@ -66,6 +66,10 @@ class Model {
     const Program& normal_acceleration() const { return programs_of(0).normal_acceleration; }
     const Program& force() const { return programs_of(0).force; }
     const Program& restitution(std::size_t contact = 0) const { return restitutions_[contact]; }
+    // Its value at these parameters.
+    double restitution(std::span<const double> parameters, std::size_t contact) const {
+        return evaluator(restitutions_[contact], parameters).output(0);
+    }
     const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }

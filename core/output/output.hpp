@@ -31,10 +31,12 @@ std::vector<Remark> remarks(const Trajectory& trajectory);
 std::string sentence(const Certificate& certificate);
 // "[low, high]" with as many digits as tell the ends apart, and two more.
 std::string interval_text(double low, double high);
-// A bound, to two digits; what is below 1e-30 is not told further.
+// A bound, to two digits; what is below 1e-16, the rounding of numbers about 1, is told as that.
 std::string bound_text(double bound);
 // The energy drift, to two digits; one of rounding alone is "below 1e-14", which is not nothing.
 std::string drift_text(double drift);
+// The least gap beside the size of the coordinates, to two digits; a negative one of rounding alone is "0 to rounding".
+std::string least_gap_text(double gap, double scale);
 std::string version();
 
 }  // namespace achilles

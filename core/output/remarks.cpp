@@ -76,6 +76,28 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
                     cut.t)};
 }
 
+// A proof starts from the computed state. Where that is known much less well than the interval is wide, the digits of the
+// interval are of a neighbour's Zeno time.
+std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
+    constexpr double clearly = 10.0,
+                     loose = 1e-7;  // the measure of the integration is a rough one, meant for loose ones
+    if (trajectory.run.options.tolerance < loose || trajectory.made_again_by) return std::nullopt;
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        const Event& event = trajectory.events[i];
+        if (event.kind != Event::Kind::zeno || !event.certificate || !event.certificate->certified) continue;
+        const double width = event.certificate->zeno_high - event.certificate->zeno_low;
+        const double error = integration_error_of_time(trajectory, i);
+        if (!(width > 0.0) || !(error > clearly * width)) continue;
+        return Remark{
+            "integration outweighs an interval",
+            fmt::format("the interval of the Zeno time {:.6g} is proved from the computed state, and is {:.1g} "
+                        "wide; the integration and cuts before may have moved it by {:.1g}, roughly measured: "
+                        "a smaller --tolerance than {:g} makes that less",
+                        event.t, width, error, trajectory.run.options.tolerance)};
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Remark> remarks(const Trajectory& trajectory) {
@@ -83,6 +105,7 @@ std::vector<Remark> remarks(const Trajectory& trajectory) {
     std::vector<Remark> all;
     if (trajectory.made_again_by) all.push_back(made_again(trajectory));
     if (auto remark = cut_too_soon(trajectory)) all.push_back(std::move(*remark));
+    if (auto remark = integration_outweighs(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = ended_on_the_way(trajectory)) all.push_back(std::move(*remark));
     return all;
 }

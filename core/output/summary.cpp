@@ -188,10 +188,18 @@ std::string interval_text(double low, double high) {
     return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
 }
 
-std::string bound_text(double bound) { return fmt::format("{:.2g}", std::max(bound, 1e-30)); }
+std::string bound_text(double bound) {
+    constexpr double rounding = 1e-16;
+    return fmt::format("{:.2g}", std::max(bound, rounding));
+}
 
 std::string drift_text(double drift) {
     return drift < noise ? fmt::format("below {}", noise) : fmt::format("{:.2g}", drift);
+}
+
+std::string least_gap_text(double gap, double scale) {
+    if (gap < 0.0 && without_noise(gap, scale) == 0.0) return "0 to rounding";
+    return fmt::format("{:.2g}", gap + 0.0);
 }
 
 std::string sentence(const Certificate& c) {
@@ -207,7 +215,7 @@ std::string sentence(const Certificate& c) {
             "higher): uniform position; at tau_inf it is within {} and {} of the true motion: shadowing position and "
             "velocity",
             bound_text(*c.uniform_position), bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity));
-    text += c.paper ? "; decided by the condition " : "; decided by the ";
+    text += c.paper ? "; of the conditions this had the least room: " : "; of the bounds this had the least room: ";
     text += c.decisive;
     if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
     return text;
@@ -233,9 +241,9 @@ std::string summary(const Trajectory& trajectory) {
                         named(model, n, trajectory.end.v, scale.v));
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {}, least gap {:.2g}\n", s.impacts,
-                        s.steps, s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
-                        without_noise(least_gap(trajectory), scale.q.maxCoeff()));
+    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", s.impacts, s.steps,
+                        s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
+                        least_gap_text(least_gap(trajectory), scale.q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
@@ -251,8 +259,9 @@ std::string summary(const Trajectory& trajectory) {
     });
     if (completed)
         text +=
-            "Certificates do not cover the integration and rounding errors made before each truncation, nor how the\n"
-            "errors of several truncations add up. " +
+            "Certificates do not cover integration and rounding errors, before a truncation or after it, nor how the "
+            "errors\n"
+            "of several truncations add up. " +
             assumed() + "\n";
     return text;
 }

@@ -33,7 +33,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Surface
       record_(model_, run_, keep),
       surfaces_(&surfaces) {
     for (std::size_t i = 0; i < model_->contacts(); ++i)
-        restitutions_.push_back(model_->evaluator(model_->restitution(i), run_.parameters).output(0));
+        restitutions_.push_back(model_->restitution(run_.parameters, i));
     begin();
 }
 

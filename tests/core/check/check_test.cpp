@@ -262,6 +262,20 @@ TEST(CheckReport, TellsForcesAndEveryContact) {
               std::string::npos);
 }
 
+// Whether bounces pile up is a question of the restitution, too.
+TEST(CheckReport, SaysWhatTheRestitutionDoes) {
+    const auto ball = test::load("ball_on_sine");
+    auto run = ball->default_run();
+    double disagreement = 1.0;
+    for (const auto& [e, words] : {std::pair{0.5, "and 0 < restitution < 1: it is 0.5 here"},
+                                   {1.0, "but no Zeno point: restitution is 1 here"},
+                                   {0.0, "but no Zeno point: restitution is 0 here"}}) {
+        run.parameters[2] = e;
+        const std::string report = check_report(*ball, run, 0.001, Notation::text, disagreement);
+        EXPECT_NE(report.find(words), std::string::npos) << report;
+    }
+}
+
 // What a gap was solved for may name what hddot does not.
 TEST(CheckReport, TellsWhereTheSurfacesAre) {
     const auto legs = test::typed(R"toml(

@@ -108,8 +108,10 @@ TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
     const std::string text = summary(sharp);
     // One name for each number, in the sentence, in what decided, and in the keys of JSON.
     EXPECT_NE(text.find(": uniform position;\n"), std::string::npos) << text;
-    EXPECT_NE(text.find(": shadowing position and velocity;\n            decided by the uniform position"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find(
+            ": shadowing position and velocity;\n            of the bounds this had the least room: uniform position"),
+        std::string::npos)
         << text;
     EXPECT_NE(text.find("of the true position (the bounces not drawn are no higher)"), std::string::npos) << text;
 }
@@ -241,7 +243,7 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
     EXPECT_NE(text.find("zeno      t = 2.725142173"), std::string::npos) << text;
     EXPECT_NE(text.find("release   t = 3.73182"), std::string::npos) << text;
     EXPECT_NE(text.find("tau_inf in [2.725142172"), std::string::npos) << text;
-    EXPECT_NE(text.find("decided by the condition c3: velocity"), std::string::npos) << text;
+    EXPECT_NE(text.find("of the conditions this had the least room: c3: velocity"), std::string::npos) << text;
     EXPECT_NE(text.find("do not cover"), std::string::npos) << text;
     EXPECT_NE(text.find("outcome: end time"), std::string::npos) << text;
 }
@@ -306,6 +308,15 @@ TEST_F(Outputs, SayThatTheRunStarted) {
     EXPECT_LT(std::abs(nlohmann::json::parse(to_json(rising))["statistics"]["least_gap"].get<double>()), 1e-14);
 }
 
+TEST_F(Outputs, TellRoundingFromNothingAndFromALie) {
+    EXPECT_EQ(least_gap_text(0.0, 1.0), "0");
+    EXPECT_EQ(least_gap_text(-2.2e-16, 1.0), "0 to rounding");
+    EXPECT_EQ(least_gap_text(-2.2e-16, 1e-3), "-2.2e-16");
+    EXPECT_EQ(least_gap_text(-1e-3, 1.0), "-0.001");
+    EXPECT_EQ(bound_text(3e-25), "1e-16");
+    EXPECT_EQ(bound_text(2.53e-9), "2.5e-09");
+}
+
 TEST_F(Outputs, SayByWhichTolerancesAnUndecidedRunWasMadeAgain) {
     EXPECT_TRUE(nlohmann::json::parse(to_json(trajectory))["outcome"]["made_again_by"].is_null());
     EXPECT_TRUE(remarks(trajectory).empty());
@@ -340,6 +351,23 @@ TEST(Summary, ABoundAsLargeAsTheMotionIsARemark) {
     const Trajectory better = simulate(floor, run);
     EXPECT_GT(better.statistics.impacts, 3);
     EXPECT_TRUE(remarks(better).empty());
+}
+
+// The proofs start from the computed state: an interval says little where that is wrong by more.
+TEST_F(Outputs, ALooseToleranceIsARemark) {
+    const auto ball = test::load("ball_on_sine");
+    auto run = ball->default_run();
+    run.options.tolerance = 1e-3;
+    const Trajectory loose = simulate(ball, run);
+    const std::vector<Remark> said = remarks(loose);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].sentence.find("a smaller --tolerance than 0.001 makes that less"), std::string::npos);
+    const auto zeno_of = [](const Trajectory& of) {
+        return *std::find_if(of.events.rbegin(), of.events.rend(),
+                             [](const Event& e) { return e.kind == Event::Kind::zeno; });
+    };
+    EXPECT_LT(zeno_of(trajectory).t, zeno_of(loose).certificate->zeno_low);  // indeed
+    EXPECT_TRUE(remarks(trajectory).empty());
 }
 
 // A run that ends between a cut and its Zeno point has no event of it yet.
