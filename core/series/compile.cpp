@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "program/machine.hpp"
+#include "series/inner_sums.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
@@ -43,7 +44,8 @@ class SeriesCompiler {
         if (series_.plan_.clock != 0) series_.plan_.rules.push_back({series_.plan_.clock});
         series_.registers_ = next_register_;
         series_.plan_.series = (next_series_ + SeriesPlan::aligned - 1) / SeriesPlan::aligned * SeriesPlan::aligned;
-        place_sums();
+        sums_.place(series_.plan_);
+        series_.inner_sums_ = sums_.count();
     }
 
  private:
@@ -61,8 +63,7 @@ class SeriesCompiler {
     struct Operand {
         std::uint32_t value, series, scale;
     };
-    static constexpr std::uint32_t one = 0;              // the coefficient
-    static constexpr std::uint32_t sum_mark = 1u << 31;  // an inner sum, before it has its place
+    static constexpr std::uint32_t one = 0;  // the coefficient
 
     static bool has_edge(Operation operation) {
         return operation == Operation::sqrt || operation == Operation::log || operation == Operation::asin ||
@@ -178,13 +179,6 @@ class SeriesCompiler {
 
     // ---- recurrences ----
 
-    std::uint32_t inner(std::uint32_t x, std::uint32_t y, bool weighted) {
-        const auto [found, fresh] =
-            sum_ids_.emplace(std::tuple(x, y, weighted), static_cast<std::uint32_t>(sums_.size()));
-        if (fresh) sums_.push_back({x, y, weighted});
-        return sum_mark | found->second;
-    }
-
     // Adds the recurrence of a function and returns its result as a factor. The same function of the same operands is
     // made once: sine and cosine of one angle, chains of powers.
     Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
@@ -213,36 +207,36 @@ class SeriesCompiler {
         };
         switch (seed.kind) {
             case Kind::multiply:
-                add(r, b.series, a.series, inner(a.series, b.series, false), by_a * by_b);
+                add(r, b.series, a.series, sums_.of(a.series, b.series, false), by_a * by_b);
                 break;
             case Kind::square:
-                add(r, a.series, 0, inner(a.series, a.series, false), by_a * by_a);
+                add(r, a.series, 0, sums_.of(a.series, a.series, false), by_a * by_a);
                 break;
             case Kind::unit_and_square:
-                add(r, a.series, 0, inner(a.series, a.series, false), sign * by_a * by_a);
+                add(r, a.series, 0, sums_.of(a.series, a.series, false), sign * by_a * by_a);
                 break;
             case Kind::divide:
-                add(r, a.series, b.series, inner(r, b.series, false));
+                add(r, a.series, b.series, sums_.of(r, b.series, false));
                 break;
             case Kind::sqrt:
-                add(r, a.series, 0, inner(r, r, false));
+                add(r, a.series, 0, sums_.of(r, r, false));
                 break;
             case Kind::exp:
-                add(r, a.series, 0, inner(a.series, r, true), by_a);
+                add(r, a.series, 0, sums_.of(a.series, r, true), by_a);
                 break;
             case Kind::sin_cos:
-                add(r, a.series, 0, inner(a.series, p, true), by_a);
-                add(p, a.series, 0, inner(a.series, r, true), sign * by_a);
+                add(r, a.series, 0, sums_.of(a.series, p, true), by_a);
+                add(p, a.series, 0, sums_.of(a.series, r, true), sign * by_a);
                 break;
             case Kind::tangent:
-                add(r, a.series, 0, inner(a.series, p, true), by_a);
-                add(p, r, 0, inner(r, r, false), sign);
+                add(r, a.series, 0, sums_.of(a.series, p, true), by_a);
+                add(p, r, 0, sums_.of(r, r, false), sign);
                 break;
             case Kind::integral_of_ratio:
-                add(r, a.series, 0, inner(r, b.series, true));
+                add(r, a.series, 0, sums_.of(r, b.series, true));
                 break;
             case Kind::power:
-                add(r, a.series, inner(a.series, r, true), inner(r, a.series, true));
+                add(r, a.series, sums_.of(a.series, r, true), sums_.of(r, a.series, true));
                 break;
         }
         series_.seeds_.push_back(seed);
@@ -359,34 +353,6 @@ class SeriesCompiler {
         return {};
     }
 
-    // Weighted sums come first: their left factors are stored times the order.
-    void place_sums() {
-        SeriesPlan& plan = series_.plan_;
-        std::vector<std::uint32_t> position(sums_.size());
-        for (const bool weighted : {true, false}) {
-            for (std::size_t i = 0; i < sums_.size(); ++i) {
-                if (sums_[i].weighted != weighted) continue;
-                position[i] = plan.series + static_cast<std::uint32_t>(plan.left.size());
-                plan.left.push_back(sums_[i].x);
-                plan.right.push_back(sums_[i].y);
-            }
-            if (weighted) plan.weighted = static_cast<std::uint32_t>(plan.left.size());
-        }
-        series_.inner_sums_ = sums_.size();
-        // One vector at least: the rows tell the orders apart.
-        plan.lanes = static_cast<std::uint32_t>(std::max<std::size_t>(1, (sums_.size() + 3) / 4) * 4);
-        plan.left.resize(plan.lanes, 0);
-        plan.right.resize(plan.lanes, 0);
-        for (SeriesRule& rule : plan.rules)
-            for (std::uint32_t* operand : {&rule.x, &rule.y, &rule.w})
-                if (*operand & sum_mark) *operand = position[*operand & ~sum_mark];
-    }
-
-    // sum_{0<j<k} x_j y_{k-j}, or of j x_j y_{k-j}/k
-    struct Pending {
-        std::uint32_t x, y;
-        bool weighted;
-    };
     SeriesProgram& series_;
     const Program& program_;
     std::uint32_t first_moving_ = 0, next_register_ = 0, next_series_ = 0;
@@ -396,8 +362,7 @@ class SeriesCompiler {
         made_;
     std::map<std::uint32_t, Operand> partners_;                                        // by the series of the result
     std::map<std::pair<Operation, std::uint32_t>, std::uint32_t> function_registers_;  // by function and operand
-    std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::uint32_t> sum_ids_;
-    std::vector<Pending> sums_;
+    InnerSums sums_;
 };
 
 SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_t events) : program_(program) {
