@@ -1,0 +1,87 @@
+// What a person should know of how a run was made is said, once, and is true.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/systems.hpp"
+#include "output/output.hpp"
+
+namespace achilles {
+namespace {
+
+// A drop from 2e-7 m: the first impact is below eps_q = 1e-6 already, and nothing is left of the bouncing.
+TEST(Remarks, ABoundAsLargeAsTheMotion) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "y=0.0600002");
+    assign(run, floor->description(), "y'=0");
+    run.options.end_time = 0.1;
+    const std::vector<Remark> large = remarks(simulate(floor, run));
+    ASSERT_EQ(large.size(), 1u);
+    EXPECT_NE(large[0].sentence.find("eps_q = 1e-06 is large beside this motion: the bouncing was cut at its first "
+                                     "impact, t = 0.000201"),
+              std::string::npos)
+        << large[0].sentence;
+    EXPECT_EQ(nlohmann::json::parse(to_json(simulate(floor, run)))["warnings"], nlohmann::json{large[0].sentence});
+    EXPECT_NE(large[0].sentence.find("the gap is never above 2e-07: try --eps 1e-11"), std::string::npos)
+        << large[0].sentence;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-11;
+    const Trajectory better = simulate(floor, run);
+    EXPECT_GT(better.statistics.impacts, 3);
+    EXPECT_TRUE(remarks(better).empty());
+}
+
+// The proofs start from the computed state: an interval says little where that is wrong by more.
+TEST(Remarks, ALooseTolerance) {
+    const auto ball = test::load("ball_on_sine");
+    auto run = ball->default_run();
+    const Trajectory trajectory = simulate(ball, run);
+    run.options.tolerance = 1e-3;
+    const Trajectory loose = simulate(ball, run);
+    const std::vector<Remark> said = remarks(loose);
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].sentence.find("a smaller --tolerance than 0.001 makes that less"), std::string::npos);
+    const auto zeno_of = [](const Trajectory& of) {
+        return *std::find_if(of.events.rbegin(), of.events.rend(),
+                             [](const Event& e) { return e.kind == Event::Kind::zeno; });
+    };
+    EXPECT_LT(zeno_of(trajectory).t, zeno_of(loose).certificate->zeno_low);  // indeed
+    EXPECT_TRUE(remarks(trajectory).empty());
+}
+
+// A run that ends between a cut and its Zeno point has no event of it yet.
+TEST(Remarks, AnEndBeforeTheZenoPoint) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    const Trajectory whole = simulate(floor, run);
+    const auto zeno = std::find_if(whole.events.begin(), whole.events.end(),
+                                   [](const Event& e) { return e.kind == Event::Kind::zeno; });
+    ASSERT_NE(zeno, whole.events.end());
+    EXPECT_TRUE(remarks(whole).empty());
+    run.options.end_time = 0.5 * (zeno->truncation->t + zeno->t);
+    const std::vector<Remark> told = remarks(simulate(floor, run));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_NE(told[0].sentence.find(
+                  fmt::format("the cut of a bouncing, t = {:.9g}, and its Zeno point", zeno->truncation->t)),
+              std::string::npos)
+        << told[0].sentence;
+    run.options.end_time = zeno->truncation->t - 1e-3;
+    EXPECT_TRUE(remarks(simulate(floor, run)).empty());
+}
+
+// So it is where a later impact is cut while what is proved is large beside the motion.
+TEST(Remarks, ABoundAsLargeAsTheMotionAfterSeveralImpacts) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "y=0.06002");  // 2e-5 m above
+    assign(run, floor->description(), "y'=0");
+    assign(run, floor->description(), "e=0.7");
+    run.options.end_time = 0.1;
+    const std::vector<Remark> large = remarks(simulate(floor, run));
+    ASSERT_EQ(large.size(), 1u);
+    EXPECT_NE(large[0].sentence.find("the bouncing was cut after "), std::string::npos) << large[0].sentence;
+}
+
+}  // namespace
+}  // namespace achilles
