@@ -49,7 +49,9 @@ void show_inequality(const Inequality& inequality, bool decisive) {
                             units(2.0F));
     }
     ImGui::Dummy({width, line});
-    tooltip(decisive ? "of these it has the least room" : "the bar is the share of the right side that is used");
+    tooltip(decisive ? inequality.left < inequality.right ? "of these it has the least room"
+                                                          : "this does not hold: shorter flights cannot be resolved"
+                     : "the bar is the share of the right side that is used");
 }
 
 }  // namespace
@@ -72,23 +74,26 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
     return close;
 }
 
-std::vector<std::string> certificate_lines(const Event& event) {
+std::vector<std::string> certificate_lines(const Event& event, const SystemDescription& description) {
     const Certificate& c = *event.certificate;
+    const NormUnits unit = norm_units(description);
+    const auto position = [&](double bound) { return bound_text(bound) + unit.position; };
+    const auto velocity = [&](double bound) { return bound_text(bound) + unit.velocity; };
     std::vector<std::string> lines;
     if (is_plastic_landing(event)) {
-        lines.emplace_back("it comes to rest without a bounce");
-        lines.push_back(with_minus(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min)));
+        lines.emplace_back("it stays there without a bounce");
+        lines.push_back(with_minus(fmt::format("gap'' from {:.6g} to {:.6g}", -c.a_max, -c.a_min)));
         return lines;
     }
     lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
-    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
-                                bound_text(c.velocity_bound)));
+    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", position(c.position_bound),
+                                velocity(c.velocity_bound)));
     if (c.uniform_position)
-        lines.push_back(fmt::format("drawn until \u03c4\u221e: q true to {}", bound_text(*c.uniform_position)));
+        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {}", position(*c.uniform_position)));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("drawn at \u03c4\u221e: q true to {}, v to {}", bound_text(*c.shadowing_position),
-                                    bound_text(*c.shadowing_velocity)));
-    lines.push_back(fmt::format("normal acceleration {:.6g} to {:.6g}", -c.a_max, -c.a_min));
+        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {}, v {}", position(*c.shadowing_position),
+                                    velocity(*c.shadowing_velocity)));
+    lines.push_back(fmt::format("gap'' from {:.6g} to {:.6g}", -c.a_max, -c.a_min));
     if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
     return lines;
@@ -127,14 +132,14 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                                        state);
     if (close) commands.emplace_back(command::Select{0});
     if (!is_plastic) lens_button(session, state, commands);
-    show_certificate(event);
+    show_certificate(event, session.description());
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";
     if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }
 
-void show_certificate(const Event& event) {
-    const std::vector<std::string> lines = certificate_lines(event);
+void show_certificate(const Event& event, const SystemDescription& description) {
+    const std::vector<std::string> lines = certificate_lines(event, description);
     float half = 0.44F * ImGui::GetContentRegionAvail().x;
     for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));
     half = std::floor(half);
@@ -148,9 +153,9 @@ void show_certificate(const Event& event) {
     ImGui::EndGroup();
     ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
     ImGui::PushTextWrapPos(0.0F);
-    quiet(is_plastic_landing(event)
-              ? "Not covered: integration and rounding errors before it."
-              : "Not covered: integration and rounding errors before the cut, and how several cuts add up.");
+    quiet(is_plastic_landing(event) ? "Not covered: integration and rounding errors before it."
+                                    : "Of the exact motion from the computed state at the cut. Not covered: "
+                                      "integration and rounding errors, and how several cuts add up.");
     ImGui::PopTextWrapPos();
 }
 

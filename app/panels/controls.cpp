@@ -185,8 +185,9 @@ void bounds(const Options& now, const Options& file, PanelState& state, Commands
     constexpr double low = 1e-12, high = 1e-1;
     const OptionRow all{"eps_q", "eps", "\u03b5, all", "all three bounds below at once", low, high};
     const OptionRow each[] = {
-        {"eps_q", "eps q", "   position", "bound on the error of the position at the Zeno point", low, high},
-        {"eps_v", "eps v", "   velocity", "bound on the error of the velocity at the Zeno point", low, high},
+        {"eps_q", "eps q", "   position", "bound on the error of the position from the cut to the Zeno time", low,
+         high},
+        {"eps_v", "eps v", "   velocity", "bound on the error of the velocity at the Zeno time", low, high},
         {"eps_t", "eps t", "   time", "bound on the error of the Zeno time, s", low, high}};
     Options changed = now;
     const bool all_moved = moved(all, changed, file, state);

@@ -28,8 +28,8 @@ struct Result {
 };
 
 // A certificate in its symbols; the sentence itself is plain text, for terminals.
-std::string typeset_sentence(const Certificate& certificate) {
-    std::string text = sentence(certificate);
+std::string typeset_sentence(const Trajectory& trajectory, const Event& event) {
+    std::string text = sentence(*event.certificate, trajectory.model->description());
     for (const auto& [plain, symbol] :
          {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},
           std::pair{"; ", "\n"}, std::pair{" - ", " \u2212 "}, std::pair{"e-0", "e\u22120"},
@@ -47,8 +47,8 @@ std::string explanation(const Trajectory& trajectory, const Event& event) {
         return fmt::format("impact{} at t = {:.10g} s opens {}. Click: why", of, event.t,
                            joined_names(*trajectory.model, event.opened));
     if (is_plastic_landing(event))
-        return fmt::format("landing{} at t = {:.10g} s\n{}", of, event.t, typeset_sentence(*event.certificate));
-    const std::string proof = event.certificate ? typeset_sentence(*event.certificate) : "Nothing is proved of it.";
+        return fmt::format("landing{} at t = {:.10g} s\n{}", of, event.t, typeset_sentence(trajectory, event));
+    const std::string proof = event.certificate ? typeset_sentence(trajectory, event) : "Nothing is proved of it.";
     return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}\n{}", event_name(event), of, event.t, event.impacts,
                        proof, precision_text());
 }
@@ -178,8 +178,8 @@ std::string rounded_up(double bound) {
 
 std::string precision_text() {
     return "\u00b1: proved of the Zeno time from the computed state at the cut.\n"
-           "The integration and the cuts before it are not covered: where their\n"
-           "rough measure is larger, that stands here, and nothing is proved of it.";
+           "The integration and the cuts before it are not covered: where an\n"
+           "estimate of theirs is larger, that stands here, and nothing is proved of it.";
 }
 
 std::string time_text(const Trajectory& trajectory, std::size_t index) {

@@ -82,7 +82,8 @@ std::string certificates_text(const Trajectory& trajectory) {
     for (const Remark& remark : remarks(trajectory)) text += remark.sentence + "\n";
     for (const Event& event : trajectory.events)
         if (event.certificate)
-            text += fmt::format("{} at t = {}: {}\n", event_name(event), event.t, sentence(*event.certificate));
+            text += fmt::format("{} at t = {}: {}\n", event_name(event), event.t,
+                                sentence(*event.certificate, trajectory.model->description()));
     return text + fmt::format("outcome: {} ({})", to_text(trajectory.outcome.kind), trajectory.outcome.message);
 }
 

@@ -41,8 +41,13 @@ constexpr std::array terms{
     Term{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
          "paper, Defs. 4, 5"},
     Term{"work and loss", "energy = energy(0) + work - loss",
-         "Forces and moving contacts do work, dampers and impacts take the loss.", ""},
-    Term{"undecided", "", "Double precision cannot tell what comes next, and the run says so and stops.", "theory 6"},
+         "Work is that of forces, dampers among them (theirs is negative), and of moving contacts; loss is what "
+         "impacts take.",
+         ""},
+    Term{"undecided", "",
+         "Double precision cannot tell what comes next: the run is made again at the least tolerances, and if that "
+         "does not help it says so and stops.",
+         "theory 6"},
 };
 
 constexpr std::array keys{

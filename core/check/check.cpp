@@ -61,9 +61,11 @@ class Report : EquationsOnPage {
         std::vector<std::vector<std::string>> rows;
         for (std::size_t i = 0; i < run_.parameters.size(); ++i) {
             const auto& parameter = model_.description().parameters[i];
-            rows.push_back(
-                {in_line(fmt::format("{} = {}", name(parameter.name), run_.parameters[i])), words(parameter.unit),
-                 words(fmt::format("in [{}, {}]", parameter.range[0], parameter.range[1])), words(parameter.about)});
+            rows.push_back({in_line(fmt::format("{} = {}", name(parameter.name), run_.parameters[i])),
+                            words(parameter.unit),
+                            words(fmt::format("{}in [{}, {}]", parameter.has_range ? "" : "slider ", parameter.range[0],
+                                              parameter.range[1])),
+                            words(parameter.about)});
         }
         const std::vector<double> derived = derived_values(model_, run_.parameters);
         for (std::size_t i = 0; i < derived.size(); ++i) {
@@ -82,6 +84,7 @@ class Report : EquationsOnPage {
                 fmt::format("Zeno condition of {} while {} is held: hddot < 0 where h = 0 and hdot = 0 of both",
                             constraints[condition.contact].name, joined_names(model_, condition.held)));
             zeno(condition.zeno);
+            zeno_restitution(condition.contact);
         }
         unwritten_conditions();
     }

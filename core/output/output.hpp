@@ -10,6 +10,8 @@
 
 namespace achilles {
 
+struct SystemDescription;
+
 // With instants the array `samples` holds them.
 std::string to_json(const Trajectory& trajectory, const Instants& instants = {});
 
@@ -27,8 +29,13 @@ struct Remark {
     std::string label, sentence;
 };
 std::vector<Remark> remarks(const Trajectory& trajectory);
+// What the Euclidean norms over all coordinates, and over all rates, are in: " m", " (m, rad)"; nothing where no unit is given.
+struct NormUnits {
+    std::string position, velocity;
+};
+NormUnits norm_units(const SystemDescription& description);
 // What a certificate says, in one sentence.
-std::string sentence(const Certificate& certificate);
+std::string sentence(const Certificate& certificate, const SystemDescription& description);
 // "[low, high]" with as many digits as tell the ends apart, and two more.
 std::string interval_text(double low, double high);
 // A bound, to two digits; what is below 1e-16, the rounding of numbers about 1, is told as that.

@@ -38,7 +38,7 @@ bool has_been_above(double height, const Trajectory& trajectory, std::size_t con
 
 // eps has the units of the file, whatever the size of the motion: a bouncing that is small beside it is cut too soon.
 std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
-    constexpr double large_share = 0.01, wanted_share = 1e-4;
+    constexpr double large_share = 0.001, wanted_share = 1e-4;
     std::vector<double> largest_of(trajectory.model->contacts(), 0.0);  // runs may have very many such events
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::zeno || !event.certificate || is_plastic_landing(event) ||
@@ -76,24 +76,38 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
                     cut.t)};
 }
 
-// A proof starts from the computed state. Where that is known much less well than the interval is wide, the digits of the
-// interval are of a neighbour's Zeno time.
+// A proof starts from the computed state. Where that is known less well than the interval is wide, the interval is of a
+// neighbour's Zeno time; it matters where it is more than was asked for.
 std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
-    constexpr double clearly = 10.0,
-                     loose = 1e-7;  // the measure of the integration is a rough one, meant for loose ones
-    if (trajectory.run.options.tolerance < loose || trajectory.made_again_by) return std::nullopt;
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
         if (event.kind != Event::Kind::zeno || !event.certificate || !event.certificate->certified) continue;
         const double width = event.certificate->zeno_high - event.certificate->zeno_low;
         const double error = integration_error_of_time(trajectory, i);
-        if (!(width > 0.0) || !(error > clearly * width)) continue;
+        if (!(width > 0.0) || !(error > width) || !(error > trajectory.run.options.truncation.eps_t)) continue;
         return Remark{
             "integration outweighs an interval",
-            fmt::format("the interval of the Zeno time {:.6g} is proved from the computed state, and is {:.1g} "
-                        "wide; the integration and cuts before may have moved it by {:.1g}, roughly measured: "
-                        "a smaller --tolerance than {:g} makes that less",
-                        event.t, width, error, trajectory.run.options.tolerance)};
+            fmt::format("the interval of the Zeno time {:.6g} is {:.1g} s wide: it is proved of the motion from "
+                        "the computed state, and the integration and cuts before may have moved that time by "
+                        "{:.1g} s (an estimate, mostly too large): a smaller --tolerance makes that less",
+                        event.t, width, error)};
+    }
+    return std::nullopt;
+}
+
+// Shorter flights than double precision resolves are not made, whatever was asked for.
+std::optional<Remark> missed(const Trajectory& trajectory) {
+    for (const Event& event : trajectory.events) {
+        if (event.kind != Event::Kind::zeno || !event.certificate || !event.certificate->below_rounding ||
+            !event.certificate->decision)
+            continue;
+        const Inequality& closest = event.certificate->decision->closest();
+        if (closest.left < closest.right) continue;
+        return Remark{
+            "eps is not met",
+            fmt::format("the bouncing was cut at t = {:.6g} since shorter flights cannot be resolved in double "
+                        "precision, before what was asked for is met: {}, {:.2g} < {:.2g}, does not hold",
+                        event.truncation->t, closest.name, closest.left, closest.right)};
     }
     return std::nullopt;
 }
@@ -105,6 +119,7 @@ std::vector<Remark> remarks(const Trajectory& trajectory) {
     std::vector<Remark> all;
     if (trajectory.made_again_by) all.push_back(made_again(trajectory));
     if (auto remark = cut_too_soon(trajectory)) all.push_back(std::move(*remark));
+    if (auto remark = missed(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = integration_outweighs(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = ended_on_the_way(trajectory)) all.push_back(std::move(*remark));
     return all;

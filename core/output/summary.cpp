@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -136,13 +137,17 @@ class Course {
         std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
                                        event.t, contacts, named(model_, 0, event.q, scale_.q));
         if (is_plastic)
-            text += "            plastic: it comes to rest on the surface by this impact, without another bounce;\n";
+            text += "            plastic: from this impact on it stays on the surface, without another bounce;\n";
         else if (event.kind == Event::Kind::zeno)
             text += fmt::format(
-                "            after {} impacts, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
-                event.impacts, event.truncation->t, event.truncation->impact_speed);
+                "            after {} impacts{}, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
+                event.impacts, is_of_several() ? " of this phase (of any contact)" : "", event.truncation->t,
+                event.truncation->impact_speed);
         if (!event.certificate) return text;
-        text += indented(sentence(*event.certificate));
+        text += indented(sentence(*event.certificate, model_.description()));
+        if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
+            text += indented(fmt::format(
+                "not proved: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
         const auto& others = event.certificate->others;
         if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);
@@ -161,8 +166,9 @@ class Course {
 std::string balance(const Trajectory& trajectory) {
     // Of angles alone it would be no unit of an energy.
     const char* unit = unit_of_expression(trajectory.model->description(), "energy") == "J" ? " J" : "";
-    return fmt::format("work {:.9g}{} by forces and moving surfaces, loss {:.9g}{} at impacts\n", trajectory.work + 0.0,
-                       unit, trajectory.loss + 0.0, unit);
+    const bool damped = !trajectory.model->description().dissipation.text.empty();
+    return fmt::format("work {:.9g}{} by forces{} and moving surfaces, loss {:.9g}{} at impacts\n",
+                       trajectory.work + 0.0, unit, damped ? ", dissipation" : "", trajectory.loss + 0.0, unit);
 }
 
 std::string conventions(int count) {
@@ -202,23 +208,42 @@ std::string least_gap_text(double gap, double scale) {
     return fmt::format("{:.2g}", gap + 0.0);
 }
 
-std::string sentence(const Certificate& c) {
+NormUnits norm_units(const SystemDescription& description) {
+    std::vector<std::string> units;
+    for (const CoordinateDescription& coordinate : description.coordinates) {
+        const std::string unit = coordinate.unit.empty() ? "1" : coordinate.unit;
+        if (std::find(units.begin(), units.end(), unit) == units.end()) units.push_back(unit);
+    }
+    if (units == std::vector<std::string>{"1"}) return {};
+    std::vector<std::string> rates;
+    for (const std::string& unit : units) rates.push_back(unit + "/s");
+    const char* const form = units.size() == 1 ? " {}" : " ({})";
+    return {fmt::format(fmt::runtime(form), fmt::join(units, ", ")),
+            fmt::format(fmt::runtime(form), fmt::join(rates, ", "))};
+}
+
+std::string sentence(const Certificate& c, const SystemDescription& description) {
     if (!c.certified) return "not certified";
-    std::string text = fmt::format(
-        "from the computed state at the cut: tau_inf in {} s, the Zeno time; its Zeno point is within {} of the "
-        "position at the cut, its velocity within {} of that after the cut: |q_inf - q*|, |v_inf - v*|",
-        interval_text(c.zeno_low, c.zeno_high), bound_text(c.position_bound), bound_text(c.velocity_bound));
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) return std::string(c.decisive);
+    const NormUnits unit = norm_units(description);
+    const auto position = [&](double bound) { return bound_text(bound) + unit.position; };
+    const auto velocity = [&](double bound) { return bound_text(bound) + unit.velocity; };
+    std::string text = fmt::format(
+        "of the exact motion from the computed state at the cut: tau_inf in {} s, the Zeno time; its Zeno point is "
+        "within {} of the position at the cut, its velocity within {} of the restart's: |q_inf - q*|, |v_inf - v*|",
+        interval_text(c.zeno_low, c.zeno_high), position(c.position_bound), velocity(c.velocity_bound));
     if (c.uniform_position && *c.uniform_position > 0.0)
         text += fmt::format(
-            "; from the cut to tau_inf what is drawn is within {} of the true position (the bounces not drawn are no "
-            "higher): uniform position; at tau_inf it is within {} and {} of the true motion: shadowing position and "
-            "velocity",
-            bound_text(*c.uniform_position), bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity));
-    text += c.paper ? "; of the conditions this had the least room: " : "; of the bounds this had the least room: ";
-    text += c.decisive;
-    if (c.below_rounding) text += " (below rounding: shorter flights cannot be resolved)";
-    return text;
+            "; from the cut to tau_inf what is drawn is within {} of its position (the bounces not drawn are no "
+            "higher): uniform position; at tau_inf it is within {} and {} of its position and velocity: shadowing "
+            "position and velocity",
+            position(*c.uniform_position), position(*c.shadowing_position), velocity(*c.shadowing_velocity));
+    if (c.below_rounding) text += "; cut there since shorter flights cannot be resolved in double precision";
+    const Inequality* closest = c.decision ? &c.decision->closest() : nullptr;
+    if (closest != nullptr && !(closest->left <= closest->right))
+        return text + fmt::format("; what was asked for is not met: {}, {:.2g} < {:.2g}, does not hold", closest->name,
+                                  closest->left, closest->right);
+    return text + fmt::format("; of the {} this had the least room: {}", c.paper ? "conditions" : "bounds", c.decisive);
 }
 
 std::string summary(const Trajectory& trajectory) {

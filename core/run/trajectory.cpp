@@ -35,7 +35,8 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
     const auto after = std::lower_bound(pieces.begin(), pieces.end(), first->t,
                                         [](const Piece& piece, double t) { return piece.start < t; });
     const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
-    double state = integration_error(used, static_cast<double>(after - pieces.begin()));
+    constexpr double generous = 30.0;
+    double state = generous * integration_error(used, static_cast<double>(after - pieces.begin()));
     for (std::size_t i = 0; i < zeno_event; ++i)
         if (const auto& cut = trajectory.events[i].certificate)
             state += std::max(cut->shadowing_position.value_or(0.0), cut->shadowing_velocity.value_or(0.0));

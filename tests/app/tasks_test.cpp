@@ -44,7 +44,7 @@ TEST(Tasks, a_time_and_its_interval_are_read_without_a_click) {
     const Event& event = hands.session.trajectory().events[static_cast<std::size_t>(zeno - 1)];
     EXPECT_TRUE(hands.says("Zeno point at t = 12.4657")) << hands.letters();
     ASSERT_TRUE(event.certificate);
-    const std::string proof = sentence(*event.certificate);
+    const std::string proof = sentence(*event.certificate, hands.session.description());
     const std::size_t begin = proof.find('['), end = proof.find(']');
     EXPECT_TRUE(hands.says(proof.substr(begin, end - begin))) << hands.letters();
     EXPECT_TRUE(hands.all.empty());

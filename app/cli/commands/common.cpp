@@ -130,7 +130,7 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
         const std::string flag(option->flag), common = common_flag(*option);
         if (common != flag && option == &options_set_by(option->command)[0])
             add_option(command, *option, common,
-                       "the error the cut may cost in position, velocity and time: all three of"
+                       "what a cut may cost in position, in velocity at the Zeno time, and in that time: all three of"
                        " those below",
                        overrides);
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);

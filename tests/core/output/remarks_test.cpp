@@ -18,18 +18,18 @@ TEST(Remarks, ABoundAsLargeAsTheMotion) {
     assign(run, floor->description(), "y'=0");
     run.options.end_time = 0.1;
     const std::vector<Remark> large = remarks(simulate(floor, run));
-    ASSERT_EQ(large.size(), 1u);
+    ASSERT_GE(large.size(), 1u);
     EXPECT_NE(large[0].sentence.find("eps_q = 1e-06 is large beside this motion: the bouncing was cut at its first "
                                      "impact, t = 0.000201"),
               std::string::npos)
         << large[0].sentence;
-    EXPECT_EQ(nlohmann::json::parse(to_json(simulate(floor, run)))["warnings"], nlohmann::json{large[0].sentence});
+    EXPECT_EQ(nlohmann::json::parse(to_json(simulate(floor, run)))["warnings"][0], large[0].sentence);
     EXPECT_NE(large[0].sentence.find("the gap is never above 2e-07: try --eps 1e-11"), std::string::npos)
         << large[0].sentence;
     run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-11;
     const Trajectory better = simulate(floor, run);
     EXPECT_GT(better.statistics.impacts, 3);
-    EXPECT_TRUE(remarks(better).empty());
+    for (const Remark& remark : remarks(better)) EXPECT_NE(remark.label, large[0].label);
 }
 
 // The proofs start from the computed state: an interval says little where that is wrong by more.
@@ -41,13 +41,32 @@ TEST(Remarks, ALooseTolerance) {
     const Trajectory loose = simulate(ball, run);
     const std::vector<Remark> said = remarks(loose);
     ASSERT_EQ(said.size(), 1u);
-    EXPECT_NE(said[0].sentence.find("a smaller --tolerance than 0.001 makes that less"), std::string::npos);
+    EXPECT_NE(said[0].sentence.find("may have moved that time by"), std::string::npos);
     const auto zeno_of = [](const Trajectory& of) {
         return *std::find_if(of.events.rbegin(), of.events.rend(),
                              [](const Event& e) { return e.kind == Event::Kind::zeno; });
     };
     EXPECT_LT(zeno_of(trajectory).t, zeno_of(loose).certificate->zeno_low);  // indeed
     EXPECT_TRUE(remarks(trajectory).empty());
+}
+
+// What double precision cannot resolve is cut, whatever was asked for: then what was asked for is not said to hold.
+TEST(Remarks, AnEpsThatIsNotMet) {
+    const auto ball = test::load("ball_on_sine");
+    auto run = ball->default_run();
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-15;
+    run.options.tolerance = 1e-14;
+    const Trajectory fine = simulate(ball, run);
+    const auto missed = std::find_if(fine.events.begin(), fine.events.end(), [](const Event& event) {
+        return event.certificate && event.certificate->below_rounding &&
+               event.certificate->decision->closest().left > event.certificate->decision->closest().right;
+    });
+    ASSERT_NE(missed, fine.events.end());
+    const std::string told = sentence(*missed->certificate, ball->description());
+    EXPECT_NE(told.find("what was asked for is not met: "), std::string::npos) << told;
+    EXPECT_EQ(told.find("least room"), std::string::npos) << told;
+    const std::vector<Remark> said = remarks(fine);
+    EXPECT_EQ(std::count_if(said.begin(), said.end(), [](const Remark& r) { return r.label == "eps is not met"; }), 1);
 }
 
 // A run that ends between a cut and its Zeno point has no event of it yet.
@@ -79,7 +98,7 @@ TEST(Remarks, ABoundAsLargeAsTheMotionAfterSeveralImpacts) {
     assign(run, floor->description(), "e=0.7");
     run.options.end_time = 0.1;
     const std::vector<Remark> large = remarks(simulate(floor, run));
-    ASSERT_EQ(large.size(), 1u);
+    ASSERT_GE(large.size(), 1u);
     EXPECT_NE(large[0].sentence.find("the bouncing was cut after "), std::string::npos) << large[0].sentence;
 }
 
