@@ -7,6 +7,7 @@
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/sentences.hpp"
 #include "simulate/least_gap.hpp"
 #include "system/units.hpp"
 
@@ -52,6 +53,7 @@ class Course {
         : trajectory_(trajectory),
           model_(*trajectory.model),
           scale_(scale_of(trajectory)),
+          sentences_(trajectory),
           ends_(ends_of_phases(trajectory)) {}
 
     std::string told() const {
@@ -136,13 +138,10 @@ class Course {
         const std::string contacts = is_of_several() ? " of " + names(event.contacts) + "," : "";
         std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
                                        event.t, contacts, named(model_, 0, event.q, scale_.q));
-        if (is_plastic)
-            text += "            plastic: from this impact on it stays on the surface, without another bounce;\n";
-        else if (event.kind == Event::Kind::zeno)
-            text += fmt::format(
-                "            after {} impacts{}, cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
-                event.impacts, is_of_several() ? " of this phase (of any contact)" : "", event.truncation->t,
-                event.truncation->impact_speed);
+        text += indented(sentences_.of(index));
+        if (event.truncation && !is_plastic)
+            text += fmt::format("            cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
+                                event.truncation->t, event.truncation->impact_speed);
         if (!event.certificate) return text;
         text += indented(sentence(*event.certificate, model_.description()));
         if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
@@ -151,14 +150,13 @@ class Course {
         const auto& others = event.certificate->others;
         if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);
-        if (const std::string convention = given(trajectory_, index); !convention.empty())
-            text += indented("given " + convention);
         return text;
     }
 
     const Trajectory& trajectory_;
     const Model& model_;
     State scale_;
+    Sentences sentences_;
     std::vector<std::size_t> ends_;
 };
 

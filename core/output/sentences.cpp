@@ -1,0 +1,147 @@
+#include "output/sentences.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/model.hpp"
+#include "output/contacts.hpp"
+#include "output/energy.hpp"
+#include "system/units.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::string with_unit(const std::string& value, const std::string& unit) {
+    return unit.empty() ? value : value + " " + unit;
+}
+
+std::string seconds(double t, int digits = 6) { return fmt::format("{:.{}g} s", t + 0.0, digits); }
+
+}  // namespace
+
+std::string rounded_up(double bound) {
+    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
+    std::string text = fmt::format("{:.2g}", std::ceil(bound / unit) * unit);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
+std::optional<double> proved_time(const Event& event) {
+    if (!event.certificate || !event.certificate->certified || is_plastic_landing(event)) return std::nullopt;
+    return std::max(event.certificate->zeno_high - event.t, event.t - event.certificate->zeno_low);
+}
+
+Sentences::Sentences(const Trajectory& trajectory) : trajectory_(trajectory) {
+    const Model& model = *trajectory.model;
+    is_of_several_ = model.contacts() > 1;
+    energy_unit_ = unit_of_expression(model.description(), "energy");
+    for (const std::string& rate : output_names(model.description(), "gap'"))
+        rate_units_.push_back(unit_of_expression(model.description(), rate));
+    EnergyBalance balance(model, trajectory.run);
+    Sample start, end;
+    start.t = trajectory.run.options.start_time, start.state = trajectory.run.start();
+    end.t = trajectory.end_time, end.state = trajectory.end;
+    for (const Sample* sample : {&start, &end}) {
+        const Energies energies = balance.at(*sample);
+        energy_scale_ = std::max({energy_scale_, std::abs(energies.kinetic), std::abs(energies.potential)});
+    }
+    for (std::size_t i = 0; i < trajectory.events.size() && !by_convention_; ++i)
+        if (trajectory.events[i].joint && trajectory.events[i].joint->order_matters) by_convention_ = i;
+}
+
+std::string Sentences::energy(double value) const {
+    const double shown = without_noise(value, 10.0 * std::max(energy_scale_, std::abs(trajectory_.loss)));
+    return shown == 0.0 ? "" : with_unit(fmt::format("{:.3g}", shown), energy_unit_);
+}
+
+// ", 0.4 J lost"; nothing of an elastic impact.
+std::string Sentences::lost(double energy) const {
+    const std::string text = this->energy(energy);
+    if (text.empty()) return "";
+    return energy_unit_.empty() ? ", energy lost " + text : ", " + text + " lost";
+}
+
+std::string Sentences::of(std::size_t event) const {
+    switch (trajectory_.events[event].kind) {
+        case Event::Kind::zeno:
+            return zeno(event);
+        case Event::Kind::release:
+            return release(trajectory_.events[event]);
+        case Event::Kind::impact:
+            break;
+    }
+    return impact(event);
+}
+
+std::string Sentences::impact(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    std::size_t first = 0;
+    while (first + 1 < rate_units_.size() && !event.contacts.contains(first)) ++first;
+    std::string text = "impact";
+    if (is_of_several_) text += " of " + joined_names(*trajectory_.model, event.contacts, " and ");
+    if (event.contacts.count() > 1) text += " at once";
+    text += " at gap speed " + with_unit(fmt::format("{:.4g}", event.impact_speed), rate_units_[first]);
+    const Event* next = index + 1 < trajectory_.events.size() ? &trajectory_.events[index + 1] : nullptr;
+    const bool is_cut =
+        next != nullptr && next->truncation && next->truncation->t == event.t && !is_plastic_landing(*next);
+    const std::string loss = lost(energy_lost(trajectory_, index));
+    text += loss;
+    if (is_cut && !loss.empty()) text += " by it and the restart";
+    if (!event.opened.empty()) text += "; it opens " + joined_names(*trajectory_.model, event.opened, " and ");
+    if (event.joint && event.joint->order_matters) text += "; their order matters: Moreau's law takes them together";
+    if (event.joint && event.joint->not_unique) text += "; impulses not unique";
+    if (is_cut) text += "; the bouncing is cut here";
+    return text;
+}
+
+std::string Sentences::zeno(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    const std::string names = is_of_several_ ? joined_names(*trajectory_.model, event.contacts, " and ") : "";
+    const bool is_one = event.contacts.count() == 1;
+    const std::string begins = names.empty() ? "contact begins" : names + (is_one ? " is held" : " are held");
+    // Its impact has told what is lost.
+    if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
+    const Pile pile = pile_of(trajectory_, index);
+    std::string text =
+        fmt::format("{}: {}", begins, pile.impacts == 1 ? "1 impact" : fmt::format("{} impacts", pile.impacts));
+    if (pile.impacts > 0)
+        text += (pile.impacts == 1 ? " at " : " since ") + seconds(trajectory_.events[pile.first].t, 4);
+    text += lost(pile.loss);
+    const std::optional<double> bound = proved_time(event);
+    text += !bound         ? ", not proved"
+            : *bound > 0.0 ? fmt::format(", proved to {} s from the cut", rounded_up(*bound))
+                           : ", proved from the cut";
+    if (by_convention_ && *by_convention_ < index)
+        text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
+    return text;
+}
+
+std::string Sentences::release(const Event& event) const {
+    if (!is_of_several_) return "contact ends: the contact force falls to zero";
+    const bool is_one = event.contacts.count() == 1;
+    return joined_names(*trajectory_.model, event.contacts, " and ") +
+           (is_one ? " lets go: its force falls to zero" : " let go: their forces fall to zero");
+}
+
+std::string Sentences::state(ContactSet held) const {
+    if (held.empty()) return "in free flight";
+    if (!is_of_several_) return "in contact";
+    return joined_names(*trajectory_.model, held, " and ") + (held.count() == 1 ? " is held" : " are held");
+}
+
+std::string Sentences::start() const {
+    const ContactSet held = trajectory_.phases.empty() ? trajectory_.end_held : trajectory_.phases.front().held;
+    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time), state(held));
+}
+
+std::string Sentences::end() const {
+    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time), state(trajectory_.end_held));
+    if (trajectory_.outcome.kind != Outcome::Kind::end_time)
+        text += fmt::format("; the run ends early: {}", to_text(trajectory_.outcome.kind));
+    return text;
+}
+
+}  // namespace achilles

@@ -1,0 +1,158 @@
+// A sentence for every event, and the energy in it.
+#include "output/sentences.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "core/several.hpp"
+#include "core/systems.hpp"
+#include "output/contacts.hpp"
+#include "output/energy.hpp"
+#include "output/output.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+namespace {
+
+Trajectory run_of(const std::string& system) {
+    const auto model = test::load(system);
+    return simulate(model, model->default_run());
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+class SentencesOf : public testing::TestWithParam<std::string> {};
+
+// "Proved" is said where the certificate is, of a bound that its interval of time keeps, and nowhere else.
+TEST_P(SentencesOf, ProveNoMoreThanTheCertificate) {
+    const Trajectory trajectory = run_of(GetParam());
+    const Sentences sentences(trajectory);
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        const Event& event = trajectory.events[i];
+        const std::string text = sentences.of(i);
+        const std::string proved = "proved to ";
+        const std::size_t at = text.find(proved);
+        const bool may = event.kind == Event::Kind::zeno && !is_plastic_landing(event) && event.certificate->certified;
+        ASSERT_EQ(at != std::string::npos, may) << text;
+        if (!may) continue;
+        const double bound = std::strtod(text.c_str() + at + proved.size(), nullptr);
+        EXPECT_LE(event.certificate->zeno_high - event.t, bound) << text;
+        EXPECT_LE(event.t - event.certificate->zeno_low, bound) << text;
+        EXPECT_LE(bound, 1.11 * *proved_time(event)) << text;
+        EXPECT_TRUE(holds(text, " s from the cut")) << text;
+    }
+}
+
+// The contacts by name where there are several, and how many impacts a bouncing had.
+TEST_P(SentencesOf, NameContactsAndCountImpacts) {
+    const Trajectory trajectory = run_of(GetParam());
+    const Model& model = *trajectory.model;
+    const Sentences sentences(trajectory);
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        const Event& event = trajectory.events[i];
+        const std::string text = sentences.of(i);
+        if (model.contacts() > 1)
+            for (const std::string& name : contact_names(model, event.contacts)) EXPECT_TRUE(holds(text, name)) << text;
+        for (const std::string& name : contact_names(model, event.opened)) EXPECT_TRUE(holds(text, name)) << text;
+        if (event.kind == Event::Kind::zeno && !is_plastic_landing(event) && model.contacts() == 1)
+            EXPECT_EQ(pile_of(trajectory, i).impacts, event.impacts) << text;
+    }
+}
+
+// What is lost, event by event, is what the run lost; and a pile has what its impacts have.
+TEST_P(SentencesOf, LeaveNoEnergyOut) {
+    const Trajectory trajectory = run_of(GetParam());
+    double all = 0.0;
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        const double lost = energy_lost(trajectory, i);
+        EXPECT_GE(lost, -1e-10 * std::max(1.0, trajectory.loss)) << i;
+        all += lost;
+        if (trajectory.events[i].kind != Event::Kind::zeno || trajectory.model->contacts() > 1) continue;
+        const Pile pile = pile_of(trajectory, i);
+        EXPECT_NEAR(pile.loss,
+                    trajectory.events[i].loss - (pile.first > 0 ? trajectory.events[pile.first - 1].loss : 0.0),
+                    1e-12 * std::max(1.0, trajectory.loss));
+    }
+    EXPECT_NEAR(all, trajectory.loss, 1e-12 * std::max(1.0, trajectory.loss));
+    // E(t) - E(start) = work - loss at any instant.
+    EnergyBalance balance(*trajectory.model, trajectory.run);
+    Sampler sampler(trajectory);
+    const double start = trajectory.run.options.start_time;
+    const Energies first = balance.at(sampler.at(start));
+    for (const double share : {0.21, 0.5, 0.83, 1.0}) {
+        const Energies now = balance.at(sampler.at(start + share * (trajectory.end_time - start)));
+        const double size = std::max({1.0, std::abs(now.kinetic), std::abs(now.potential), std::abs(now.work)});
+        EXPECT_NEAR(now.total() - first.total(), now.work - now.loss, 1e-6 * size) << share;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Systems, SentencesOf,
+                         testing::Values("ball_on_sine", "double_pendulum_two_stops", "kneed_leg", "box_dropped_flat",
+                                         "driven_double_pendulum", "ball_on_table"));
+
+TEST(Sentences, SayWhatAPersonWould) {
+    const Trajectory trajectory = run_of("ball_on_sine");
+    const Sentences sentences(trajectory);
+    std::size_t zeno = 0;
+    while (trajectory.events[zeno].kind != Event::Kind::zeno) ++zeno;
+    const std::string text = sentences.of(zeno);
+    EXPECT_EQ(text.find("contact begins: 9 impacts since "), 0U) << text;
+    EXPECT_TRUE(holds(text, " J lost, proved to ")) << text;
+    EXPECT_EQ(sentences.of(zeno + 1), "contact ends: the contact force falls to zero");
+    EXPECT_TRUE(holds(sentences.of(0), "impact at gap speed ")) << sentences.of(0);
+    EXPECT_TRUE(holds(sentences.of(0), " m/s, ")) << sentences.of(0);
+    EXPECT_TRUE(holds(sentences.of(zeno - 1), "; the bouncing is cut here")) << sentences.of(zeno - 1);
+    EXPECT_EQ(sentences.start(), "start at 0 s: in free flight");
+    EXPECT_EQ(sentences.end(), "end at 20 s: in contact");
+    EXPECT_TRUE(holds(summary(trajectory), text)) << "the command line says the same";
+}
+
+// What is not certified is not said to be proved; what stands on a convention says so.
+TEST(Sentences, SayWhatIsNotProved) {
+    Trajectory trajectory = run_of("ball_on_sine");
+    std::size_t zeno = 0;
+    while (trajectory.events[zeno].kind != Event::Kind::zeno) ++zeno;
+    trajectory.events[zeno].certificate->certified = false;
+    EXPECT_TRUE(holds(Sentences(trajectory).of(zeno), "not proved"));
+    EXPECT_FALSE(holds(Sentences(trajectory).of(zeno), "proved to"));
+    trajectory.events[zeno].certificate->certified = true;
+    auto joint = std::make_shared<Joint>();
+    joint->order_matters = true;
+    trajectory.events[0].joint = joint;
+    EXPECT_TRUE(holds(Sentences(trajectory).of(zeno), "given Moreau's law at event 1"));
+    EXPECT_TRUE(holds(Sentences(trajectory).of(0), "their order matters"));
+}
+
+TEST(Sentences, TellLandingsAndEarlyEnds) {
+    const auto model = test::load("ball_on_floor");
+    achilles::Run run = model->default_run();
+    const auto& names = model->description().parameters;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i].name == "e") run.parameters[i] = 0.0;
+    const Trajectory landing = simulate(model, run);
+    std::string all;
+    for (std::size_t i = 0; i < landing.events.size(); ++i) all += Sentences(landing).of(i) + "\n";
+    EXPECT_TRUE(holds(all, "contact begins: it lands without a bounce\n")) << all;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (names[i].name == "e") run.parameters[i] = 1.0;
+    run.options.max_impacts = 3;
+    const Trajectory elastic = simulate(model, run);
+    EXPECT_FALSE(holds(Sentences(elastic).of(0), "lost"))
+        << "an elastic impact loses nothing: " << Sentences(elastic).of(0);
+    EXPECT_TRUE(holds(Sentences(elastic).end(), "the run ends early: too many impacts")) << Sentences(elastic).end();
+}
+
+TEST(Sentences, BoundsAreRoundedUp) {
+    EXPECT_EQ(rounded_up(3.51e-7), "3.6e-7");
+    EXPECT_EQ(rounded_up(1.0e-3), "0.001");
+    for (double bound = 1.2345e-13; bound < 1e3; bound *= 1.7) {
+        const double told = std::strtod(rounded_up(bound).c_str(), nullptr);
+        EXPECT_GE(told, bound * (1.0 - 1e-15));
+        EXPECT_LE(told, 1.1 * bound);
+    }
+}
+
+}  // namespace
+}  // namespace achilles
