@@ -8,9 +8,11 @@
 #include "figure/label.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
+#include "output/energy.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
+#include "panels/event_columns.hpp"
 #include "panels/event_rows.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -19,10 +21,7 @@ namespace achilles {
 
 namespace {
 
-// Where the columns of the list are, at scale 1, from its left edge: signs and words begin there, numbers end there.
-constexpr float sign_at = 14.0F, number_at = 62.0F, kind_at = 76.0F, time_at = 274.0F, proof_at = 366.0F,
-                speed_at = 462.0F, kind_width = 104.0F, state_width = 112.0F, list_padding = 4.0F;
-constexpr float list_beside_card = 300.0F, least_card = 540.0F;
+constexpr float list_padding = 4.0F, list_beside_card = 300.0F, least_card = 540.0F;
 
 // The index of the event that the user chose, which is shown with its reasons; or none.
 std::optional<std::size_t> chosen(const Session& session) {
@@ -52,43 +51,6 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-// A column of the state after an event: a coordinate or its rate.
-struct StateColumn {
-    std::string name, title;
-    Eigen::Index coordinate = 0;
-    bool is_rate = false;
-    double factor = 1.0;
-    double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
-    double size(const State& scale) const { return (is_rate ? scale.v : scale.q)[coordinate] * factor; }
-    // Rounding noise is shown as 0.
-    double shown(const Event& event, const State& scale) const { return without_noise(of(event), size(scale)); }
-};
-
-std::vector<StateColumn> state_columns(const Session& session) {
-    std::vector<StateColumn> columns;
-    const auto& coordinates = session.description().coordinates;
-    for (const bool is_rate : {false, true})
-        for (std::size_t i = 0; i < coordinates.size(); ++i) {
-            const bool is_angle = coordinates[i].unit == "rad";
-            std::string unit = is_angle ? "\u00b0" : typeset_unit(coordinates[i].unit);
-            if (is_rate && !unit.empty()) unit += "/s";
-            const std::string name = coordinates[i].name + (is_rate ? "'" : "");
-            columns.push_back({name, with_unit(typeset_name(name), unit), static_cast<Eigen::Index>(i), is_rate,
-                               is_angle ? degrees(1.0) : 1.0});
-        }
-    return columns;
-}
-
-// The speed of the first impact, about as large as any.
-double fastest_gap(const Session& session) {
-    const auto& events = session.trajectory().events;
-    const auto first = std::find_if(events.begin(), events.end(),
-                                    [](const Event& event) { return event.kind == Event::Kind::impact; });
-    return first == events.end() ? 0.0 : first->impact_speed;
-}
-
-bool is_of_several(const Session& session) { return session.model()->contacts() > 1; }
-
 // "Zeno point", and where there are several contacts "Zeno knee", "wall opens knee".
 std::string event_name(const Session& session, const Event& event) {
     const std::string contacts = contacts_told(session.trajectory(), event);
@@ -101,9 +63,10 @@ std::string event_name(const Session& session, const Event& event) {
 // The events for a spreadsheet, every digit: the chosen one, or all. In the units of the list.
 std::string table(const Session& session) {
     const std::vector<StateColumn> columns = state_columns(session);
-    const bool several = is_of_several(session);
+    const bool several = session.model()->contacts() > 1;
     std::string text = several ? "#\tevent\tcontacts\topened\theld\tt\timpact speed" : "#\tevent\tt\timpact speed";
     for (const StateColumn& column : columns) text += "\t" + column.name;
+    text += "\tenergy lost\tsentence";
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (chosen(session).value_or(i) != i) continue;
@@ -114,6 +77,7 @@ std::string table(const Session& session) {
             if (several) text += "\t" + joined_names(*session.model(), set, "+");
         text += fmt::format("\t{}\t{}", event.t, is_impact ? fmt::format("{}", event.impact_speed) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
+        text += fmt::format("\t{}\t{}", energy_lost(session.trajectory(), i), session.sentences().of(i));
     }
     return text + "\n";
 }
@@ -146,38 +110,11 @@ void show_comparing(const Session& session, float x, PanelState& state, Commands
     tooltip("keep the present run in the plots, in grey, beside those that follow");
 }
 
-// A number, or a word over numbers, that ends at x; a long word is cut.
-void number_cell(ImVec2 at, float x, const std::string& text, const Color& color) {
-    const float room = units(state_width - 8.0F), width = std::min(label_width(text, ImGui::GetFontSize()), room);
-    cell({std::floor(at.x + units(x) - width), at.y}, text, width + 0.5F, color);
-}
-
-// Where the first column of the state ends: before it stands what is held, where there are several contacts.
-float first_column(const Session& session) { return speed_at + state_width * (is_of_several(session) ? 2.0F : 1.0F); }
-
-// How many columns of the state have room.
-std::size_t columns_shown(const Session& session, float width) {
-    const float room = width - units(first_column(session) - state_width + 12.0F);
-    const auto fitting = static_cast<std::size_t>(std::max(0.0F, room / units(state_width)));
-    return has_card(session) ? 0 : std::min(fitting, 2 * session.description().coordinates.size());
-}
-
-void paint_titles(const Session& session, ImVec2 at, float width) {
-    const bool alone = !has_card(session);
-    const auto title = [&](float x, const std::string& text) {
-        if (units(x) <= width) number_cell(at, x, text, faint_color());
-    };
-    title(number_at, "#");
-    ImGui::GetWindowDrawList()->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(faint_color()), "event");
-    title(time_at, "t (s)");
-    if (!alone) return;
-    title(proof_at, "\u00b1 from cut");
-    title(speed_at, "gap speed");
-    const float first = first_column(session);
-    if (is_of_several(session)) title(first - state_width, "held");
-    const std::vector<StateColumn> columns = state_columns(session);
-    for (std::size_t i = 0; i < columns_shown(session, width); ++i)
-        title(first + state_width * static_cast<float>(i), columns[i].title);
+void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
+    number_cell(at, number_at, "#", faint_color());
+    number_cell(at, time_at, "t (s)", faint_color());
+    columns.put_words(at, "event", faint_color());
+    columns.titles(session, at);
 }
 
 void show_header(const Session& session, PanelState& state, Commands& commands) {
@@ -199,35 +136,26 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(session, buttons, state, commands);
 }
 
-void paint_event(const Session& session, std::size_t index, ImVec2 at, float width) {
+void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    std::string name = event_name(session, event);
-    if (!event.opened.empty() && ImGui::CalcTextSize(name.c_str()).x > units(kind_width))
-        name = "opens " + joined_names(*session.model(), event.opened);
-    cell({std::floor(at.x + units(kind_at)), at.y}, name, units(kind_width), text_color());
     number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
-    if (has_card(session)) return;
-    const std::string proof = event.kind == Event::Kind::zeno ? time_text(session.trajectory(), index) : "";
-    if (const std::size_t sign = proof.find("\u00b1 "); sign != std::string::npos)
-        number_cell(at, proof_at, proof.substr(sign + 3), text_color());
-    if (event.kind == Event::Kind::impact)
-        number_cell(at, speed_at, number_of_size(event.impact_speed, fastest_gap(session), 6), text_color());
-    const float first = first_column(session);
-    if (is_of_several(session) && units(first - state_width) <= width)
-        number_cell(at, first - state_width, joined_names(*session.model(), event.held), text_color());
-    const std::vector<StateColumn> columns = state_columns(session);
-    for (std::size_t i = 0; i < columns_shown(session, width); ++i)
-        number_cell(at, first + state_width * static_cast<float>(i),
-                    number_of_size(columns[i].shown(event, session.scale()), columns[i].size(session.scale()), 5),
-                    text_color());
+    // Beside a card, which says the rest, its name.
+    const std::string name =
+        has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
+    columns.put_words(at, name, text_color());
+    // At a Zeno point all its impacts, as the sentence has it.
+    const double lost = event.kind == Event::Kind::zeno && !is_plastic_landing(event)
+                            ? pile_of(session.trajectory(), index).loss
+                            : energy_lost(session.trajectory(), index);
+    columns.row(session, &event, lost, at, text_color());
 }
 
-// "10 impacts", and when the first and the last of them were.
-void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at) {
+// "10 impacts", when the first of them was, and what they have lost: quiet, the Zeno point says it again.
+void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at, const EventColumns& columns) {
     const auto& events = session.trajectory().events;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 c{at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()};
@@ -241,13 +169,14 @@ void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at)
     const auto end = events.begin() + static_cast<std::ptrdiff_t>(row.event + row.count);
     const bool any_turn = std::any_of(events.begin() + static_cast<std::ptrdiff_t>(row.event), end,
                                       [](const Event& event) { return event.kind != Event::Kind::impact; });
-    list->AddText({std::floor(at.x + units(kind_at)), at.y}, packed(text_color()),
-                  fmt::format("{} {}", row.count, any_turn ? "events" : "impacts").c_str());
+    const double lost = events[row.event + row.count - 1].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0);
+    columns.put_words(at, fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
     number_cell(at, time_at, number(events[row.event].t, "{:.9f}"), faint_color());
+    columns.row(session, nullptr, lost, at, faint_color());
 }
 
-void show_impacts(const Session& session, const EventRows::Row& row, int present, PanelState& state,
-                  Commands& commands) {
+void show_impacts(const Session& session, const EventRows::Row& row, int present, const EventColumns& columns,
+                  PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const auto& events = session.trajectory().events;
     const std::size_t last = row.event + row.count - 1;
@@ -265,12 +194,12 @@ void show_impacts(const Session& session, const EventRows::Row& row, int present
     remember(state, "impacts " + std::to_string(row.event + 1));
     tooltip(fmt::format("events {} to {}, t = {:.9g} to {:.9g} s: a click {} them", row.event + 1, last + 1,
                         events[row.event].t, events[last].t, row.is_open ? "folds" : "lists"));
-    paint_impacts(session, row, at);
+    paint_impacts(session, row, at, columns);
 }
 
-void show_event(const Session& session, std::size_t event, int present, PanelState& state, Commands& commands) {
+void show_event(const Session& session, std::size_t event, int present, const EventColumns& columns, PanelState& state,
+                Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetWindowWidth() - ImGui::GetStyle().ScrollbarSize;
     const int event_number = static_cast<int>(event) + 1;
     const bool is_selected =
         session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(event));
@@ -278,55 +207,76 @@ void show_event(const Session& session, std::size_t event, int present, PanelSta
     if (ImGui::Selectable("##row", is_selected))
         commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
     remember(state, "event " + std::to_string(event_number));
-    paint_event(session, event, at, width);
+    paint_event(session, event, at, columns);
+}
+
+// Where the run begins or ends, and how: a click goes there.
+void show_end(const Session& session, bool is_start, const EventColumns& columns, PanelState& state,
+              Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const double t = is_start ? session.run().options.start_time : session.trajectory().end_time;
+    const bool is_present = session.selected() == 0 && session.time() == t;
+    if (ImGui::Selectable("##row", is_present)) {
+        if (session.selected() > 0) commands.emplace_back(command::Select{0});
+        commands.emplace_back(command::Seek{t});
+    }
+    remember(state, is_start ? "event start" : "event end");
+    number_cell(at, time_at, number(t, "{:.9f}"), faint_color());
+    // Its time stands in a column.
+    std::string text = is_start ? session.sentences().start() : session.sentences().end();
+    const std::size_t colon = text.find(": ");
+    text = (is_start ? "start" : "end") + text.substr(colon);
+    columns.put_words(at, typeset_sentence(text), faint_color());
 }
 
 // Scrolls so that the row is seen, once whenever another row is the one to see.
 void follow(const EventRows& all, int event, PanelState& state) {
     if (event == state.followed) return;
     state.followed = event;
-    const float y =
-        static_cast<float>(all.row_of(static_cast<std::size_t>(event))) * ImGui::GetTextLineHeightWithSpacing();
+    // The first line is the start. Before anything has happened that is what is to be seen.
+    const std::size_t row = event < 0 ? 0 : all.row_of(static_cast<std::size_t>(event)) + 1;
+    const float y = static_cast<float>(row) * ImGui::GetTextLineHeightWithSpacing();
     const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
     // By whole lines: none is cut at the top.
     if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
         ImGui::SetScrollY(std::max(0.0F, std::floor((y - 0.3F * height) / line) * line));
 }
 
-}  // namespace
-
-namespace {
-
 void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
     begin_padded_child("list", size);
     // As wide as the rows are where they can be scrolled.
-    paint_titles(session, ImGui::GetCursorScreenPos(),
-                 ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize);
-    const ImVec2 head = ImGui::GetCursorPos();
-    ImGui::SetCursorPosX(head.x + units(proof_at - state_width));
+    const EventColumns columns(session, ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize,
+                               !has_card(session));
+    paint_titles(session, ImGui::GetCursorScreenPos(), columns);
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(words_at));
     ImGui::Dummy({units(state_width), ImGui::GetTextLineHeight()});
     if (!has_card(session)) tooltip(precision_text());
-    ImGui::SetCursorPos(head);
-    ImGui::Dummy({1.0F, ImGui::GetTextLineHeight()});
     const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::BeginChild("rows", {0.0F, room}, false);
     const EventRows all(session, state);
-    const int present = reached(session);
+    const int present = reached(session), seen = session.selected() > 0 ? session.selected() - 1 : present;
+    // At the end nothing has been reached but the end itself.
+    const bool is_over = session.selected() == 0 && session.time() >= session.trajectory().end_time;
     ImGui::SetCursorPosY(
         std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));  // the first line is marked as high as the others
-    if (all.size() == 0) ImGui::TextDisabled("  nothing happens in this run");
-    if (all.size() > 0) follow(all, session.selected() > 0 ? session.selected() - 1 : std::max(present, 0), state);
+    follow(all, seen, state);
     ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(all.size()), ImGui::GetTextLineHeightWithSpacing());
+    const int rows = static_cast<int>(all.size()) + 2;
+    clipper.Begin(rows, ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            const EventRows::Row row = all.at(static_cast<std::size_t>(i));
             ImGui::PushID(i);  // not its address, which another frame gives to another row
-            if (row.count > 0)
-                show_impacts(session, row, present, state, commands);
-            else
-                show_event(session, row.event, present, state, commands);
+            if (i == 0 || i == rows - 1) {
+                show_end(session, i == 0, columns, state, commands);
+            } else {
+                const EventRows::Row row = all.at(static_cast<std::size_t>(i - 1));
+                const int reached = is_over ? -1 : present;
+                if (row.count > 0)
+                    show_impacts(session, row, reached, columns, state, commands);
+                else
+                    show_event(session, row.event, reached, columns, state, commands);
+            }
             ImGui::PopID();
         }
     ImGui::EndChild();

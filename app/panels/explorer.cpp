@@ -52,7 +52,7 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     measures.bar = ImGui::GetFrameHeight() + units(12.0F);
     measures.status = ImGui::GetFrameHeight() + units(6.0F);
     measures.timeline = timeline_height();
-    measures.results = results_height;
+    measures.results = [&](float) { return results_height(session); };
     measures.state = [&](float width) { return state_height(session, width); };
     measures.error = [&](float width) { return card_height(message, width); };
     measures.caption = [&](float width) { return caption_height(session, state, width); };

@@ -135,6 +135,14 @@ struct PlaneView {
     const PreparedView* gap_of = nullptr;
 };
 
+// Where a hand has moved the strip of results.
+struct ResultStrip {
+    std::optional<std::size_t> begin;  // the first result that is shown; nothing: as the time has it
+    std::size_t seen = 0, count = 0;   // until another event is to be seen, or another run: its event; how many results
+    bool is_held = false, was_dragged = false;
+    float dragged = 0.0F;  // since it moved last, pixels
+};
+
 class EquationsView;
 
 // What belongs to the view and not to the session, so is in no journal.
@@ -165,6 +173,7 @@ struct PanelState {
     bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
     bool changing = false;   // a change was made that more commands may go on with
+    ResultStrip strip;
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
     std::shared_ptr<EquationsView> equations;          // once they were shown
     // A name that the mouse is over: in the equations, in this frame and in the last; in the controls, on its slider.
@@ -201,7 +210,7 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
 void show_mechanism(const Session& session, PanelState& state, Commands& commands);
 // Under the mechanism: every Zeno point and release, with what is proved of its time.
 void show_results(const Session& session, PanelState& state, Commands& commands);
-float results_height(float width);
+float results_height(const Session& session);
 // At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
 void show_state(const Session& session, const Rectangle& panel);
 float state_height(const Session& session, float panel_width);

@@ -1,13 +1,15 @@
-// Under the mechanism: what came out of the run, in a line or two. Every Zeno point, release and opening impact is pressed to go
-// there.
+// Under the mechanism: what came out of the run, from left to right. Every Zeno point, release and opening impact has a cell
+// with its name and its time, and is pressed to go there; the strip moves with the time, and with a hand or a wheel.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/sentences.hpp"
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
 #include "panels/widgets.hpp"
@@ -16,131 +18,227 @@ namespace achilles {
 
 namespace {
 
-constexpr float padding = 6.0F, sign_width = 18.0F, between = 14.0F;
-// Always so many lines in this width: nothing moves where another run has more results.
-int lines_in(float width) { return width < units(360.0F) ? 3 : 2; }
+constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, most_of_strip = 0.6F, arrow_width = 30.0F;
 
+// A result in the strip: its name over its time.
 struct Result {
     std::size_t event = 0;
-    std::string text, rest;        // what may be cut, and what may not
-    float x = 0.0F, width = 0.0F;  // pixels
-    int line = 0;
+    int zeno = 0;  // the how manieth Zeno point
 };
 
-// A certificate in its symbols; the sentence itself is plain text, for terminals.
-std::string typeset_sentence(const Trajectory& trajectory, const Event& event) {
-    std::string text = sentence(*event.certificate, trajectory.model->description());
-    for (const auto& [plain, symbol] :
-         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},
-          std::pair{"; ", "\n"}, std::pair{" - ", " \u2212 "}, std::pair{"e-0", "e\u22120"},
-          std::pair{"e-1", "e\u22121"}})
-        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
-            text.replace(at, std::string_view(plain).size(), symbol);
-    return text;
-}
-
-std::string explanation(const Trajectory& trajectory, const Event& event) {
-    const std::string contacts = contacts_told(trajectory, event), of = contacts.empty() ? "" : " of " + contacts;
-    if (event.kind == Event::Kind::release)
-        return fmt::format("release{} at t = {:.10g} s: the contact force falls through zero. Click: why", of, event.t);
-    if (event.kind == Event::Kind::impact)
-        return fmt::format("impact{} at t = {:.10g} s opens {}. Click: why", of, event.t,
-                           joined_names(*trajectory.model, event.opened));
-    if (is_plastic_landing(event))
-        return fmt::format("landing{} at t = {:.10g} s\n{}", of, event.t, typeset_sentence(trajectory, event));
-    const std::string proof = event.certificate ? typeset_sentence(trajectory, event) : "Nothing is proved of it.";
-    return fmt::format("{}{} at t = {:.10g} s after {} impacts\n{}\n{}", event_name(event), of, event.t, event.impacts,
-                       proof, precision_text());
+std::string explanation(const Session& session, std::size_t index) {
+    const Event& event = session.trajectory().events[index];
+    const std::string said = typeset_sentence(
+        fmt::format("{} at t = {:.10g} s: {}", event_name(event), event.t, session.sentences().of(index)));
+    if (event.kind != Event::Kind::zeno) return said + "\nClick: why";
+    std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "nothing is proved of it";
+    for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
+        proof.replace(at, 2, "\n");
+    return said + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
 }
 
 // "Zeno 2", "landing", "release knee", "wall opens knee".
-std::string name_of(const Trajectory& trajectory, const Event& event, int& zeno) {
+std::string name_of(const Trajectory& trajectory, const Result& result) {
+    const Event& event = trajectory.events[result.event];
     const std::string contacts = contacts_told(trajectory, event), space = contacts.empty() ? "" : " ";
     if (is_plastic_landing(event)) return "landing" + space + contacts;
-    if (event.kind == Event::Kind::zeno) return fmt::format("Zeno {}{}{}", ++zeno, space, contacts);
+    if (event.kind == Event::Kind::zeno) return fmt::format("Zeno {}{}{}", result.zeno, space, contacts);
     if (event.kind == Event::Kind::release) return "release" + space + contacts;
     return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
 }
 
-// In lines as wide as there is room, each with the gap before it.
-std::vector<Result> results_of(const Trajectory& trajectory, float width) {
-    constexpr std::size_t most = 400;  // more than anybody reads, and a frame has no time for
+// All of a run. Of contacts that come to rest and are opened again and again only how it ends.
+std::vector<Result> results_of(const Trajectory& trajectory) {
     std::vector<Result> results;
-    int zeno = 0, line = 0;
+    int zeno = 0;
     const std::vector<Chatter> chatters = chatters_of(trajectory);
     auto chatter = chatters.begin();
-    float x = 0.0F;
     for (const std::size_t turn : turns(trajectory, true)) {
-        if (results.size() == most) break;
         const Event& event = trajectory.events[turn];
+        zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
         while (chatter != chatters.end() && turn >= chatter->last_event) ++chatter;
-        // Of contacts that come to rest and are opened again and again only how it ends.
-        if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) {
-            zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
-            continue;
-        }
-        Result result{turn, name_of(trajectory, event, zeno), "  " + time_text(trajectory, turn)};
-        const auto length = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
-        result.text = fitted(result.text, std::max(width - units(sign_width) - length(result.rest), units(40.0F)));
-        result.width = units(sign_width) + length(result.text + result.rest);
-        if (x > 0.0F && x + result.width > width) x = 0.0F, ++line;
-        result.x = x;
-        result.line = line;
-        x += result.width + units(between);
-        results.push_back(result);
+        if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) continue;
+        results.push_back({turn, zeno});
     }
     return results;
 }
 
 // What is to be seen: the chosen event, or the last one that the present has reached; else the first.
 std::size_t wanted(const Session& session, const std::vector<Result>& results) {
-    std::size_t found = 0;
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        const bool is_chosen = session.selected() == static_cast<int>(results[i].event) + 1;
-        const double time = session.trajectory().events[results[i].event].t;
-        if (is_chosen || (session.selected() == 0 && time <= session.time())) found = i;
-    }
-    return found;
+    const auto& events = session.trajectory().events;
+    const auto reaches = [&](const Result& result) {
+        if (session.selected() > 0) return static_cast<int>(result.event) < session.selected();
+        return events[result.event].t <= session.time();
+    };
+    const auto after = std::partition_point(results.begin(), results.end(), reaches);
+    return after == results.begin() ? 0 : static_cast<std::size_t>(after - results.begin()) - 1;
 }
 
-// The results that stand in so many lines, from the first line that is shown on.
-struct Shown {
-    std::size_t begin, end;
-    int first;
+// What a cell says, and how wide it is. In a strip of one line the time stands behind the name.
+struct Cell {
+    std::string name, time;
+    float width = 0.0F;
 };
-Shown shown_in(const std::vector<Result>& results, std::size_t wanted, int lines) {
-    const int first = std::clamp(results[wanted].line - lines + 1, 0, std::max(0, results.back().line - lines + 1));
-    Shown shown{results.size(), results.size(), first};
-    for (std::size_t i = results.size(); i-- > 0;) {
-        if (results[i].line >= first + lines) shown.end = i;
-        if (results[i].line >= first) shown.begin = i;
+struct Strip {
+    float room = 0.0F;  // pixels, between its ends
+    bool is_low = false;
+};
+Cell cell_of(const Trajectory& trajectory, const Result& result, const Strip& strip) {
+    Cell cell{name_of(trajectory, result), time_text(trajectory, result.event), 0.0F};
+    if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
+    const float room = (strip.is_low ? 1.0F : most_of_strip) * strip.room - units(sign_width);
+    cell.name = fitted(cell.name, room), cell.time = fitted(cell.time, room);
+    cell.width = units(sign_width) + std::max(width_of(cell.name), width_of(cell.time));
+    return cell;
+}
+
+// The cells that stand in the strip: results [begin, begin + size). Only these are measured: a run may have thousands.
+struct Shown {
+    std::size_t begin = 0;
+    std::vector<Cell> cells;
+};
+
+// As many as have room from this one on and, where that leaves room at the end of the run, before it.
+Shown shown_from(const Trajectory& trajectory, const std::vector<Result>& results, std::size_t begin,
+                 const Strip& strip) {
+    Shown shown{begin, {}};
+    float x = 0.0F;
+    const auto fits = [&](const Cell& cell) { return shown.cells.empty() || x + cell.width <= strip.room; };
+    for (std::size_t i = begin; i < results.size(); ++i) {
+        Cell cell = cell_of(trajectory, results[i], strip);
+        if (!fits(cell)) return shown;
+        x += cell.width + units(between);
+        shown.cells.push_back(std::move(cell));
+    }
+    while (shown.begin > 0) {
+        Cell cell = cell_of(trajectory, results[shown.begin - 1], strip);
+        if (!fits(cell)) break;
+        x += cell.width + units(between);
+        shown.cells.insert(shown.cells.begin(), std::move(cell));
+        --shown.begin;
     }
     return shown;
 }
 
-void show_result(const Session& session, const Result& result, ImVec2 at, const Rectangle& strip, PanelState& state,
-                 Commands& commands) {
+// With what is to be seen about in the middle, so that what comes before and after it is seen as well.
+Shown shown_around(const Trajectory& trajectory, const std::vector<Result>& results, std::size_t seen,
+                   const Strip& strip) {
+    std::size_t begin = seen;
+    float x = 0.5F * cell_of(trajectory, results[seen], strip).width;
+    while (begin > 0) {
+        x += cell_of(trajectory, results[begin - 1], strip).width + units(between);
+        if (x > 0.5F * strip.room) break;
+        --begin;
+    }
+    return shown_from(trajectory, results, begin, strip);
+}
+
+// What a hand has moved the strip to, until the present reaches another result.
+Shown shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
+               const Strip& strip) {
+    ResultStrip& by_hand = state.strip;
+    if (by_hand.seen != results[seen].event || by_hand.count != results.size()) {
+        by_hand = {};
+        by_hand.seen = results[seen].event, by_hand.count = results.size();
+    }
+    if (!by_hand.begin) return shown_around(session.trajectory(), results, seen, strip);
+    return shown_from(session.trajectory(), results, std::min(*by_hand.begin, results.size() - 1), strip);
+}
+
+// A drag takes the strip along by whole cells, a wheel by one.
+void use_hand(const Shown& shown, std::size_t count, bool is_hovered, PanelState& state) {
+    ResultStrip& strip = state.strip;
+    const ImGuiIO& io = ImGui::GetIO();
+    const auto move = [&](int cells) {
+        const int last = static_cast<int>(count) - 1, to = static_cast<int>(shown.begin) + cells;
+        // At the end of the run nothing comes after what is shown.
+        if (cells > 0 && shown.begin + shown.cells.size() >= count) return;
+        strip.begin = static_cast<std::size_t>(std::clamp(to, 0, last));
+    };
+    const float wheel = io.MouseWheel + io.MouseWheelH;
+    if (is_hovered && wheel != 0.0F) move(wheel > 0.0F ? -1 : 1);
+    if (is_hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) strip.is_held = true, strip.dragged = 0.0F;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+        strip.is_held = false;
+        return;
+    }
+    if (!strip.is_held) return;
+    strip.dragged += io.MouseDelta.x;
+    const float step = shown.cells.front().width + units(between);
+    while (std::abs(strip.dragged) > 0.5F * step) {
+        const bool back = strip.dragged > 0.0F;
+        move(back ? -1 : 1);
+        strip.dragged += back ? -step : step;
+        strip.was_dragged = true;
+    }
+}
+
+void show_result(const Session& session, const Result& result, const Cell& cell, ImVec2 at, const Rectangle& strip,
+                 bool is_present, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[result.event];
     const int number = static_cast<int>(result.event) + 1;
-    const float height = ImGui::GetTextLineHeightWithSpacing(), line = ImGui::GetTextLineHeight();
+    const float line = ImGui::GetTextLineHeightWithSpacing(), height = cell.time.empty() ? line : 2.0F * line;
     ImGui::SetCursorScreenPos(at);
     ImGui::PushID(number);
-    const bool pressed = ImGui::InvisibleButton("result", {result.width, height});
+    const bool pressed = ImGui::InvisibleButton("result", {cell.width, height});
     ImGui::PopID();
     remember(state, "result " + std::to_string(number));
     ImDrawList* list = ImGui::GetWindowDrawList();
     const bool is_chosen = session.selected() == number;
+    const ImVec2 low{at.x - units(6.0F), at.y}, high{at.x + cell.width + units(6.0F), at.y + height};
     if (is_chosen || ImGui::IsItemHovered())
-        list->AddRectFilled({at.x - units(4.0F), at.y}, {at.x + result.width + units(4.0F), at.y + height},
-                            is_chosen ? ImGui::GetColorU32(ImGuiCol_Header) : packed(text_color(), 0.06F), units(3.0F));
-    const float top = at.y + 0.5F * (height - line);
-    paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), top + 0.5F * line},
+        list->AddRectFilled(low, high, is_chosen ? ImGui::GetColorU32(ImGuiCol_Header) : packed(text_color(), 0.06F),
+                            units(3.0F));
+    // The last that the present has reached is marked, what is still to come is quiet.
+    if (is_present) list->AddRectFilled({low.x, high.y - units(2.0F)}, high, packed(text_color()));
+    const bool is_to_come = event.t > session.time();
+    paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), at.y + 0.5F * line},
                  units(1.0F));
-    list->AddText({std::floor(at.x + units(sign_width)), std::floor(top)}, packed(text_color()),
-                  (result.text + result.rest).c_str());
-    tooltip(explanation(session.trajectory(), event),
-            {at.x, strip.y, result.width, strip.height});  // the other results stay in sight
-    if (pressed) commands.emplace_back(command::Select{is_chosen ? 0 : number});
+    const float x = std::floor(at.x + units(sign_width));
+    const auto put = [&](float y, const std::string& text, const Color& color) {
+        list->AddText({x, std::floor(at.y + y)}, packed(color), text.c_str());
+    };
+    put(0.5F * (line - ImGui::GetTextLineHeight()), cell.name, is_to_come ? faint_color() : text_color());
+    put(line - units(1.0F), cell.time, is_to_come ? faint_color() : text_color());
+    tooltip(explanation(session, result.event),
+            {at.x, strip.y, cell.width, strip.height});  // the other results stay in sight
+    if (pressed && !state.strip.was_dragged) commands.emplace_back(command::Select{is_chosen ? 0 : number});
+}
+
+// To a class: what happened last, in a sentence.
+void show_sentence(const Session& session, ImVec2 at, float width) {
+    const auto& events = session.trajectory().events;
+    const auto after = std::upper_bound(events.begin(), events.end(), session.time(),
+                                        [](double t, const Event& event) { return t < event.t; });
+    const std::size_t reached = session.selected() > 0 ? static_cast<std::size_t>(session.selected())
+                                                       : static_cast<std::size_t>(after - events.begin());
+    const Sentences& sentences = session.sentences();
+    cell(at, typeset_sentence(reached == 0 ? sentences.start() : sentences.of(reached - 1)), width, text_color());
+}
+
+// "‹ 3" or "12 ›": how many stand before or after those that are shown; a click goes on by a strip.
+void show_more(bool is_before, std::size_t count, ImVec2 at, const Shown& shown, PanelState& state) {
+    if (count == 0) return;
+    const bool is_low = shown.cells.front().time.empty();
+    const float height = (is_low ? 1.0F : 2.0F) * ImGui::GetTextLineHeightWithSpacing();
+    ImGui::SetCursorScreenPos(at);
+    const bool pressed = ImGui::InvisibleButton(is_before ? "before" : "after", {units(arrow_width), height});
+    remember(state, is_before ? "results before" : "results after");
+    const Color color = ImGui::IsItemHovered() ? text_color() : faint_color();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float r = units(4.0F), x = at.x + 0.5F * units(arrow_width), line = ImGui::GetTextLineHeightWithSpacing();
+    const float y = at.y + 0.5F * line, tip = is_before ? -r : r;
+    list->AddTriangleFilled({x - 0.6F * tip, y - r}, {x - 0.6F * tip, y + r}, {x + 0.8F * tip, y}, packed(color));
+    const std::string text = count > 999 ? "\u2026" : std::to_string(count);
+    if (!is_low)
+        list->AddText(
+            {std::floor(x - 0.5F * ImGui::CalcTextSize(text.c_str()).x), std::floor(at.y + line - units(1.0F))},
+            packed(color), text.c_str());
+    tooltip(
+        fmt::format("{} {}; the strip can be dragged, and turned by the wheel", count, is_before ? "before" : "more"));
+    if (!pressed || state.strip.was_dragged) return;
+    const std::size_t step = std::max<std::size_t>(1, shown.cells.size() - 1);
+    state.strip.begin = is_before ? shown.begin - std::min(step, shown.begin) : shown.begin + step;
 }
 
 void show_none(const Session& session, ImVec2 at, float width) {
@@ -158,20 +256,6 @@ void show_none(const Session& session, ImVec2 at, float width) {
     ImGui::SetCursorScreenPos({at.x, at.y + units(1.0F)});
     ImGui::TextDisabled("%s", fitted(text, width).c_str());
     if (is_early) tooltip(trajectory.outcome.message);
-}
-
-// "3 before, 12 more".
-std::string hidden_text(std::size_t before, std::size_t after) {
-    return fmt::format("{}{}{}", before > 0 ? fmt::format("{} before", before) : "",
-                       before > 0 && after > 0 ? ", " : "", after > 0 ? fmt::format("{} more", after) : "");
-}
-
-// To two digits, and not below what it was.
-std::string rounded_up(double bound) {
-    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
-    std::string text = fmt::format("{:.2g}", std::ceil(bound / unit) * unit);
-    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
-    return text;
 }
 
 }  // namespace
@@ -196,48 +280,45 @@ std::string time_text(const Trajectory& trajectory, std::size_t index) {
     return text + " \u00b1 " + rounded_up(std::max({high - value, value - low, integration}));
 }
 
-float results_height(float width) {
-    return static_cast<float>(lines_in(width)) * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
+float results_height(const Session& session) {
+    const float lines = session.scene().presents() ? 3.0F : 2.0F;
+    return lines * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
 }
 
 void show_results(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle area = remaining();
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
-    const float left = area.x + units(12.0F), width = area.width - units(24.0F);
-    const float height = ImGui::GetTextLineHeightWithSpacing();
-    const std::vector<Result> results = results_of(session.trajectory(), width);
-    if (results.empty()) return show_none(session, {left, area.y + units(padding)}, width);
+    const float left = area.x + units(12.0F), width = area.width - units(24.0F), top = area.y + units(padding);
     // A window stands on whole pixels: a strip of results_height() may have one less.
-    const auto fitting = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / height);
-    const int lines_shown = std::min(lines_in(area.width), fitting);
-    if (lines_shown < 1) return;
-    const std::size_t all = turns(session.trajectory(), true).size();
-    const auto width_of = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
-    // Where not all are shown the last line ends with a word of the others: what is in its way gives place, but for what
-    // is to be seen, which stands in a line before then.
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / line);
+    if (lines < 1) return;
+    if (session.scene().presents() && lines > 2) show_sentence(session, {left, top + 2.0F * line + units(2.0F)}, width);
+    const std::vector<Result> results = results_of(session.trajectory());
+    if (results.empty()) return show_none(session, {left, top}, width);
     const std::size_t seen = wanted(session, results);
-    Shown shown = shown_in(results, seen, lines_shown);
-    std::string more;
-    const auto has_room = [&] {
-        more = hidden_text(shown.begin, all - (shown.end - shown.begin) - shown.begin);
-        const Result& last = results[shown.end - 1];
-        return more.empty() || last.line - shown.first + 1 < lines_shown ||
-               last.x + last.width + units(between) + width_of(more) <= width;
-    };
-    while (!has_room() && shown.end - 1 > std::max(seen, shown.begin)) --shown.end;
-    if (!has_room() && lines_shown > 1) shown = shown_in(results, seen, lines_shown - 1);
-    const bool is_told = has_room() && !more.empty();
-    for (std::size_t i = shown.begin; i < shown.end; ++i)
-        show_result(
-            session, results[i],
-            {left + results[i].x, area.y + units(padding) + height * static_cast<float>(results[i].line - shown.first)},
-            area, state, commands);
-    if (!is_told) return;
-    ImGui::SetCursorScreenPos({std::floor(left + width - width_of(more)),
-                               area.y + units(padding) + height * static_cast<float>(lines_shown - 1) + units(2.0F)});
-    ImGui::TextDisabled("%s", more.c_str());
-    tooltip("the list of events has them all");
+    // Room for the arrows on both sides: what stands between them does not jump when one appears.
+    const float inset = units(arrow_width + 6.0F);
+    const bool is_low = lines < 2;
+    Shown shown = shown_from(session.trajectory(), results, 0, {width, is_low});
+    const bool has_all = shown.cells.size() == results.size();
+    if (!has_all) shown = shown_by(session, state, results, seen, {width - 2.0F * inset, is_low});
+    const bool is_hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);
+    float x = left + (has_all ? 0.0F : inset);
+    const auto& events = session.trajectory().events;
+    for (std::size_t i = 0; i < shown.cells.size(); ++i) {
+        const std::size_t at = shown.begin + i;
+        const bool is_present = session.selected() == 0 && at == seen && events[results[at].event].t <= session.time();
+        show_result(session, results[at], shown.cells[i], {x, top}, area, is_present, state, commands);
+        x += shown.cells[i].width + units(between);
+    }
+    if (has_all) return;
+    const std::size_t before = shown.begin, after = results.size() - shown.begin - shown.cells.size();
+    show_more(true, before, {left - units(6.0F), top}, shown, state);
+    show_more(false, after, {left + width - units(arrow_width - 6.0F), top}, shown, state);
+    use_hand(shown, results.size(), is_hovered, state);
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) state.strip.was_dragged = false;
 }
 
 }  // namespace achilles

@@ -105,6 +105,15 @@ void show_status(const Session& session, const PanelState& state) {
         tooltip(remark.sentence);
         ImGui::SameLine(0.0F, units(24.0F));
     }
+    if (session.selected() > 0) {
+        const auto event = static_cast<std::size_t>(session.selected() - 1);
+        const std::string said = fmt::format("event {}: ", event + 1) + typeset_sentence(session.sentences().of(event));
+        const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+        cell(ImGui::GetCursorScreenPos(), said, room, text_color());
+        ImGui::Dummy({std::min(width_of(said), room), ImGui::GetTextLineHeight()});
+        show_legend(session);
+        return;
+    }
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
     const std::string impacts = s.impacts == 1 ? std::string("1 impact") : fmt::format("{} impacts", s.impacts);
     const std::string text = fmt::format(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <utility>
 
@@ -165,9 +166,10 @@ void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
 }
 
 void name_event(const Session& session, int number) {
-    const Event& event = session.trajectory().events[static_cast<std::size_t>(number - 1)];
-    const std::string text = fmt::format("{}, event {}, t = {} s\nclick: select it", event_name(event), number,
-                                         achilles::number(event.t, "{:.9g}"));
+    const auto index = static_cast<std::size_t>(number - 1);
+    const std::string text = fmt::format("event {}, t = {} s\n{}\nclick: select it", number,
+                                         achilles::number(session.trajectory().events[index].t, "{:.9g}"),
+                                         typeset_sentence(session.sentences().of(index)));
     const ImVec2 size = tooltip_size(text), mouse = ImGui::GetIO().MousePos;
     const float above = mouse.y - size.y - units(12.0F);
     place_tooltip({mouse.x + units(12.0F), above >= 0.0F ? above : mouse.y + units(20.0F)}, size);
@@ -193,6 +195,18 @@ Vector start_towards(const Session& session, const Vector& q) {
         (can_start(middle) ? low : high) = middle;
     }
     return from + low * (q - from);
+}
+
+std::string typeset_sentence(std::string text) {
+    for (const auto& [plain, symbol] : {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"},
+                                        std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "}})
+        for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
+            text.replace(at, std::string_view(plain).size(), symbol);
+    // Of a power of ten, not of a compound word.
+    for (std::size_t at = text.find("e-"); at != std::string::npos; at = text.find("e-", at + 1))
+        if (at + 2 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 2])) != 0)
+            text.replace(at + 1, 1, "\u2212");
+    return text;
 }
 
 std::string number(double value, const char* format) {

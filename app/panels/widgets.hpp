@@ -74,6 +74,8 @@ void name_event(const Session& session, int number);
 // On the way from the start that there is to this one, as far as a run can start: a hand that pushes a body into the ground
 // holds it on the surface.
 Vector start_towards(const Session& session, const Vector& q);
+// A sentence of the core, which is plain text for terminals, in the field's symbols.
+std::string typeset_sentence(std::string text);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
 // A text of numbers with minus signs in place of hyphens.

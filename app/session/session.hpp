@@ -12,6 +12,7 @@
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
 #include "output/output.hpp"
+#include "output/sentences.hpp"
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
@@ -94,6 +95,7 @@ class Session {
     const State& scale() const { return simulated_->scale; }  // scale_of() the run
     double least_gap() const { return simulated_->least_gap; }
     std::span<const Remark> remarks() const { return simulated_->remarks; }
+    const Sentences& sentences() const { return simulated_->sentences; }  // of its events
     // The world the mechanism needs during the whole run.
     const Drawing& limits() const { return simulated_->limits; }
     // What is plotted, and the plots, composed.
@@ -141,6 +143,7 @@ class Session {
         State scale;
         double least_gap;
         std::vector<Remark> remarks;
+        Sentences sentences;
         Drawing limits;
         Trail trail;
         int revision = 0;   // of what is plotted

@@ -215,6 +215,7 @@ const State states[] = {
     {"to a class", "ball_on_sine", {"present on", "seek 3"}},
     {"a contact to a class", "double_pendulum", {"present on", "select 11"}},
     {"a caption to a class", "double_pendulum", {"present on", "say \"The knee locks, and opens at the vertical.\""}},
+    {"dozens of results", "driven_double_pendulum", {"end 60", "seek 31"}},
     {"all that differs",
      "triple_pendulum",
      {"show accuracy", "set g 3", "eps 1e-3 1e-4 1e-5", "method dopri5", "memory 2e8"}},

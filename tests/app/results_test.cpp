@@ -9,6 +9,7 @@
 #include "app/hands.hpp"
 #include "figure/axes.hpp"
 #include "number/angle.hpp"
+#include "panels/widgets.hpp"
 
 namespace achilles {
 namespace {
@@ -107,17 +108,96 @@ TEST(Results, tell_how_a_run_without_any_ended) {
     EXPECT_FALSE(hands.says("no Zeno point until"));
 }
 
-// The strip has no bar to scroll by: it says how many stand before those that are shown, and how many after.
-TEST(Results, say_how_many_are_not_shown) {
-    for (const int width : {1024, 1280, 1600}) {
+// Dozens of results: the one that the present has reached is in view at any time, and what is not has its number at an end.
+TEST(Results, keep_the_present_in_view) {
+    for (const int width : {1024, 1600}) {
         Hands hands("driven_double_pendulum", test::surface(width, 800));
-        for (const double time : {0.0, 9.0, 15.0}) {
-            hands.session.apply(command::Seek{time});
-            hands.rest(1);
-            EXPECT_EQ(hands.says(" before"), time > 0.0) << width << ", " << time;
-            EXPECT_EQ(hands.says(" more"), time < 15.0) << width << ", " << time;
+        hands.session.apply(parse_command("end 60"));
+        const auto& events = hands.session.trajectory().events;
+        std::size_t turns = 0, first = 0;
+        for (std::size_t i = 0; i < events.size(); ++i) {
+            if (events[i].kind == Event::Kind::impact) continue;
+            if (turns++ == 0) first = i;
+            hands.session.apply(command::Seek{events[i].t});
+            hands.state.places.clear();
+            hands.rest(2);
+            ASSERT_TRUE(hands.state.places.contains("result " + std::to_string(i + 1))) << width << ", " << i;
         }
+        EXPECT_GT(turns, 20U);
+        EXPECT_TRUE(hands.state.places.contains("results before"));
+        hands.session.apply(command::Seek{0.0});
+        hands.state.places.clear();
+        hands.rest(2);
+        EXPECT_TRUE(hands.state.places.contains("result " + std::to_string(first + 1)));
+        EXPECT_FALSE(hands.state.places.contains("results before"));
+        EXPECT_TRUE(hands.state.places.contains("results after"));
     }
+}
+
+// A drag, a wheel and the numbers at the ends move the strip, and nothing else; the time takes it back.
+TEST(Results, are_moved_by_a_hand) {
+    Hands hands("driven_double_pendulum", test::surface(1280, 800));
+    hands.session.apply(parse_command("end 60"));
+    hands.session.apply(command::Seek{0.0});
+    hands.rest(2);
+    const auto first = [&] {
+        hands.state.places.clear();
+        hands.rest(1);
+        int found = 1 << 20;
+        for (const auto& [name, area] : hands.state.places)
+            if (name.starts_with("result ")) found = std::min(found, std::atoi(name.c_str() + 7));
+        return found;
+    };
+    const int at_first = first();
+    const std::string place = "result " + std::to_string(at_first);
+    hands.point(place);
+    hands.hand.wheel = -1.0;
+    hands.rest(1);
+    hands.hand.wheel = 0.0;
+    const int by_wheel = first();
+    EXPECT_GT(by_wheel, at_first);
+    hands.click("results after");
+    const int by_click = first();
+    EXPECT_GT(by_click, by_wheel);
+    hands.point("result " + std::to_string(by_click));
+    hands.hand.left = true;
+    hands.rest(1);
+    for (int i = 0; i < 12; ++i) {
+        hands.hand.mouse_x += 25.0;
+        hands.rest(1);
+    }
+    hands.hand.left = false;
+    hands.rest(2);
+    const int by_drag = first();
+    EXPECT_LT(by_drag, by_click);
+    EXPECT_TRUE(hands.all.empty()) << "a strip that is dragged selects nothing: " << to_text(hands.all.front());
+    hands.click("result " + std::to_string(by_drag));
+    EXPECT_EQ(hands.all, std::vector<Command>{command::Select{by_drag}});
+    hands.session.apply(command::Select{0});
+    hands.session.apply(command::Seek{0.0});
+    hands.rest(1);
+    EXPECT_EQ(first(), at_first);
+}
+
+// The list, the status line and what stands under the pointer say the sentence of the core.
+TEST(EventList, says_a_sentence_an_event) {
+    Hands hands("ball_on_sine", test::surface(1600, 1000));
+    const auto& events = hands.session.trajectory().events;
+    std::size_t zeno = 0;
+    while (events[zeno].kind != Event::Kind::zeno) ++zeno;
+    hands.session.apply(command::Seek{events[zeno].t});
+    hands.rest(2);
+    const std::string text = typeset_sentence(hands.session.sentences().of(zeno));
+    EXPECT_TRUE(hands.says(text));
+    EXPECT_TRUE(hands.state.places.contains("event start"));
+    hands.session.apply(command::Select{static_cast<int>(zeno) + 1});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("event " + std::to_string(zeno + 1) + ": " + text)) << "in the status line";
+    hands.session.apply(command::Select{0});
+    hands.session.apply(command::Seek{20.0});
+    hands.rest(2);
+    hands.click("event start");
+    EXPECT_EQ(hands.session.time(), 0.0);
 }
 
 TEST(EventList, folds_impacts_until_a_click_opens_them) {
@@ -164,7 +244,7 @@ TEST(EventList, is_copied_as_a_table) {
         lines.push_back(text.substr(at, text.find('\n', at) - at));
     ASSERT_EQ(lines.size(), events.size() + 1);
     const auto tabs = [](const std::string& line) { return std::count(line.begin(), line.end(), '\t'); };
-    EXPECT_EQ(lines[0], "#\tevent\tt\timpact speed\ttheta1\ttheta2\ttheta1'\ttheta2'");
+    EXPECT_EQ(lines[0], "#\tevent\tt\timpact speed\ttheta1\ttheta2\ttheta1'\ttheta2'\tenergy lost\tsentence");
     for (std::size_t i = 0; i < events.size(); ++i) {
         EXPECT_EQ(tabs(lines[i + 1]), tabs(lines[0]));
         EXPECT_NE(lines[i + 1].find("\t" + fmt::format("{}", events[i].t) + "\t"), std::string::npos) << "every digit";
@@ -219,7 +299,7 @@ TEST(SeveralContacts, are_copied_with_the_list) {
         explorer(hands.session, hands.state);
     });
     EXPECT_EQ(text.substr(0, text.find('\n')),
-              "#\tevent\tcontacts\topened\theld\tt\timpact speed\tth1\tth2\tth1'\tth2'");
+              "#\tevent\tcontacts\topened\theld\tt\timpact speed\tth1\tth2\tth1'\tth2'\tenergy lost\tsentence");
     EXPECT_NE(text.find("\timpact\twall\tknee\t\t6.6486360"), std::string::npos) << text;
     EXPECT_NE(text.find("\tZeno point\tknee\t\tknee\t10.47660"), std::string::npos) << text;
 }
