@@ -19,6 +19,12 @@ float size_of(double share, float whole, float fitting, float least, float most)
     return std::floor(std::max(0.0F, std::min(std::max(wanted, least), std::max(most, 0.0F))));
 }
 
+// The energy stands under the results: with its course, without where the picture above would be too low, or not at all.
+float energy_in(const Measures& m, float room) {
+    if (m.energy <= room) return m.energy;
+    return m.least_energy <= room ? m.least_energy : 0.0F;
+}
+
 // To a class: the mechanism beside one plot, below them the results and the player; nothing else.
 Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float edge = margin * m.unit, between = gap * m.unit, inside = std::max(0.0F, m.width - 2.0F * edge);
@@ -36,13 +42,17 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float all_results = m.results ? m.results(inside) : 0.0F;
     const float left_over = lower - 1.4F * between - top - least_picture * m.unit;
     const float results = all_results <= left_over ? all_results : 0.0F;
-    const float height = std::max(0.0F, lower - between - top - (results > 0.0F ? results + 0.4F * between : 0.0F));
+    const float above = results > 0.0F ? results + 0.4F * between : 0.0F;
+    const float energy = energy_in(m, left_over - above),
+                below_results = energy > 0.0F ? energy + 0.4F * between : 0.0F;
+    const float height = std::max(0.0F, lower - between - top - above - below_results);
     const bool has_plots = scene.shows("plots");
     const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
     const float centre = inside - (has_plots ? right + between : 0.0F);
     parts.mechanism = {edge, top, centre, height};
     parts.plots = {edge + centre + between, top, right, height};
-    parts.results = {edge, lower - between - results, inside, results};
+    parts.results = {edge, lower - between - below_results - results, inside, results};
+    parts.energy = {edge, lower - between - energy, inside, energy};
     parts.timeline = {edge, lower, inside, timeline};
     return parts;
 }
@@ -110,8 +120,11 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
     if (results < 0.4F * all_results) results = 0.0F;  // not even a line of them
     const float space = results > 0.0F ? 0.4F * between : 0.0F;
-    parts.mechanism = {x, picture, centre, std::max(0.0F, lower - results - space - picture)};
-    parts.results = {x, lower - results, centre, results};
+    const float energy = energy_in(m, lower - results - space - 0.4F * between - picture - least);
+    const float under = lower - (energy > 0.0F ? energy + 0.4F * between : 0.0F);
+    parts.mechanism = {x, picture, centre, std::max(0.0F, under - results - space - picture)};
+    parts.results = {x, under - results, centre, results};
+    parts.energy = {x, lower - energy, centre, energy};
     parts.timeline = {x, top + height - timeline, centre, timeline};
     const float plots_at = over_plots ? below(top, beside) : top;
     parts.plots = {x + centre + between, plots_at, right, top + height - plots_at};

@@ -11,7 +11,7 @@
 namespace achilles {
 
 struct Arrangement {
-    Rectangle bar, controls, error, caption, mechanism, results, timeline, plots, events,
+    Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, events,
         status;  // of no size: not shown
     // What a hand drags to resize a panel: the gap beside it.
     struct Splitter {
@@ -32,6 +32,7 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // of the surface
     float unit = 1.0F;                  // a pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
+    float energy = 0.0F, least_energy = 0.0F;  // with its course and without; 0: it is not shown
     // How high a message, what a tour says, the results, and the numbers over the picture are in so much width; 0: there
     // are none.
     std::function<float(float width)> error, caption, results, state;

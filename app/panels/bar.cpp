@@ -94,6 +94,8 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
         if (menu_item(name, state, scene.shows(what))) commands.emplace_back(command::Show{what, !scene.shows(what)});
     const bool plane = scene.shows("plane");
     if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});
+    const bool energy = scene.shows("energy");
+    if (menu_item("Energy", state, energy)) commands.emplace_back(command::Show{"energy", !energy});
     if (menu_item("All of the motion", state, false, scene.look().has_value()))
         commands.emplace_back(command::LookAll{});
     ImGui::Separator();

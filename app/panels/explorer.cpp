@@ -53,6 +53,10 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     measures.status = ImGui::GetFrameHeight() + units(6.0F);
     measures.timeline = timeline_height();
     measures.results = [&](float) { return results_height(session); };
+    if (session.scene().shows("energy")) {
+        measures.energy = energy_height(true);
+        measures.least_energy = energy_height(false);
+    }
     measures.state = [&](float width) { return state_height(session, width); };
     measures.error = [&](float width) { return card_height(message, width); };
     measures.caption = [&](float width) { return caption_height(session, state, width); };
@@ -188,6 +192,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     use_keys(session, commands);
     use_view_keys(session, state, commands);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
+    part("energy", parts.energy, still_window, [&] { show_energy(session, state, commands); });
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);
     return commands;

@@ -144,6 +144,7 @@ struct ResultStrip {
 };
 
 class EquationsView;
+class EnergyCourse;
 
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
@@ -178,6 +179,7 @@ struct PanelState {
     std::shared_ptr<EquationsView> equations;          // once they were shown
     // A name that the mouse is over: in the equations, in this frame and in the last; in the controls, on its slider.
     std::string lights, lit, pointed_slider;
+    std::shared_ptr<EnergyCourse> energy;              // of the run that is shown, while its energy is
     int followed = -1;                        // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
@@ -213,6 +215,9 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
 float results_height(const Session& session);
 // At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
 void show_state(const Session& session, const Rectangle& panel);
+// Under them: where the energy is and where it went, now and, where there is room, over the run.
+void show_energy(const Session& session, PanelState& state, Commands& commands);
+float energy_height(bool with_course);
 float state_height(const Session& session, float panel_width);
 // "2.7251422 ± 7.4e-7": the time of a Zeno point, and how far that of the exact motion from the computed state at the cut can be
 // from it, or the measure of the integration's error where that is larger; without a proof the time alone.

@@ -94,13 +94,13 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor",  "equations", "events",
-                                                   "force",    "help",     "lens",    "palette",   "plane",
-                                                   "plots",    "trail",    "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "energy",  "equations",
+                                                   "events",   "force",    "help",   "lens",    "palette",
+                                                   "plane",    "plots",    "trail",  "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
-                       // the events); or trail, velocity, force; the section accuracy of the controls, the
-                       // configuration plane in place of the mechanism; help: the card of keys and words
+        // the events), energy (under the results); or trail, velocity, force; the section accuracy of the controls, the
+        // configuration plane in place of the mechanism; help: the card of keys and words
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,

@@ -15,8 +15,8 @@ class Scene {
  public:
     // The part of the world in the middle of the picture; nothing: all that the run needs.
     const std::optional<command::Look>& look() const { return look_; }
-    // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations", and the
-    // Zeno "lens" in place of the certificate.
+    // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations" and
+    // "energy", and the Zeno "lens" in place of the certificate.
     bool shows(const std::string& what) const { return shown_.contains(what); }
     double speed() const { return speed_; }  // seconds of the run in one of the player's
     bool loops() const { return loops_; }

@@ -27,9 +27,9 @@ Measures measures(float width, float height, float unit = 1.0F, float error = 0.
 
 std::vector<std::pair<std::string, Rectangle>> all_of(const Arrangement& a) {
     std::vector<std::pair<std::string, Rectangle>> all{
-        {"bar", a.bar},         {"controls", a.controls}, {"error", a.error}, {"mechanism", a.mechanism},
-        {"results", a.results}, {"timeline", a.timeline}, {"plots", a.plots}, {"events", a.events},
-        {"status", a.status}};
+        {"bar", a.bar},         {"controls", a.controls}, {"error", a.error},       {"mechanism", a.mechanism},
+        {"results", a.results}, {"energy", a.energy},     {"timeline", a.timeline}, {"plots", a.plots},
+        {"events", a.events},   {"status", a.status}};
     for (const Arrangement::Splitter& splitter : a.splitters) all.emplace_back("splitter", splitter.area);
     std::erase_if(all, [](const auto& part) { return part.second.width < 1.0F || part.second.height < 1.0F; });
     return all;
@@ -50,6 +50,31 @@ void expect_no_overlap(const Arrangement& arrangement, const Measures& m, const 
             EXPECT_TRUE(apart) << what << all[i].first << " covers " << all[j].first;
         }
     }
+}
+
+// The energy under the results: with its course where there is room, without where there is less, and never at the price of the
+// mechanism.
+TEST(Arrangement, has_room_for_the_energy) {
+    for (const bool presents : {false, true})
+        for (const float unit : {1.0F, 1.5F, 2.0F})
+            for (float height = 400.0F; height <= 1600.0F; height += 50.0F) {
+                Scene scene;
+                scene.perform(command::Present{presents});
+                Measures m = measures(1366.0F, height, unit);
+                const Arrangement without = arrange(scene, m);
+                m.energy = 110.0F * unit, m.least_energy = 66.0F * unit;
+                const Arrangement parts = arrange(scene, m);
+                const std::string what = std::to_string(height) + ", " + std::to_string(unit) + ": ";
+                expect_no_overlap(parts, m, what);
+                EXPECT_TRUE(parts.energy.height == 0.0F || parts.energy.height == m.energy ||
+                            parts.energy.height == m.least_energy)
+                    << what;
+                if (parts.energy.height > 0.0F) {
+                    EXPECT_GE(parts.mechanism.height, 85.0F * unit) << what;
+                    EXPECT_EQ(parts.results.height, without.results.height) << what;
+                }
+                if (height > 1200.0F && unit == 1.0F) EXPECT_EQ(parts.energy.height, m.energy) << what;
+            }
 }
 
 // To a class: the mechanism beside one plot, the results and the player; at every size that is promised.
