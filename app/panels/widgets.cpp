@@ -77,7 +77,7 @@ constexpr float tooltip_width = 360.0F;
 bool wants_tooltip(const std::string& text) {
     // While the hand works, or letters are typed, it would cover what changes.
     return !text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !ImGui::IsAnyMouseDown() &&
-           !ImGui::IsItemActive();
+           !ImGui::IsItemActive() && !is_behind_dialog();
 }
 
 void show_tooltip(const std::string& text) {
@@ -166,6 +166,7 @@ void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
 }
 
 void name_event(const Session& session, int number) {
+    if (is_behind_dialog()) return;
     const auto index = static_cast<std::size_t>(number - 1);
     const std::string text = fmt::format("event {}, t = {} s\n{}\nclick: select it", number,
                                          achilles::number(session.trajectory().events[index].t, "{:.9g}"),

@@ -147,6 +147,11 @@ void push_font(ImFont* font) { ImGui::PushFont(font); }
 
 float content_right() { return ImGui::GetContentRegionMax().x; }
 
+bool is_behind_dialog() {
+    ImGuiWindow* dialog = ImGui::GetTopMostPopupModal();
+    return dialog != nullptr && !ImGui::IsWindowWithinBeginStackOf(ImGui::GetCurrentWindowRead(), dialog);
+}
+
 float scrolled_sideways(const ImGuiInputTextState& input) { return input.ScrollX; }
 
 int line_of_cursor(const ImGuiInputTextState& input, const std::string&) {

@@ -74,6 +74,10 @@ float content_right();
 // ImGui::BeginChild for a panel without a border that keeps the style's padding all the same.
 bool begin_padded_child(const char* name, const ImVec2& size);
 
+// Whether a dialog stands before the current window. One that has opened in this frame does not keep the mouse from it yet, and
+// a tooltip that appears then ends the program.
+bool is_behind_dialog();
+
 // Of the text field that has the hand: how far it is scrolled sideways, in pixels, and the line of its cursor, from 1.
 // `text` is what the field shows.
 float scrolled_sideways(const ImGuiInputTextState& input);

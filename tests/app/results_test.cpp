@@ -179,6 +179,18 @@ TEST(Results, are_moved_by_a_hand) {
     EXPECT_EQ(first(), at_first);
 }
 
+// A question that is asked in the very frame in which the pointer comes over a result: there was a tooltip then, and the end
+// of the program.
+TEST(Results, say_nothing_behind_a_dialog) {
+    Hands hands("ball_on_sine");
+    const Point at = hands.middle("result 10");
+    hands.hand.mouse_x = at.x, hands.hand.mouse_y = at.y;
+    hands.state.file_question = FileQuestion{"a.journal", "write a.toml", 0, {}};
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("a.toml"));
+    EXPECT_EQ(hands.tooltip().height, 0.0F);
+}
+
 // The list, the status line and what stands under the pointer say the sentence of the core.
 TEST(EventList, says_a_sentence_an_event) {
     Hands hands("ball_on_sine", test::surface(1600, 1000));
