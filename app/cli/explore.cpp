@@ -119,6 +119,7 @@ class Explorer {
     void frame() {
         session_.update();
         state_.on_tour = tour_.runs();
+        state_.tour_said = tour_.said(), state_.tour_sentences = tour_.sentences();
         pass_time();
         std::vector<Command> commands = explorer(session_, state_);
         take_dropped(commands);
@@ -274,6 +275,8 @@ class Explorer {
         if (wanted == PanelState::OnTour::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
         if (wanted == PanelState::OnTour::stop && tour_.runs()) {
+        if (wanted == PanelState::OnTour::back)
+            for (const Command& command : tour_.back()) take_from_tour(command);
             stop_tour();
             take(command::Say{""});
         }

@@ -1,6 +1,7 @@
 // A journal replayed at a person's pace: every `wait` takes its time, and what plays goes on meanwhile.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <vector>
 
@@ -19,12 +20,21 @@ class Tour {
     std::vector<Command> advance(double seconds);
     // The rest of the present wait at once.
     std::vector<Command> next();
-    void stop() { left_.clear(); }
+    // Of the sentences that it says: the how manieth is said, and how many there are, as far as is known.
+    std::size_t said() const;
+    std::size_t sentences() const;
+    // Back to the sentence before: what leads there from the beginning, at once; what follows is due again. Commands that
+    // write files, or replay journals whose commands have been done, are not among them. Nothing where there is none before.
+    std::vector<Command> back();
+    void stop() { left_.clear(), done_.clear(); }
     // Another journal, in place of a command that names it, or of the tour that runs.
-    void begin(const std::vector<Command>& journal) { left_.insert(left_.begin(), journal.begin(), journal.end()); }
+    void begin(const std::vector<Command>& journal);
 
  private:
+    void keep(const Command& command);
+
     std::deque<Command> left_;
+    std::vector<Command> done_;  // a wait as one, however many pieces it passed in
 };
 
 }  // namespace achilles

@@ -139,6 +139,25 @@ void begin_change(PanelState& state, Commands& commands) {
 // For the panels; whatever stands before them takes Escape for itself.
 bool escape_pressed() { return is_pressed(key::escape, false) && !is_covered() && !ImGui::GetIO().WantTextInput; }
 
+// A frame around the panel that a tour's words are about.
+void show_highlight(const std::string& panel, const Arrangement& parts) {
+    const std::pair<const char*, const Rectangle*> all[] = {
+        {"bar", &parts.bar},         {"controls", &parts.controls},   {"energy", &parts.energy},
+        {"events", &parts.events},   {"mechanism", &parts.mechanism}, {"plots", &parts.plots},
+        {"results", &parts.results}, {"status", &parts.status},       {"timeline", &parts.timeline}};
+    for (const auto& [name, area] : all) {
+        if (panel != name || area->width < 1.0F || area->height < 1.0F || is_covered()) continue;
+        // Inside the surface, and in the space between the panels where there is some.
+        const ImVec2 whole = ImGui::GetIO().DisplaySize;
+        const float out = units(3.0F), half = units(1.25F);
+        const ImVec2 low{std::max(area->x - out, half), std::max(area->y - out, half)};
+        const ImVec2 high{std::min(area->x + area->width + out, whole.x - half),
+                          std::min(area->y + area->height + out, whole.y - half)};
+        stroke_rectangle(ImGui::GetForegroundDrawList(), low, high, packed(current_theme().accent), units(5.0F),
+                         units(2.5F));
+    }
+}
+
 bool is_part_of_change(const Command& command) { return goes_on(command, command); }
 
 }  // namespace
@@ -191,6 +210,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
              [&] { show_splitter(splitter, state, commands); });
     use_keys(session, commands);
     use_view_keys(session, state, commands);
+    show_highlight(session.scene().highlight(), parts);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
     part("energy", parts.energy, still_window, [&] { show_energy(session, state, commands); });
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);

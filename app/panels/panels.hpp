@@ -155,9 +155,10 @@ struct PanelState {
     std::function<std::string(const std::string& topic)> manual_page;  // the text of one
     std::string manual_text;                                           // of the one that was chosen
     bool opens_manual = false;
-    bool on_tour = false;  // one is under way: its caption has buttons
-    enum class OnTour { nothing, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
-    int copies = 0;                                                          // the session's, that the clipboard has
+    bool on_tour = false;                           // one is under way: its caption has buttons
+    std::size_t tour_said = 0, tour_sentences = 0;  // of it: the how manieth sentence is said, and how many there are
+    enum class OnTour { nothing, back, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
+    int copies = 0;                  // the session's, that the clipboard has
     bool in_window = false;          // a window may show how long the run took; a picture must not
     bool show_impacts = false;       // in the event list: each, not folded into one line
     std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them

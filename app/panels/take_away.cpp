@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -25,14 +26,14 @@ float text_width(const PanelState& state, float width) {
 }
 
 // A word to press in the caption's corner.
-bool word_button(const char* word, const char* about, PanelState& state) {
+bool word_button(const char* word, const char* about, PanelState& state, bool enabled = true) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(word);
     const bool pressed = ImGui::InvisibleButton(word, size);
     remember(state, std::string("tour ") + word);
-    const bool lit = ImGui::IsItemHovered();
-    ImGui::GetWindowDrawList()->AddText(at, packed(lit ? text_color() : faint_color()), word);
+    const bool lit = enabled && ImGui::IsItemHovered();
+    ImGui::GetWindowDrawList()->AddText(at, packed(lit ? text_color() : faint_color(), enabled ? 1.0F : 0.4F), word);
     tooltip(about);
-    return pressed;
+    return pressed && enabled;
 }
 
 }  // namespace
@@ -94,13 +95,23 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
         return;
     }
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
-    const bool keys = !ImGui::GetIO().WantTextInput;
+    const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_said > 1;
     if (word_button("next", "go on at once (Enter)", state) || (keys && is_pressed(key::enter, false)))
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||
         take_escape(state))
         state.tour_wants = PanelState::OnTour::stop;
+    // Below the others: beside them the words would have less room.
+    ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
+    if (word_button("back", "to the sentence before (Backspace)", state, has_before) ||
+        (keys && has_before && is_pressed(key::backspace, false)))
+        state.tour_wants = PanelState::OnTour::back;
+    if (state.tour_said == 0) return;
+    const std::string how_far = fmt::format("{}/{}", state.tour_said, state.tour_sentences);
+    list->AddText({std::floor(high.x - units(padding) - ImGui::CalcTextSize(how_far.c_str()).x),
+                   std::floor(high.y - units(padding - 2.0F) - ImGui::GetTextLineHeight())},
+                  packed(faint_color()), how_far.c_str());
 }
 
 }  // namespace achilles

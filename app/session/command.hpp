@@ -270,6 +270,15 @@ struct Say {
     static constexpr auto said =
         Said("say", "write: say \"a sentence\", or: say \"\"", Change::view, Field(&Say::text, in_quotes));
 };
+inline const std::vector<std::string> highlighted_panels{"bar",  "controls", "energy",  "events", "mechanism",
+                                                         "none", "plots",    "results", "status", "timeline"};
+struct Highlight {
+    std::string panel;  // that a tour's words are about: a frame stands around it until something else is said
+    static constexpr auto said = Said("highlight", "write: highlight plots, or: highlight none", Change::view,
+                                      Field(&Highlight::panel, {.one_of = &highlighted_panels,
+                                                                .known = "these can be highlighted: {}",
+                                                                .complaint = "there is no panel '{}'{}"}));
+};
 struct Replay {
     std::string journal;  // a path, or the name of one of the assets
     static constexpr auto said = Said("replay", "write: replay JOURNAL; a path with spaces stands in double quotes",
@@ -286,7 +295,7 @@ using AnyCommand =
                  command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Speed,
                  command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::Lens,
                  command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset, command::Done,
-                 command::Export, command::Copy, command::Wait, command::Say, command::Replay>;
+                 command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -74,6 +74,7 @@ constexpr std::array keys{
     Shortcut{"Home, End", "start, end of the run"},
     Shortcut{"Escape", "close what is open"},
     Shortcut{"Enter", "a tour's next step"},
+    Shortcut{"Backspace", "its step before"},
     Shortcut{"double click", "type a slider's value"},
     Shortcut{"Shift+drag", "a slider in fine steps"},
     Shortcut{"right click", "the file's value"},

@@ -64,7 +64,12 @@ void Scene::perform(const command::Size& command) {
     shares_[command.panel] = command.share;
 }
 
-void Scene::perform(const command::Say& command) { caption_ = command.text; }
+// What is framed goes with the words about it.
+void Scene::perform(const command::Say& command) { caption_ = command.text, highlight_.clear(); }
+
+void Scene::perform(const command::Highlight& command) {
+    highlight_ = command.panel == "none" ? std::string() : command.panel;
+}
 
 void Scene::perform(const command::Enlarge& command) {
     if (!(command.value >= command::smallest && command.value <= command::largest))
@@ -94,6 +99,7 @@ std::vector<Command> steps_to(const Scene& scene) {
 std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
+    if (!scene.highlight().empty()) steps.emplace_back(command::Highlight{scene.highlight()});
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
     // The editor stands in the session's text as what it does to it.
     for (const std::string& thing : command::shown_things)
@@ -112,3 +118,4 @@ std::string to_text(const Scene& scene) {
 }
 
 }  // namespace achilles
+    if (!scene.highlight().empty()) text += fmt::format("highlights {}\n", scene.highlight());

@@ -25,6 +25,8 @@ class Scene {
     const std::string& finds() const { return finds_; }      // letters that the palette opens with
     const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
 
+    const std::string& highlight() const { return highlight_; }  // the panel that it is about; empty: none
+
     // The share of the window that the user gave a panel; 0: as it fits.
     double share(const std::string& panel) const;
 
@@ -44,6 +46,7 @@ class Scene {
     void perform(const command::Size& command);
     void perform(const command::Say& command);
     void perform(const command::Enlarge& command);
+    void perform(const command::Highlight& command);
     void perform(const command::Present& command);
 
     // Another system: another world, but the same taste.
@@ -56,7 +59,7 @@ class Scene {
     bool loops_ = false;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
-    std::string caption_, finds_;
+    std::string caption_, highlight_, finds_;
     static constexpr double presentation_scale = 1.5;
     double enlarged_ = 1.0;
     bool presents_ = false;

@@ -219,6 +219,7 @@ const State states[] = {
     {"the energy of long names", "long", {"show energy", "seek 3"}},
     {"the energy to a class", "driven_double_pendulum", {"show energy", "present on", "seek 9"}},
     {"dozens of results", "driven_double_pendulum", {"end 60", "seek 31"}},
+    {"a tour about the results", "driven_double_pendulum", {"say \"What came out.\"", "highlight results", "seek 7"}},
     {"all that differs",
      "triple_pendulum",
      {"show accuracy", "set g 3", "eps 1e-3 1e-4 1e-5", "method dopri5", "memory 2e8"}},

@@ -85,7 +85,7 @@ TEST_P(Tours, say_what_fits) {
 
 INSTANTIATE_TEST_SUITE_P(Journals, Tours, testing::ValuesIn(names()));
 
-TEST(Tour, there_are_three) { EXPECT_GE(names().size(), 3U); }
+TEST(Tour, there_are_four) { EXPECT_GE(names().size(), 4U); }
 
 TEST(Tour, waits_add_up) {
     Tour tour({command::Play{}, command::Wait{1.0}, command::Pause{}, command::Wait{0.25}, command::Seek{1.0}});
@@ -97,6 +97,102 @@ TEST(Tour, waits_add_up) {
     EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Seek{1.0}}));
     EXPECT_FALSE(tour.runs());
     EXPECT_TRUE(tour.next().empty());
+}
+
+std::vector<Command> lines(std::initializer_list<const char*> texts) {
+    std::vector<Command> commands;
+    for (const char* text : texts) commands.push_back(parse_command(text));
+    return commands;
+}
+
+TEST(Tour, goes_back_a_sentence) {
+    const auto all = lines({"unpin", "open ball_on_sine", "say \"1\"", "wait 1", "set e 0.4", "say \"2\"", "wait 2",
+                            "seek 1", "say \"3\"", "wait 3", "say \"\""});
+    Tour tour(all);
+    tour.advance(0.5);
+    EXPECT_EQ(tour.said(), 1U);
+    EXPECT_EQ(tour.sentences(), 3U);
+    EXPECT_TRUE(tour.back().empty()) << "there is none before the first";
+    tour.advance(3.0);  // half a second into the third
+    EXPECT_EQ(tour.said(), 3U);
+    EXPECT_EQ(tour.back(), lines({"unpin", "open ball_on_sine", "say \"1\"", "wait 1", "set e 0.4"}));
+    EXPECT_EQ(tour.advance(0.0), lines({"say \"2\""}));
+    EXPECT_EQ(tour.said(), 2U);
+    EXPECT_EQ(tour.advance(1.5), lines({"wait 1.5"}));
+    EXPECT_EQ(tour.advance(0.5), lines({"wait 0.5", "seek 1", "say \"3\""}));
+    EXPECT_EQ(tour.advance(3.5), lines({"wait 3", "say \"\""})) << "the wait is whole again";
+    EXPECT_FALSE(tour.runs());
+    tour.begin(all);
+    EXPECT_EQ(tour.sentences(), 3U) << "what has ended is forgotten";
+}
+
+// What writes a file is not done twice, and the commands of a journal that was named come once.
+TEST(Tour, goes_back_without_writing_again) {
+    Tour tour(lines({"say \"1\"", "replay inner", "say \"2\"", "wait 1", "say \"3\"", "wait 1"}));
+    tour.advance(0.0);
+    tour.begin(lines({"export a.svg", "set e 0.3"}));
+    tour.advance(1.5);
+    EXPECT_EQ(tour.said(), 3U);
+    EXPECT_EQ(tour.back(), lines({"say \"1\"", "set e 0.3"}));
+}
+
+// From any sentence back to the one before: the session is as it was there.
+TEST_P(Tours, lead_back_to_what_was) {
+    Session forward = test::session("ball_on_floor");
+    Tour tour(journal(GetParam()));
+    std::vector<std::string> states;
+    const auto until_the_next = [&] {
+        const std::size_t said = tour.said();
+        while (tour.runs() && tour.said() == said) {
+            for (const Command& command : tour.next()) forward.apply(command);
+            for (const Command& command : tour.advance(0.0)) forward.apply(command);
+        }
+    };
+    while (tour.runs() && tour.said() < tour.sentences()) {
+        until_the_next();
+        states.push_back(to_text(forward));
+    }
+    ASSERT_GE(states.size(), 5U);
+    for (std::size_t i = states.size() - 1; i-- > states.size() - 4;) {
+        for (const Command& command : tour.back()) forward.apply(command);
+        for (const Command& command : tour.advance(0.0)) forward.apply(command);
+        EXPECT_EQ(to_text(forward), states[i]) << i;
+    }
+}
+
+TEST(Tour, has_buttons_and_says_how_far_it_is) {
+    test::Hands hands("ball_on_sine");
+    hands.session.apply(command::Say{"A sentence."});
+    hands.state.on_tour = true;
+    hands.state.tour_said = 4, hands.state.tour_sentences = 12;
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("4/12"));
+    hands.click("tour back");
+    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::back);
+    hands.state.tour_wants = PanelState::OnTour::nothing;
+    hands.press(key::backspace);
+    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::back);
+    hands.state.tour_wants = PanelState::OnTour::nothing;
+    hands.state.tour_said = 1;
+    hands.click("tour back");
+    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::nothing) << "there is none before the first";
+}
+
+// A frame around what the words are about, until other words come.
+TEST(Tour, frames_what_it_is_about) {
+    test::Hands hands("ball_on_sine");
+    const Image before = hands.picture();
+    for (const std::string& panel : command::highlighted_panels) {
+        hands.session.apply(command::Highlight{panel});
+        EXPECT_EQ(hands.session.error(), "");
+        EXPECT_EQ(hands.picture() == before, panel == "none" || panel == "energy") << panel << ", which is not shown";
+    }
+    hands.session.apply(parse_command("highlight plots"));
+    EXPECT_EQ(hands.session.scene().highlight(), "plots");
+    hands.session.apply(command::Say{""});
+    EXPECT_EQ(hands.session.scene().highlight(), "");
+    hands.session.apply(parse_command("highlight none"));
+    EXPECT_THROW(parse_command("highlight plot"), InputError);
 }
 
 TEST(Tour, a_journal_in_a_journal_comes_first) {

@@ -70,8 +70,15 @@ grep -q 'Second' "$folder/second" && fail "the tour does not wait"
 xdotool sleep 0.5 key Return
 await grep -q '^say "Second' "$folder/second" || fail "Enter does not lead the tour on"
 grep -q '^wait [1-9]' "$folder/second" || fail "the record does not tell how long the tour waited"
+xdotool sleep 0.3 key BackSpace
+first_again() { [ "$(grep -c '^say "First' "$folder/second")" -eq 2 ]; }
+await first_again || fail "Backspace does not lead the tour back"
 xdotool sleep 0.3 key Escape
 await grep -q '^say ""' "$folder/second" || fail "Escape does not end the tour"
+xdotool key ctrl+shift+p sleep 0.5
+xdotool type --delay 30 "show energy"
+xdotool sleep 0.2 key Return
+await grep -q '^show energy$' "$folder/second" || fail "the energy is not shown"
 xdotool windowsize --sync "$window" 1000 700 sleep 0.5
 xdotool key ctrl+o sleep 0.5
 xdotool type --delay 40 "$folder/mine.toml"
