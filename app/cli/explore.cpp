@@ -132,7 +132,8 @@ class Explorer {
         recover();
         keep_text();
         if (commands.empty() && !tour_.runs()) remember_looks();
-        if (const double size = session_.scene().text_scale(); size != std::exchange(text_scale_, size))
+        if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
+            size != std::exchange(text_scale_, size))
             window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
@@ -274,9 +275,9 @@ class Explorer {
     void lead_on(PanelState::OnTour wanted) {
         if (wanted == PanelState::OnTour::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
-        if (wanted == PanelState::OnTour::stop && tour_.runs()) {
         if (wanted == PanelState::OnTour::back)
             for (const Command& command : tour_.back()) take_from_tour(command);
+        if (wanted == PanelState::OnTour::stop && tour_.runs()) {
             stop_tour();
             take(command::Say{""});
         }
@@ -370,7 +371,9 @@ int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     PanelState state = panel_state(false);
     job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
         SurfaceOptions enlarged = surface_options(options);
-        enlarged.scale = std::min(enlarged.scale * session.scene().text_scale(), largest_scale);
+        enlarged.scale = std::min(
+            enlarged.scale * session.scene().text_scale(options.width / options.scale, options.height / options.scale),
+            largest_scale);
         Offscreen surface(enlarged);
         const Image image = surface.frame([&] { explorer(session, state); }, 3);
         return with_notes(png_bytes(image), notes);

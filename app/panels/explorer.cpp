@@ -165,6 +165,7 @@ bool is_part_of_change(const Command& command) { return goes_on(command, command
 std::vector<Command> explorer(const Session& session, PanelState& state) {
     Commands commands;
     use_theme(session.theme().dark);
+    state.width = double{ImGui::GetIO().DisplaySize.x}, state.height = double{ImGui::GetIO().DisplaySize.y};
     begin_change(state, commands);
     state.escape = escape_pressed();
     state.lit = std::exchange(state.lights, {});
@@ -191,6 +192,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
     part("results", parts.results, still_window, [&] { show_results(session, state, commands); });
+    part("energy", parts.energy, still_window, [&] { show_energy(session, state, commands); });
     part("timeline", parts.timeline, still_window, [&] { show_timeline(session, state, commands); });
     part("plots", parts.plots, still_window, [&] {
         if (lens_is_open(session))
@@ -208,11 +210,10 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     for (const Arrangement::Splitter& splitter : parts.splitters)
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
+    show_highlight(session.scene().highlight(), parts);
     use_keys(session, commands);
     use_view_keys(session, state, commands);
-    show_highlight(session.scene().highlight(), parts);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
-    part("energy", parts.energy, still_window, [&] { show_energy(session, state, commands); });
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);
     return commands;

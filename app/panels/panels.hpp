@@ -159,6 +159,7 @@ struct PanelState {
     std::size_t tour_said = 0, tour_sentences = 0;  // of it: the how manieth sentence is said, and how many there are
     enum class OnTour { nothing, back, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
     int copies = 0;                  // the session's, that the clipboard has
+    double width = 0.0, height = 0.0;  // of the surface, pixels: as the last frame found it
     bool in_window = false;          // a window may show how long the run took; a picture must not
     bool show_impacts = false;       // in the event list: each, not folded into one line
     std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
@@ -172,15 +173,15 @@ struct PanelState {
     PlotBox box;
     HeldMechanism held;
     PlaneView plane;
+    ResultStrip strip;
     bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
     bool changing = false;   // a change was made that more commands may go on with
-    ResultStrip strip;
     std::optional<double> pointed_at, pointed_before;  // the instant under the mouse in a plot; in the last frame
     std::shared_ptr<EquationsView> equations;          // once they were shown
+    std::shared_ptr<EnergyCourse> energy;              // of the run that is shown, while its energy is
     // A name that the mouse is over: in the equations, in this frame and in the last; in the controls, on its slider.
     std::string lights, lit, pointed_slider;
-    std::shared_ptr<EnergyCourse> energy;              // of the run that is shown, while its energy is
     int followed = -1;                        // the row the event list scrolled to last
     std::map<std::string, Rectangle> places;  // where the last frame put a control ("set g", "play"): tests look here
 };
@@ -214,11 +215,11 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
 // Under the mechanism: every Zeno point and release, with what is proved of its time.
 void show_results(const Session& session, PanelState& state, Commands& commands);
 float results_height(const Session& session);
-// At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
-void show_state(const Session& session, const Rectangle& panel);
 // Under them: where the energy is and where it went, now and, where there is room, over the run.
 void show_energy(const Session& session, PanelState& state, Commands& commands);
 float energy_height(bool with_course);
+// At the top of the mechanism's panel: the state in numbers, and how high that is in a panel so wide.
+void show_state(const Session& session, const Rectangle& panel);
 float state_height(const Session& session, float panel_width);
 // "2.7251422 ± 7.4e-7": the time of a Zeno point, and how far that of the exact motion from the computed state at the cut can be
 // from it, or the measure of the integration's error where that is larger; without a proof the time alone.

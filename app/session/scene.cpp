@@ -80,6 +80,12 @@ void Scene::perform(const command::Enlarge& command) {
 
 void Scene::perform(const command::Present& command) { presents_ = command.on; }
 
+double Scene::text_scale(double width, double height) const {
+    constexpr double least = 1.5, presented_width = 900.0, presented_height = 520.0;
+    return enlarged_ *
+           (presents_ ? std::max(least, std::min(width / presented_width, height / presented_height)) : 1.0);
+}
+
 std::vector<Command> steps_to(const Scene& scene) {
     std::vector<Command> steps;
     if (scene.look()) steps.emplace_back(*scene.look());
@@ -93,13 +99,13 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.enlarged() != 1.0) steps.emplace_back(command::Enlarge{scene.enlarged()});
     if (scene.presents()) steps.emplace_back(command::Present{true});
     if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
+    if (!scene.highlight().empty()) steps.emplace_back(command::Highlight{scene.highlight()});
     return steps;
 }
 
 std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
-    if (!scene.highlight().empty()) steps.emplace_back(command::Highlight{scene.highlight()});
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
     // The editor stands in the session's text as what it does to it.
     for (const std::string& thing : command::shown_things)
@@ -114,8 +120,8 @@ std::string to_text(const Scene& scene) {
     if (scene.presents()) text += "present on\n";
     if (!scene.finds().empty()) text += fmt::format("finds {}\n", scene.finds());
     if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
+    if (!scene.highlight().empty()) text += fmt::format("highlights {}\n", scene.highlight());
     return text;
 }
 
 }  // namespace achilles
-    if (!scene.highlight().empty()) text += fmt::format("highlights {}\n", scene.highlight());

@@ -32,8 +32,9 @@ class Scene {
 
     double enlarged() const { return enlarged_; }  // as the user wants it
     bool presents() const { return presents_; }
-    // What the surface's scale is multiplied by: so large, and larger for a class.
-    double text_scale() const { return enlarged_ * (presents_ ? presentation_scale : 1.0); }
+    // What the scale of a surface so wide and high (pixels at that scale) is multiplied by: so large, and larger for a class,
+    // the more so the larger the surface: from the last row it is as small as any.
+    double text_scale(double width, double height) const;
 
     // Each throws InputError and changes nothing where it makes no sense.
     void perform(const command::Look& command);
@@ -45,8 +46,8 @@ class Scene {
     void perform(const command::Lens& command);
     void perform(const command::Size& command);
     void perform(const command::Say& command);
-    void perform(const command::Enlarge& command);
     void perform(const command::Highlight& command);
+    void perform(const command::Enlarge& command);
     void perform(const command::Present& command);
 
     // Another system: another world, but the same taste.
@@ -60,7 +61,6 @@ class Scene {
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
     std::string caption_, highlight_, finds_;
-    static constexpr double presentation_scale = 1.5;
     double enlarged_ = 1.0;
     bool presents_ = false;
 };

@@ -81,7 +81,8 @@ TEST(Arrangement, has_room_for_the_energy) {
 TEST(Arrangement, shows_a_class_what_it_looks_at) {
     Scene scene;
     scene.perform(command::Present{true});
-    EXPECT_DOUBLE_EQ(scene.text_scale(), 1.5);
+    EXPECT_DOUBLE_EQ(scene.text_scale(1280, 800), 1.5);
+    EXPECT_GT(scene.text_scale(2560, 1440), 2.5) << "as many letters on a large surface as on a small one";
     for (const auto& [width, height, unit] : {std::tuple{1024.0F, 700.0F, 1.5F},
                                               {1366.0F, 768.0F, 1.5F},
                                               {2560.0F, 1440.0F, 1.5F},

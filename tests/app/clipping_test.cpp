@@ -247,7 +247,7 @@ TEST_P(Clipping, cuts_no_letter) {
         if (is_own) session.apply(command::Text{state.system[1] == 'o' ? long_names : large_world()});
         ASSERT_TRUE(session.document().problems.empty());
         for (const char* line : state.journal) session.apply(parse_command(line));
-        interface.restyle(scale * session.scene().text_scale(), false);
+        interface.restyle(scale * session.scene().text_scale(width / scale, height / scale), false);
         for (const char* theme : {"theme light", "theme dark"}) {
             session.apply(parse_command(theme));
             // What a refused command says goes with the next; here it is to be seen.
