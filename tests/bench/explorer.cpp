@@ -70,6 +70,10 @@ void frames() {
         for (int i = 0; i < 3; ++i) desk.frame();
         say("    the same with the equations", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
         desk.session.apply(parse_command("hide equations"));
+        desk.session.apply(parse_command("show energy"));
+        for (int i = 0; i < 3; ++i) desk.frame();
+        say("    the same with the energy", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
+        desk.session.apply(parse_command("hide energy"));
         desk.session.apply(parse_command("select 1"));
         for (int i = 0; i < 3; ++i) desk.frame();
         say("    the same with an event chosen", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
