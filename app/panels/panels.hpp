@@ -158,11 +158,11 @@ struct PanelState {
     bool on_tour = false;                           // one is under way: its caption has buttons
     std::size_t tour_said = 0, tour_sentences = 0;  // of it: the how manieth sentence is said, and how many there are
     enum class OnTour { nothing, back, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
-    int copies = 0;                  // the session's, that the clipboard has
+    int copies = 0;                    // the session's, that the clipboard has
     double width = 0.0, height = 0.0;  // of the surface, pixels: as the last frame found it
-    bool in_window = false;          // a window may show how long the run took; a picture must not
-    bool show_impacts = false;       // in the event list: each, not folded into one line
-    std::set<std::size_t> unfolded;  // of folded impacts those that are listed all the same, by the first of them
+    bool in_window = false;            // a window may show how long the run took; a picture must not
+    bool show_impacts = false;         // in the event list: each, not folded into one line
+    std::set<std::size_t> unfolded;    // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
     std::optional<FileQuestion> file_question;  // asked until it is answered
     std::optional<RecoveryQuestion> recovery_question;
