@@ -73,7 +73,9 @@ TEST(Arrangement, has_room_for_the_energy) {
                     EXPECT_GE(parts.mechanism.height, 85.0F * unit) << what;
                     EXPECT_EQ(parts.results.height, without.results.height) << what;
                 }
-                if (height > 1200.0F && unit == 1.0F) EXPECT_EQ(parts.energy.height, m.energy) << what;
+                if (height > 1200.0F && unit == 1.0F) {
+                    EXPECT_EQ(parts.energy.height, m.energy) << what;
+                }
             }
 }
 

@@ -53,11 +53,13 @@ TEST_P(SentencesOf, NameContactsAndCountImpacts) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
         const std::string text = sentences.of(i);
-        if (model.contacts() > 1)
+        if (model.contacts() > 1) {
             for (const std::string& name : contact_names(model, event.contacts)) EXPECT_TRUE(holds(text, name)) << text;
+        }
         for (const std::string& name : contact_names(model, event.opened)) EXPECT_TRUE(holds(text, name)) << text;
-        if (event.kind == Event::Kind::zeno && !is_plastic_landing(event) && model.contacts() == 1)
+        if (event.kind == Event::Kind::zeno && !is_plastic_landing(event) && model.contacts() == 1) {
             EXPECT_EQ(pile_of(trajectory, i).impacts, event.impacts) << text;
+        }
     }
 }
 
