@@ -103,16 +103,18 @@ void place_tooltip(const ImVec2& at, const ImVec2& size) {
 
 }  // namespace
 
-void tooltip(const std::string& text, const Rectangle& clear) {
-    if (!wants_tooltip(text)) return;
+void tooltip(const std::string& label, const Rectangle& clear) {
+    if (!wants_tooltip(label)) return;
+    const std::string text = upright(label);
     const ImVec2 size = tooltip_size(text), all = ImGui::GetIO().DisplaySize;
     const float gap = units(4.0F), below = clear.y + clear.height + gap;
     place_tooltip({clear.x, below + size.y <= all.y ? below : clear.y - gap - size.y}, size);
     show_tooltip(text);
 }
 
-void tooltip(const std::string& text) {
-    if (!wants_tooltip(text)) return;
+void tooltip(const std::string& label) {
+    if (!wants_tooltip(label)) return;
+    const std::string text = upright(label);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // where the mouse is
     if (!is_covered()) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});

@@ -43,6 +43,14 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
     return state * (1.0 + zeno.t - first->t) / first->impact_speed;
 }
 
+double bytes_of(const Trajectory& trajectory) {
+    const auto n = static_cast<std::size_t>(trajectory.run.q.size());
+    const std::size_t event = sizeof(Event) + 3 * (n * sizeof(double) + 2 * sizeof(void*));
+    return static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
+                               trajectory.pieces.size() * sizeof(Piece) + trajectory.events.size() * event +
+                               trajectory.phases.size() * sizeof(Phase));
+}
+
 State scale_of(const Trajectory& trajectory) {
     State scale{trajectory.run.q.cwiseAbs(), trajectory.run.v.cwiseAbs()};
     const auto take = [&](const Vector& q, const Vector& v) {

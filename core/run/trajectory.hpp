@@ -197,6 +197,9 @@ inline double integration_error(const Options& options, double steps) { return 0
 // of smooth systems the true error was up to 20 times what integration_error() says.
 double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event);
 
+// How many bytes what is kept of a run takes.
+double bytes_of(const Trajectory& trajectory);
+
 // The largest |q| and |v|, coordinate by coordinate, at the start, the events and the end: what is much smaller is noise.
 State scale_of(const Trajectory& trajectory);
 // What is rounding noise beside a scale: below so much of it.

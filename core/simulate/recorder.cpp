@@ -50,13 +50,7 @@ void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes
 
 }  // namespace
 
-double Recorder::bytes() const {
-    const auto n = static_cast<std::size_t>(trajectory_.run.q.size());
-    const std::size_t event = sizeof(Event) + 3 * (n * sizeof(double) + 2 * sizeof(void*));
-    return static_cast<double>(trajectory_.coefficients.size() * sizeof(double) +
-                               trajectory_.pieces.size() * sizeof(Piece) + trajectory_.events.size() * event +
-                               trajectory_.phases.size() * sizeof(Phase));
-}
+double Recorder::bytes() const { return bytes_of(trajectory_); }
 
 void Recorder::go_back(const Mark& mark) {
     trajectory_.pieces.resize(mark.pieces);

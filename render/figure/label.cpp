@@ -253,6 +253,16 @@ Letter plain(char32_t c) {
 
 }  // namespace
 
+std::string upright(std::string_view label) {
+    std::string result;
+    for (std::size_t i = 0; i < label.size();) {
+        const std::size_t begin = i;
+        const Letter letter = plain(next_code_point(label, i));
+        result += letter.italic ? utf8(letter.code) : std::string(label.substr(begin, i - begin));
+    }
+    return result;
+}
+
 std::vector<Letter> letters(std::string_view label) {
     std::vector<Letter> result;
     int script = 0;  // inside braces

@@ -18,6 +18,8 @@ std::string typeset_name(std::string_view name);
 // A whole expression as a label: variables of one letter in italics, '*' as a middle dot, '-' as a minus sign, whole
 // powers raised.
 std::string typeset(std::string_view expression);
+// A label without its italics: fit for any widget.
+std::string upright(std::string_view label);
 // m/s^2 with the power raised and a middle dot for '*'.
 std::string typeset_unit(std::string_view unit);
 // "label (unit)", or the label alone.
