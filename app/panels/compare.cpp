@@ -1,128 +1,115 @@
-// Beside the list of events: how the pinned run and the present one differ.
-#include <fmt/format.h>
-
+// Beside the list of events: the present run and the pinned ones in a table, a column each. What differs stands out.
 #include <algorithm>
 #include <cmath>
 
-#include "figure/label.hpp"
-#include "number/angle.hpp"
-#include "output/output.hpp"
-#include "paint/label.hpp"
+#include "figure/palette.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
 
 namespace {
 
-// When events of this kind happen.
-std::vector<double> times_of(const Trajectory& trajectory, Event::Kind kind) {
-    std::vector<double> times;
-    for (const Event& event : trajectory.events)
-        if (event.kind == kind) times.push_back(event.t);
-    return times;
-}
+constexpr float name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, sign_width = 15.0F;
 
-// What begins contact in a run is called so where it is nothing else.
-bool only_lands(const Trajectory& trajectory) {
-    return std::all_of(trajectory.events.begin(), trajectory.events.end(),
-                       [](const Event& event) { return event.kind != Event::Kind::zeno || is_plastic_landing(event); });
-}
+// The columns of a table as wide as the panel.
+struct Columns {
+    float first = 0.0F, each = 0.0F;
+    std::size_t count = 0;  // runs, and behind them the change where there is one
+    float at(std::size_t i) const { return first + each * static_cast<float>(i); }
+};
 
-void row(const std::string& name, const std::string& pinned, const std::string& present, const std::string& change,
-         bool is_head = false) {
-    constexpr float column = 130.0F, first = 110.0F;
-    const ImVec2 at = ImGui::GetCursorScreenPos();
+Columns columns_of(const Session& session) {
+    Columns columns;
+    const std::size_t runs = session.pinned().size() + 1;
+    columns.count = runs == 2 ? 3 : runs;
     const float room = ImGui::GetContentRegionAvail().x;
-    const float step = std::min(1.0F, room / units(first + 3.0F * column));
-    const Color color = is_head ? faint_color() : text_color();
-    float x = 0.0F, width = step * units(first);
-    for (const std::string* text : {&name, &pinned, &present, &change}) {
-        cell({at.x + x, at.y}, *text, width - units(6.0F), text == &name ? faint_color() : color);
-        x += width;
-        width = step * units(column);
-    }
-    ImGui::Dummy({std::min(room, x), ImGui::GetTextLineHeight()});
+    columns.first = std::min(units(name_width), 0.28F * room);
+    columns.each = std::min(units(widest_column), (room - columns.first) / static_cast<float>(columns.count));
+    return columns;
 }
 
-void row(const std::string& name, double pinned, double present) {
-    row(name, number(pinned, "{:.10g}"), number(present, "{:.10g}"), number(present - pinned, "{:.3g}"));
+void paint_sign(const ImVec2& at, const Color& color) {
+    const float middle = std::floor(at.y + 0.5F * ImGui::GetTextLineHeight()) + 0.5F;
+    ImGui::GetWindowDrawList()->AddLine({at.x, middle}, {at.x + units(10.0F), middle}, packed(color), units(3.0F));
 }
 
-// The i-th Zeno points of both runs, or releases, as far as there are so many.
-void row_of_times(const std::string& name, const std::vector<double>& pinned, const std::vector<double>& present,
-                  std::size_t i) {
-    if (i < pinned.size() && i < present.size()) return row(name, pinned[i], present[i]);
-    const auto text = [i](const std::vector<double>& times) {
-        return i < times.size() ? number(times[i], "{:.10g}") : std::string("\u2013");
+// Names and colours of the runs; the line stays while the table scrolls.
+void show_head(const Session& session, const Columns& columns) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const auto title = [&](std::size_t i, const std::string& name, const Color* color) {
+        const float x = at.x + columns.at(i), side = color != nullptr ? units(sign_width) : 0.0F;
+        if (color != nullptr) paint_sign({x, at.y}, *color);
+        cell({x + side, at.y}, name, columns.each - side - units(6.0F),
+             color != nullptr ? text_color() : faint_color());
     };
-    if (i < pinned.size() || i < present.size()) row(name, text(pinned), text(present), "");
-}
-
-// What was changed between the runs: parameters, and where they start.
-void rows_of_values(const SystemDescription& description, const Run& pinned, const Run& present) {
-    const auto value = [](const std::string& name, const std::string& unit, double before, double after) {
-        const double factor = unit == "rad" ? degrees(1.0) : 1.0;
-        if (before != after) row(name, before * factor, after * factor);
-    };
-    for (std::size_t i = 0; i < description.parameters.size(); ++i)
-        value(typeset_name(description.parameters[i].name), description.parameters[i].unit, pinned.parameters[i],
-              present.parameters[i]);
-    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        const CoordinateDescription& coordinate = description.coordinates[i];
-        value(typeset_name(coordinate.name) + "(0)", coordinate.unit, pinned.q[at], present.q[at]);
-        value(typeset_name(coordinate.name + "'") + "(0)", coordinate.unit, pinned.v[at], present.v[at]);
+    const Color ink = session.theme().ink;
+    title(0, session.name_of_run().empty() ? "present" : session.name_of_run(), &ink);
+    for (std::size_t i = 0; i < session.pinned().size(); ++i) {
+        const PinnedRun& run = session.pinned()[i];
+        const Color color = run_color(session.theme(), run.place);
+        title(i + 1, run.name.empty() ? "pinned" : run.name, &color);
     }
+    if (session.pinned().size() == 1) title(2, "change", nullptr);
+    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
 }
 
-std::string eps_of(const Trajectory& trajectory) {
-    const Truncation& t = trajectory.run.options.truncation;
-    if (t.eps_q == t.eps_v && t.eps_v == t.eps_t) return number(t.eps_q, "{:.3g}");
-    return fmt::format("{}, {}, {}", number(t.eps_q, "{:.3g}"), number(t.eps_v, "{:.3g}"), number(t.eps_t, "{:.3g}"));
+// Strong where it is another than the present run's, which is strong where any differs.
+void show_row(const RunTable::Row& row, const Columns& columns) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool any = std::find(row.differs.begin(), row.differs.end(), true) != row.differs.end();
+    cell(at, row.name, columns.first - units(6.0F), any ? text_color() : faint_color());
+    for (std::size_t i = 0; i < row.values.size(); ++i)
+        cell({at.x + columns.at(i), at.y}, row.values[i], columns.each - units(6.0F),
+             row.differs[i] || (i == 0 && any) ? text_color() : faint_color());
+    if (any && row.values.size() == 2)
+        cell({at.x + columns.at(2), at.y}, row.change, columns.each - units(6.0F), text_color());
+    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
 }
 
-std::string kind_of(const Trajectory& trajectory) {
-    const Truncation& truncation = trajectory.run.options.truncation;
-    return fmt::format("{}, {}", to_text(truncation.conditions), to_text(truncation.reinitialization));
+// The colour of the run, then what it does.
+void show_parting(const PinnedRun& run, const std::string& sentence, float width, const Session& session) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    paint_sign(at, run_color(session.theme(), run.place));
+    cell({at.x + units(sign_width), at.y}, sentence, width - units(sign_width), text_color());
+    ImGui::Dummy({width, ImGui::GetTextLineHeight()});
 }
 
 }  // namespace
 
+float comparison_width(const Session& session) {
+    const std::size_t runs = session.pinned().size() + 1;
+    return units(name_width + least_column * static_cast<float>(runs == 2 ? 3 : runs));
+}
+
 void show_comparison(const Session& session, PanelState& state, Commands& commands) {
-    const Trajectory &pinned = *session.pinned(), &present = session.trajectory();
-    const bool same_system = pinned.model == present.model;
-    if (show_card_title("Comparison with the pinned run", same_system ? "" : "of another system", state))
-        commands.emplace_back(command::Pin{false});
-    row("", "pinned", "present", "change", true);
-    if (same_system) rows_of_values(session.description(), pinned.run, present.run);
-    row("conditions", kind_of(pinned), kind_of(present), "");
-    row("\u03b5", eps_of(pinned), eps_of(present), "");
-    const auto zeno_before = times_of(pinned, Event::Kind::zeno), zeno_after = times_of(present, Event::Kind::zeno);
-    const auto left_before = times_of(pinned, Event::Kind::release),
-               left_after = times_of(present, Event::Kind::release);
-    const std::size_t most = std::max({zeno_before.size(), zeno_after.size(), left_before.size(), left_after.size()});
-    const char* const beginning = only_lands(pinned) && only_lands(present) ? "landing" : "Zeno point";
-    for (std::size_t i = 0; i < most; ++i) {
-        row_of_times(fmt::format("{} {}", beginning, i + 1), zeno_before, zeno_after, i);
-        row_of_times(fmt::format("release {}", i + 1), left_before, left_after, i);
+    const RunTable& table = session.run_table();
+    if (show_card_title(
+            session.pinned().size() == 1 ? "Comparison with the pinned run" : "Comparison with the pinned runs", "",
+            state))
+        commands.emplace_back(command::Show{"runs", false});
+    const Columns columns = columns_of(session);
+    show_head(session, columns);
+    const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
+    const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+    ImGui::BeginChild("table", {0.0F, room}, false);
+    const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+    bool was_cause = false;
+    for (const RunTable::Row& row : table.rows) {
+        // A line between what differs and what follows.
+        if (was_cause && !row.is_cause) {
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const float y = std::floor(at.y - 0.5F * ImGui::GetStyle().ItemSpacing.y) + 0.5F;
+            ImGui::GetWindowDrawList()->AddLine({at.x, y}, {at.x + std::min(width, columns.at(columns.count)), y},
+                                                ImGui::GetColorU32(ImGuiCol_Border));
+        }
+        was_cause = row.is_cause;
+        show_row(row, columns);
     }
-    row("impacts", std::to_string(pinned.statistics.impacts), std::to_string(present.statistics.impacts),
-        number(static_cast<double>(present.statistics.impacts - pinned.statistics.impacts)));
-    row("end", pinned.end_time, present.end_time);
-    if (!same_system) return;
-    const auto& coordinates = session.description().coordinates;
-    const State& scale = session.scale();
-    for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        const auto at = static_cast<Eigen::Index>(i);
-        const bool is_angle = coordinates[i].unit == "rad";
-        const double factor = is_angle ? degrees(1.0) : 1.0;
-        row(typeset_name(coordinates[i].name) + (is_angle ? " [\u00b0]" : ""),
-            without_noise(pinned.end.q[at], scale.q[at]) * factor,
-            without_noise(present.end.q[at], scale.q[at]) * factor);
-        row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
-            without_noise(pinned.end.v[at], scale.v[at]) * factor,
-            without_noise(present.end.v[at], scale.v[at]) * factor);
-    }
+    for (const auto& [run, sentence] : table.partings)
+        show_parting(session.pinned()[run - 1], sentence, width, session);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
 }
 
 }  // namespace achilles

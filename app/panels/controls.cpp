@@ -354,6 +354,7 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
         for (const bool is_rate : {false, true}) start_value(session, file, i, is_rate, state, commands);
     end_time(session, file, state, commands);
     accuracy(session, file, state, commands);
+    show_runs(session, state, commands);
     changes(session, file, state, commands);
     ImGui::PopStyleVar();
 }

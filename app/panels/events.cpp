@@ -30,7 +30,8 @@ std::optional<std::size_t> chosen(const Session& session) {
 }
 
 // Whether something stands beside the list.
-bool has_card(const Session& session) { return chosen(session) || session.pinned() != nullptr; }
+bool shows_runs(const Session& session) { return !session.pinned().empty() && session.scene().shows("runs"); }
+bool has_card(const Session& session) { return chosen(session) || shows_runs(session); }
 
 void show_card_of_event(const Session& session, std::size_t event, PanelState& state, Commands& commands) {
     switch (session.trajectory().events[event].kind) {
@@ -87,27 +88,26 @@ constexpr float button_gap = 6.0F;
 
 float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F * ImGui::GetStyle().FramePadding.x; }
 
-float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
+float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("pin"); }
 
 // Its left end at x: pin the present run, and the comparison of the two ways to cut a bouncing.
 void show_comparing(const Session& session, float x, PanelState& state, Commands& commands) {
-    const float pin_width = button_width("unpin");
+    const float pin_width = button_width("pin");
     ImGui::SameLine(x + pin_width + units(button_gap));
     if (ImGui::Button(both_ways)) {
         using namespace command;
         commands.insert(commands.end(),
                         {UseConditions{Conditions::paper}, UseReinitialization{Reinitialization::euclidean}, Select{0},
-                         Pin{true}, UseConditions{Conditions::sharp}, UseReinitialization{Reinitialization::kinetic}});
+                         Pin{}, UseConditions{Conditions::sharp}, UseReinitialization{Reinitialization::kinetic}});
     }
     remember(state, "compare");
     tooltip(
         "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with the kinetic "
         "restart");
     ImGui::SameLine(x);
-    if (ImGui::Button(session.pinned() != nullptr ? "unpin" : "pin", {pin_width, 0.0F}))
-        commands.emplace_back(command::Pin{session.pinned() == nullptr});
+    if (ImGui::Button("pin", {pin_width, 0.0F})) commands.emplace_back(command::Pin{});
     remember(state, "pin");
-    tooltip("keep the present run in the plots, in grey, beside those that follow");
+    tooltip("keep the present run in the plots, in a colour of its own, beside those that follow");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
@@ -308,7 +308,8 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     const bool with_card = has_card(session);
     // A card needs its width; where there is none for both it stands alone, until it is closed.
     const float width = ImGui::GetContentRegionAvail().x, gap = units(8.0F);
-    const bool with_list = !with_card || width - units(list_beside_card) - gap >= units(least_card);
+    const float least = chosen(session) ? units(least_card) : std::max(units(least_card), comparison_width(session));
+    const bool with_list = !with_card || width - units(list_beside_card) - gap >= least;
     if (with_list) show_list(session, {with_card ? units(list_beside_card) : 0.0F, height}, state, commands);
     if (with_list && with_card) ImGui::SameLine(0.0F, gap);
     if (with_card) show_card(session, {0.0F, height}, state, commands);

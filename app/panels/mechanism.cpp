@@ -105,18 +105,36 @@ void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& 
     drawing.y_low = low.y, drawing.y_high = high.y;
 }
 
-// Behind everything the pinned run at the same instant.
-void add_ghost(const Session& session, Drawing& drawing) {
-    const auto then = session.pinned_now();
-    if (!then) return;
-    const Drawing ghost = session.mechanism().draw(then->t, then->state, session.pinned()->run.parameters, drawing,
-                                                   session.theme(), then->held);
-    for (std::size_t i = ghost.shapes.size(); i-- > 0;) {
-        Shape shape = ghost.shapes[i];
-        if (shape.kind == Shape::Kind::text) continue;
-        shape.stroke.color.a = shape.fill_color.a = 70;
-        drawing.shapes.insert(drawing.shapes.begin(), shape);
+bool is_same(const Shape& a, const Shape& b) {
+    return a.kind == b.kind && a.radius == b.radius &&
+           std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
+                      [](const Point& p, const Point& q) { return p.x == q.x && p.y == q.y; });
+}
+
+// Behind everything the pinned runs at the same instant, each in its hue; of the world what is another one there.
+void add_ghosts(const Session& session, Drawing& drawing) {
+    const std::vector<Shape> present = drawing.shapes;
+    std::vector<Shape> ghosts;
+    for (const PinnedRun& pinned : session.pinned()) {
+        if (!pinned.shown) continue;
+        const Sample then = session.now_of(pinned);
+        Color color = run_color(session.theme(), pinned.place);
+        for (Shape& shape :
+             session.mechanism()
+                 .draw(then.t, then.state, pinned.trajectory->run.parameters, drawing, session.theme(), then.held)
+                 .shapes) {
+            const auto is_there = [&](const Shape& other) { return is_same(shape, other); };
+            if (shape.kind == Shape::Kind::text ||
+                (!shape.moves && std::any_of(present.begin(), present.end(), is_there)))
+                continue;
+            color.a = 200;
+            shape.stroke.color = color;
+            color.a = 90;
+            shape.fill_color = color;
+            ghosts.push_back(std::move(shape));
+        }
     }
+    drawing.shapes.insert(drawing.shapes.begin(), ghosts.begin(), ghosts.end());
 }
 
 void paint_arrows(const Session& session, const HeldMechanism& held, Picture& picture) {
@@ -143,9 +161,9 @@ Picture paint_picture(const Session& session, const Rectangle& area, const HeldM
     // While the hand moves the start, nothing is known to be held.
     const ContactSet touched = holds_start(held) ? ContactSet() : session.now().held;
     Drawing drawing = session.mechanism().draw(t, state, parameters, seen, session.theme(), touched);
+    add_ghosts(session, drawing);
     if (session.scene().shows("trail"))
         add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
-    add_ghost(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
     for (Grip& grip : session.mechanism().grips(parameters)) {

@@ -248,8 +248,8 @@ bool derives_equations(const PanelState& state);
 std::vector<std::string> certificate_lines(const Event& event, const SystemDescription& description);
 void show_certificate(const Event& event, const SystemDescription& description);
 // The cards beside the list, each about the event with this index: its certificate or the Zeno lens; what an impact
-// cost and why the bouncing was not cut there; why the contact ended. And how the pinned run and the present one
-// differ. The first line of a card; true if the user closes it.
+// cost and why the bouncing was not cut there; why the contact ended. And how the pinned runs and the present one
+// differ, and how wide that wants to be. The first line of a card; true if the user closes it.
 bool show_card_title(const std::string& title, const std::string& more, PanelState& state, float margin = 0.0F);
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 // The Zeno lens takes the place of the plots while a Zeno point is chosen.
@@ -258,6 +258,11 @@ void show_lens(const Session& session, PanelState& state, Commands& commands);
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_comparison(const Session& session, PanelState& state, Commands& commands);
+float comparison_width(const Session& session);
+// Under the sliders: the runs that are pinned, where there are any.
+void show_runs(const Session& session, PanelState& state, Commands& commands);
+// Where that panel is not seen: their names in the head of a plot, up to `right`. Returns where they begin.
+float name_runs(const Session& session, const Rectangle& row, float right);
 void show_status(const Session& session, const PanelState& state);
 
 // Letters were typed that are no command yet: frames must go on until they are.

@@ -136,6 +136,13 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     }
     if (ImGui::Button("fit")) commands.emplace_back(command::Fit{number});
     remember(state, "fit");
+    if (!session.pinned().empty() || framing.difference) {
+        bool on = framing.difference;
+        if (ImGui::Checkbox("difference to the pinned runs", &on))
+            commands.emplace_back(command::PlotDifference{number, on});
+        remember(state, "difference");
+        tooltip("how far each pinned run is from the present one, over time, on a logarithmic axis");
+    }
     ImGui::Separator();
     if (ImGui::MenuItem("Save figure\u2026", nullptr, false, session.under_way() == nullptr))
         ask_to_take_away(session, state, ".svg", number);

@@ -1,11 +1,14 @@
 // The right side: a grid of plots, with the present and the pointer's instant in each. Wheel zooms where the pointer is
 // (over an axis only along it), dragging pans, the right button draws a box to zoom to, a double click fits, a click on
 // a plot over time goes there.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "figure/axes.hpp"
+#include "figure/difference.hpp"
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
 #include "paint/label.hpp"
@@ -56,23 +59,12 @@ void paint_instant(const Session& session, const Place& place, const Sample& sam
     list->PopClipRect();
 }
 
-// The values under the pointer's instant, in the corner that is away from it.
-void paint_values(const Session& session, const Place& place, const Sample& sample) {
-    const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
-    const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
-    const std::vector<double> values = session.values(place.plot, sample);
-    std::vector<std::string> lines;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (i > 0 && hidden.contains(i - 1)) continue;
-        const std::string unit = quantities[i].unit.empty() ? "" : " " + quantities[i].unit;
-        lines.push_back(quantities[i].label + " = " +
-                        (std::isfinite(values[i]) ? number(values[i], "{:.6g}") + unit : "\u2013"));
-    }
+// Lines of text in the corner that is away from an instant at pixel x.
+void paint_lines(const Session& session, const Place& place, double x, const std::vector<std::string>& lines) {
     const float size = 0.87F * ImGui::GetFontSize(), line = 1.15F * size, padding = units(5.0F);
     float width = 0.0F;
     for (const std::string& text : lines) width = std::max(width, label_width(text, size));
-    const PanelMap& map = place.map;
-    const bool at_left = map.x(values[0]) > place.area.x + 0.5 * place.area.width;
+    const bool at_left = x > place.area.x + 0.5 * place.area.width;
     const float left =
         std::floor(at_left ? place.area.x + padding : place.area.x + place.area.width - width - 3.0F * padding);
     const float top = place.area.y + padding;
@@ -86,6 +78,44 @@ void paint_values(const Session& session, const Place& place, const Sample& samp
     for (std::size_t i = 0; i < lines.size(); ++i)
         paint_label(list, left + padding, top + 0.5F * padding + line * static_cast<float>(i), lines[i],
                     i == 0 ? faint_color() : text_color(), size);
+}
+
+// The values under the pointer's instant, in the corner that is away from it.
+void paint_values(const Session& session, const Place& place, const Sample& sample) {
+    const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
+    const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
+    const std::vector<double> values = session.values(place.plot, sample);
+    std::vector<std::string> lines;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i > 0 && hidden.contains(i - 1)) continue;
+        const std::string unit = quantities[i].unit.empty() ? "" : " " + quantities[i].unit;
+        lines.push_back(quantities[i].label + " = " +
+                        (std::isfinite(values[i]) ? number(values[i], "{:.6g}") + unit : "\u2013"));
+    }
+    paint_lines(session, place, place.map.x(values[0]), lines);
+}
+
+// The same of a plot of differences, where a line over time tells the instant.
+void paint_differences(const Session& session, const Place& place, double t, float strength, bool with_values) {
+    const Plot& plot = session.plotted().list()[place.plot];
+    const Rectangle& area = place.area;
+    const float at = std::floor(static_cast<float>(place.map.x(t))) + 0.5F;
+    if (!(at >= area.x && at <= area.x + area.width)) return;
+    ImGui::GetWindowDrawList()->AddLine({at, area.y}, {at, area.y + area.height},
+                                        packed(text_color(), 0.45F * strength), units(1.0F));
+    if (!with_values) return;
+    const auto& quantities = plot.prepared->quantities();
+    const std::vector<double> here = session.values(place.plot, session.at(t));
+    std::vector<std::string> lines{"\U0001D461 = " + number(t, "{:.6g}") + " s"};
+    for (const PinnedRun& run : session.pinned()) {
+        if (!run.shown || t > run.trajectory->end_time) continue;
+        const std::vector<double> there = values_at(*run.trajectory, run.sampler->at(t), *plot.prepared);
+        for (const std::size_t i : compared_quantities(*plot.prepared, plot.framing))
+            lines.push_back(fmt::format("|\u0394{}| = {} {} ({})", quantities[i].label,
+                                        number(std::abs(there[i] - here[i]), "{:.3g}"), quantities[i].unit,
+                                        run.name.empty() ? "pinned" : run.name));
+    }
+    paint_lines(session, place, double{at}, lines);
 }
 
 // The limits that put the pixels a, b of each axis at its ends.
@@ -157,6 +187,7 @@ std::optional<int> event_at(const Session& session, const Place& place) {
     }
     const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
     const bool too_many = static_cast<std::size_t>(last - first) > most;
+    if (session.plotted().list()[place.plot].framing.difference) return std::nullopt;  // it has no markers
     NearestEvent nearest(mouse, reach);
     for (auto event = first; event < last; ++event) {
         if (too_many && event->kind == Event::Kind::impact) continue;
@@ -258,9 +289,12 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
 
 // The title opens the plot's menu; the legend stands at its right.
 void show_head(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state, Commands& commands) {
-    const float right = show_legend(session, plot, row, state, commands);
+    float right = show_legend(session, plot, row, state, commands);
+    if (plot == 0) right = name_runs(session, row, right);
     const float arrow = units(14.0F), width = right - row.x - units(4.0F), size = ImGui::GetFontSize();
-    const std::string whole = title_of(session.plotted().list()[plot].view), title = fitted(whole, width - arrow);
+    const Plot& shown = session.plotted().list()[plot];
+    const std::string whole = (shown.framing.difference ? "difference: " : "") + title_of(shown.view),
+                      title = fitted(whole, width - arrow);
     ImGui::SetCursorScreenPos({row.x, row.y});
     const std::string id = "menu of plot " + std::to_string(plot + 1);
     const bool pressed = ImGui::InvisibleButton(id.c_str(), {label_width(title, size) + arrow, row.height});
@@ -277,12 +311,6 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     show_plot_menu(session, plot, state, commands);
 }
 
-Panel with_pinned(const Session& session, std::size_t plot) {
-    const Panel& panel = session.plots()[plot];
-    if (plot >= session.pinned_plots().size()) return panel;
-    return with_pinned(panel, session.pinned_plots()[plot], session.plotted().list()[plot].framing, session.theme());
-}
-
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
@@ -292,11 +320,17 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
     const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
                           cell.y + cell.height - edge - row.y - head};
     if (inner.width < 2.0F || inner.height < 2.0F) return;
-    const Panel panel = with_pinned(session, plot);
+    const Panel& panel = session.drawn(plot);
     const Rectangle area = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
     const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};
+    if (session.plotted().list()[plot].framing.difference) {
+        if (session.pinned().empty()) paint_lines(session, place, double{area.x}, {"no run is pinned"});
+        paint_differences(session, place, session.time(), 1.0F, false);
+        if (state.pointed_before) paint_differences(session, place, *state.pointed_before, 0.6F, true);
+        return use_mouse(session, place, state, commands);
+    }
     paint_instant(session, place, session.now(), 1.0F);
     if (state.pointed_before) {
         const Sample sample = session.at(*state.pointed_before);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "figure/difference.hpp"
 #include "journal/journal.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
@@ -30,7 +31,7 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
 
 // The plots as views of the system's file, where they are nothing else and no pinned run stands behind them.
 std::optional<Words> views_of(const Session& session, const Plots& plots) {
-    if (session.pinned() != nullptr) return std::nullopt;
+    if (!session.pinned().empty()) return std::nullopt;
     const auto& views = session.description().views;
     Words words;
     for (const Plot& plot : plots.list()) {
@@ -97,6 +98,21 @@ std::string bytes_of(const Session& session, const std::string& file, int plot) 
                      "end it in .svg, .png or .pdf (the plots), .json or .csv (the run), or .journal (the session)");
 }
 
+// Which run is which: the present one is in ink, the others in their hues; so a dash alone tells a phase.
+void name_runs(Figure& figure, const Session& session, const std::vector<const PinnedRun*>& pinned) {
+    const Theme theme = light_theme();
+    const std::vector<std::string> phases{legend_text(Phase::Kind::hybrid), legend_text(Phase::Kind::constrained)};
+    for (Key& key : figure.keys)
+        if (auto* const stroke = std::get_if<Stroke>(&key.sign);
+            stroke != nullptr && std::any_of(phases.begin(), phases.end(),
+                                             [&](const std::string& phase) { return key.label.starts_with(phase); }))
+            stroke->color = theme.ink;
+    const Stroke own{theme.ink, 2.0, {}};
+    figure.keys.push_back({session.name_of_run().empty() ? "present run" : session.name_of_run(), own});
+    for (const PinnedRun* run : pinned)
+        figure.keys.push_back({run->name.empty() ? "pinned run" : run->name, pinned_stroke(theme, {}, run->place, 0)});
+}
+
 }  // namespace
 
 Figure figure_of(const Session& session, const PublicationStyle& style) {
@@ -106,24 +122,27 @@ Figure figure_of(const Session& session, const PublicationStyle& style) {
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style) {
     const Theme theme = light_theme();
     std::vector<Panel> panels = plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print);
-    const Trajectory* pinned = session.pinned();
-    const bool behind = pinned != nullptr && pinned->model == session.model();
-    if (behind) {
-        const std::vector<Panel> others = plots.compose(*pinned, plot_samples(*pinned), theme, Plots::Medium::print);
-        for (std::size_t i = 0; i < panels.size(); ++i)
-            panels[i] = with_pinned(std::move(panels[i]), others[i], plots.list()[i].framing, theme);
+    std::vector<const PinnedRun*> pinned;
+    for (const PinnedRun& run : session.pinned())
+        if (run.shown) pinned.push_back(&run);
+    std::vector<ComparedRun> compared;
+    std::vector<std::vector<Panel>> others;
+    for (const PinnedRun* run : pinned) {
+        compared.push_back({run->trajectory.get(), run->name, run_color(theme, run->place)});
+        others.push_back(plots.compose(*run->trajectory, *run->samples, theme, Plots::Medium::print));
+    }
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+        const Plot& plot = plots.list()[i];
+        std::vector<PinnedPanel> behind;
+        for (std::size_t k = 0; k < pinned.size(); ++k)
+            behind.push_back({&others[k][i], pinned[k]->name, pinned[k]->place});
+        Framing framing = plot.framing;
+        framing.for_print = true;
+        panels[i] = framing.difference ? difference(session.trajectory(), compared, *plot.prepared, framing)
+                                       : with_pinned(std::move(panels[i]), behind, framing, theme);
     }
     Figure figure = publication(session.trajectory(), std::move(panels), style);
-    if (!behind) return figure;
-    // Which run is which: the present one has the colours of its phases, the pinned one is grey.
-    const Run &here = session.trajectory().run, &there = pinned->run;
-    const std::string present = told_apart(session.description(), here, there);
-    const Phase::Kind first = session.trajectory().phases.front().kind;
-    Stroke stroke = phase_stroke(theme, first, 0, 1);
-    stroke.dash.clear();
-    if (!present.empty()) figure.keys.push_back({present, stroke});
-    const std::string other = told_apart(session.description(), there, here);
-    figure.keys.push_back({other.empty() ? "pinned run" : "pinned: " + other, pinned_stroke(theme, {})});
+    if (!pinned.empty()) name_runs(figure, session, pinned);
     return figure;
 }
 

@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-// Plots of a session (all, or those of them that `plots` has) for print, a pinned run behind them.
+// Plots of a session (all, or those of them that `plots` has) for print, the pinned runs that are shown behind them.
 Figure figure_of(const Session& session, const PublicationStyle& style);
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style);
 

@@ -79,8 +79,9 @@ void read(int& value, const How& how, Reading& from) {
         if (from.at_end() || from.word() != how.after) return;
         if (++from.at; from.at_end()) throw from.line.error(from.line.word(from.at - 1).column, from.usage);
     }
+    if (how.may_lack && from.at_end()) return;
     value = from.line.whole_number(from.at);
-    if (!how.after.empty() && value < 1) throw from.error(filled(how.complaint, value));
+    if ((!how.after.empty() || how.may_lack) && value < 1) throw from.error(filled(how.complaint, value));
     ++from.at;
 }
 void read(double& value, const How& how, Reading& from) {
@@ -126,8 +127,8 @@ std::string written(bool value, const How& how) {
     return how.is_name || word.empty() ? "" : fmt::format(" {}", word);
 }
 std::string written(int value, const How& how) {
-    if (how.after.empty()) return fmt::format(" {}", value);
-    return value == 0 ? "" : fmt::format(" {} {}", how.after, value);
+    if (value == 0 && (!how.after.empty() || how.may_lack)) return "";
+    return how.after.empty() ? fmt::format(" {}", value) : fmt::format(" {} {}", how.after, value);
 }
 std::string written(double value, const How& how) {
     return value == 0.0 && !how.zero.empty() ? fmt::format(" {}", how.zero) : fmt::format(" {}", value);
@@ -154,6 +155,7 @@ std::pair<std::size_t, std::size_t> count(const How& how) {
     if (std::same_as<Value, Given>) return {1, 2};
     if (std::same_as<Value, Values>) return {2, 96};
     if (!how.after.empty()) return {0, 2};
+    if (how.may_lack) return {0, 1};
     return {std::same_as<Value, bool> && how.no.empty() ? 0 : 1, 1};
 }
 

@@ -96,11 +96,12 @@ struct Save {
 };
 inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "energy",  "equations",
                                                    "events",   "force",    "help",   "lens",    "palette",
-                                                   "plane",    "plots",    "trail",  "velocity"};
+                                                   "plane",    "plots",    "runs",   "trail",   "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
-        // the events), energy (under the results); or trail, velocity, force; the section accuracy of the controls, the
-        // configuration plane in place of the mechanism; help: the card of keys and words
+                       // the events), energy (under the results); or trail, velocity, force; the section accuracy of
+                       // the controls, the configuration plane in place of the mechanism; help: the card of keys and
+                       // words; runs: the table of the pinned ones beside the events
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -196,10 +197,35 @@ struct Undo {
 struct Redo {
     static constexpr auto said = Said("redo", alone, Change::view);
 };
+// Pinned runs stay beside the present one as they are. Each has a place, from 1, which is its colour.
+inline constexpr How place{.may_lack = true, .complaint = "places count from 1: there is no place {}"};
 struct Pin {
-    bool on = true;  // the present run stays beside those that follow
+    int place = 0;  // of the present run; 0: the first that is free
+    static constexpr auto said = Said("pin", "write: pin [PLACE]", Change::view, Field(&Pin::place, command::place));
+};
+struct UnpinAll {
+    static constexpr auto said = Said("unpin all", alone, Change::view);
+};
+struct Unpin {
+    int place = 0;  // of the run that goes; 0: the one that was pinned last
     static constexpr auto said =
-        Said("pin", alone, Change::view, Field(&Pin::on, {.yes = "pin", .no = "unpin", .is_name = true}));
+        Said("unpin", "write: unpin [PLACE], or: unpin all", Change::view, Field(&Unpin::place, command::place));
+};
+struct ShowPinned {
+    int place = 1;
+    bool shown = true;
+    static constexpr auto said = Said("pinned", "write: pinned PLACE on, or: pinned PLACE off", Change::view,
+                                      &ShowPinned::place, Field(&ShowPinned::shown, on_off));
+};
+struct Recall {
+    int place = 1;  // every value and option as that pinned run has it, which stays
+    static constexpr auto said = Said("recall", "write: recall PLACE", Change::alone, &Recall::place);
+};
+struct PlotDifference {
+    int plot = 1;
+    bool on = true;  // how far the pinned runs are from the present one, over time
+    static constexpr auto said = Said("difference", "write: difference NUMBER on, or: difference NUMBER off",
+                                      Change::alone, &PlotDifference::plot, Field(&PlotDifference::on, on_off));
 };
 struct Lens {
     double from = 0.0;  // -log10 of the time left at the left edge of the Zeno lens, which opens
@@ -293,7 +319,8 @@ using AnyCommand =
                  command::Select, command::New, command::Text, command::Save, command::Show, command::Find,
                  command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
                  command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Speed,
-                 command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::Lens,
+                 command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::UnpinAll,
+                 command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference, command::Lens,
                  command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset, command::Done,
                  command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file

@@ -39,6 +39,7 @@ struct How {
     bool (*fits)(double) = nullptr;   // a number
     std::string_view zero = {};       // the word for 0
     std::string_view after = {};      // a whole number from 1, behind this word; 0 where both are left out
+    bool may_lack = false;            // a whole number from 1; 0 where it is left out
     std::string_view complaint = {};  // {}: what stands there instead, and for a text what was probably meant
 };
 constexpr How in_quotes{.in_quotes = true};

@@ -82,9 +82,10 @@ std::vector<Found> find_commands(const std::string& typed, const std::vector<Com
     if (space == std::string::npos) {
         for (const std::string& usage : command_usages()) {
             const std::string its_name = first_word(usage);
-            const bool alone = is_command(usage);
-            best.offer(typed.empty() ? 0 : misfit(typed, its_name, usage),
-                       {usage, alone ? usage : its_name + " ", alone});
+            // Whatever may follow: what can stand alone does.
+            const std::string line = is_command(usage) ? usage : its_name;
+            const bool alone = is_command(line);
+            best.offer(typed.empty() ? 0 : misfit(typed, its_name, usage), {usage, alone ? line : line + " ", alone});
         }
         return best.take();
     }

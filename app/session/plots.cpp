@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -219,6 +220,15 @@ void Plots::perform(const command::ShowCurve& command) {
     ++revision_;
 }
 
+void Plots::perform(const command::PlotDifference& command) {
+    Framing& framing = at(command.plot).framing;
+    if (framing.difference == command.on) return;
+    framing.difference = command.on;
+    framing.x.reset();
+    framing.y.reset();
+    ++revision_;
+}
+
 void Plots::perform(const command::Link& command) {
     linked_ = command.on;
     ++revision_;
@@ -232,6 +242,8 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
     std::vector<Sample> close;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
+        // What belongs to the differences is none of the quantities' own.
+        if (framing.difference) framing.x.reset(), framing.y.reset();
         framing.legend = false;
         framing.for_print = medium == Medium::print;
         std::span<const Sample> own = samples;
@@ -249,22 +261,32 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
     return panels;
 }
 
-Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme) {
-    std::vector<Curve> behind = pinned.curves;
-    for (Curve& curve : behind) {
-        curve.label.clear();
-        curve.stroke = pinned_stroke(theme, curve.stroke);
+Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framing& framing, const Theme& theme) {
+    if (pinned.empty()) return panel;
+    constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+    if (panel.curves.size() == 2)
+        for (Curve& curve : panel.curves) curve.stroke.color = theme.ink;
+    std::vector<Curve> under;
+    std::array<double, 2> x{panel.x.low, panel.x.high}, y{panel.y.low, panel.y.high};
+    for (std::size_t i = 0; i < pinned.size(); ++i) {
+        const Panel& other = *pinned[i].panel;
+        for (Curve curve : other.curves) {
+            curve.label.clear();
+            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place, pinned.size() - 1 - i);
+            under.push_back(std::move(curve));
+        }
+        // Each knows what it cannot cross as far as its own limits.
+        if (!panel.boundary.points.empty() && !other.boundary.points.empty()) {
+            panel.boundary.points.push_back({gap, gap});
+            panel.boundary.points.insert(panel.boundary.points.end(), other.boundary.points.begin(),
+                                         other.boundary.points.end());
+        }
+        x = {std::min(x[0], other.x.low), std::max(x[1], other.x.high)};
+        y = {std::min(y[0], other.y.low), std::max(y[1], other.y.high)};
     }
-    panel.curves.insert(panel.curves.begin(), behind.begin(), behind.end());
-    // Each knows what it cannot cross as far as its own limits.
-    if (!panel.boundary.points.empty() && !pinned.boundary.points.empty()) {
-        constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-        panel.boundary.points.push_back({gap, gap});
-        panel.boundary.points.insert(panel.boundary.points.end(), pinned.boundary.points.begin(),
-                                     pinned.boundary.points.end());
-    }
-    if (!framing.x) set_ticks(panel.x, std::min(panel.x.low, pinned.x.low), std::max(panel.x.high, pinned.x.high), 0.0);
-    if (!framing.y) set_ticks(panel.y, std::min(panel.y.low, pinned.y.low), std::max(panel.y.high, pinned.y.high), 0.0);
+    panel.curves.insert(panel.curves.begin(), under.begin(), under.end());
+    if (!framing.x) set_ticks(panel.x, x[0], x[1], 0.0);
+    if (!framing.y) set_ticks(panel.y, y[0], y[1], 0.0);
     return panel;
 }
 
@@ -286,6 +308,7 @@ void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
     const int number = static_cast<int>(at) + 1;
     const auto framing = [&]() -> const Framing& { return steps.now.list()[at].framing; };
     const Framing& goal = wanted.framing;
+    if (framing().difference != goal.difference) steps.take(command::PlotDifference{number, goal.difference});
     if (framing().log_x != goal.log_x) steps.take(command::AxisScale{number, true, goal.log_x});
     if (framing().log_y != goal.log_y) steps.take(command::AxisScale{number, false, goal.log_y});
     const bool x = goal.x && goal.x != framing().x, y = goal.y && goal.y != framing().y;
@@ -331,6 +354,7 @@ std::string to_text(const Plots& plots) {
         const Framing& framing = plot.framing;
         for (const auto& [name, limits] : {std::pair{"x", framing.x}, {"y", framing.y}})
             if (limits) text += fmt::format(", {} {:.9g} to {:.9g}", name, (*limits)[0], (*limits)[1]);
+        if (framing.difference) text += ", difference";
         if (framing.log_x) text += ", log x";
         if (framing.log_y) text += ", log y";
         for (const std::size_t curve : framing.hidden) text += fmt::format(", without {}", curve + 1);

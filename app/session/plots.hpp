@@ -15,7 +15,7 @@ struct Plot {
     ViewDescription view;
     std::shared_ptr<const PreparedView> prepared;
     Framing framing;
-    bool over_time() const { return prepared->quantities()[0].is_time; }
+    bool over_time() const { return prepared->quantities()[0].is_time || framing.difference; }
 };
 
 class Plots {
@@ -44,6 +44,7 @@ class Plots {
     void perform(const command::AxisScale& command);
     void perform(const command::ShowCurve& command);
     void perform(const command::Link& command);
+    void perform(const command::PlotDifference& command);
 
     // Of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
     // panels; for print they are in them.
@@ -68,9 +69,15 @@ class Plots {
     bool linked_ = true;
 };
 
-// A plot with a pinned run's curves behind the present ones, in grey. Where nothing else is asked for the limits hold
-// both.
-Panel with_pinned(Panel panel, const Panel& pinned, const Framing& framing, const Theme& theme);
+// A plot of a pinned run, its name and its place.
+struct PinnedPanel {
+    const Panel* panel = nullptr;
+    std::string name;
+    int place = 1;
+};
+// A plot with the curves of pinned runs under the present one's, each in its hue and wide enough to be seen beside what lies
+// over it; then a single present curve is in ink. Where nothing else is asked for the limits hold all.
+Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framing& framing, const Theme& theme);
 
 // What leads to these plots from those that their model begins with; `grid` always, or only where it is another.
 std::vector<Command> steps_to(const Plots& plots, bool always_grid = false);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
@@ -91,20 +92,21 @@ std::string saved_text(const Session& session) {
     return held_by(session.description().file);  // another text stands in the editor, which is no system
 }
 
-bool pinned_beside(const Session& session) {
-    return session.pinned() != nullptr && session.pinned()->model == session.model();
-}
-
-// To the present run; where one of the same system is pinned, by way of that.
+// To the present run, by way of those that are pinned.
 std::vector<Command> run_steps(const Session& session, Run from) {
-    std::vector<Command> steps;
-    if (pinned_beside(session)) {
-        const Run& pinned = session.pinned()->run;
-        steps = steps_between(session.description(), from, pinned);
-        steps.emplace_back(command::Pin{true});
-        from = pinned;
+    std::vector<Command> steps, hidden;
+    std::set<int> taken;
+    for (const PinnedRun& pinned : session.pinned()) {
+        append(steps, steps_between(session.description(), from, pinned.trajectory->run));
+        from = pinned.trajectory->run;
+        int first_free = 1;
+        while (taken.contains(first_free)) ++first_free;
+        steps.emplace_back(command::Pin{pinned.place == first_free ? 0 : pinned.place});
+        taken.insert(pinned.place);
+        if (!pinned.shown) hidden.emplace_back(command::ShowPinned{pinned.place, false});
     }
     append(steps, steps_between(session.description(), from, session.run()));
+    append(steps, hidden);
     return steps;
 }
 
@@ -145,20 +147,8 @@ std::string name_anywhere(const std::string& system) {
 std::vector<Command> recipe(const Session& session) {
     const SystemDescription& description = session.description();
     std::vector<Command> steps;
-    const Trajectory* pinned = session.pinned();
-    // A run of the text as it was before it was edited: what opens a system lets go of it.
-    if (pinned != nullptr && pinned->model != session.model() && session.pinned_system() == session.system()) {
-        const SystemDescription& other = pinned->model->description();
-        append(steps, steps_to_text(session.pinned_system(), is_untitled(session.pinned_system()), held_by(other.file),
-                                    other.source_text));
-        append(steps, steps_between(other, pinned->model->default_run(), pinned->run));
-        steps.emplace_back(command::Pin{true});
-        steps.emplace_back(command::Text{description.source_text});
-        steps.emplace_back(command::Reset{});
-    } else {
-        append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
-                                    description.source_text));
-    }
+    append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
+                                description.source_text));
     append(steps, run_steps(session, session.file_run()));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.
@@ -210,24 +200,14 @@ std::vector<Difference> differences(const SystemDescription& description, const 
     return all;
 }
 
-std::string told_apart(const SystemDescription& description, const Run& run, const Run& other) {
-    std::vector<std::string> parts;
-    for (const Difference& difference : differences(description, run, other)) parts.push_back(difference.told());
-    constexpr std::size_t most = 3;
-    if (parts.size() > most) parts.resize(most), parts.emplace_back("\u2026");
-    return fmt::format("{}", fmt::join(parts, ", "));
-}
-
 std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
-    std::vector<Command> steps;
-    if (pinned_beside(session)) steps = run_steps(session, session.run());
+    std::vector<Command> steps = run_steps(session, session.run());
     append(steps, steps_to(plots, true));
     return steps;
 }
 
 std::vector<Command> explorer_steps(const Session& session) {
-    std::vector<Command> steps;
-    if (pinned_beside(session)) steps = run_steps(session, session.run());
+    std::vector<Command> steps = run_steps(session, session.run());
     append(steps, sight_steps(session));
     return steps;
 }

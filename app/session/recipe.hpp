@@ -22,9 +22,7 @@ struct Difference {
     std::string told() const { return name + (is_option ? " " : " = ") + now; }
 };
 std::vector<Difference> differences(const SystemDescription& description, const Run& run, const Run& other);
-// How one run of a system differs from another, for a legend: "e = 0.3, x(0) = 1 m", a few words at most; empty: not at all.
-std::string told_apart(const SystemDescription& description, const Run& run, const Run& other);
-// After these options: what puts the pinned run beside it, and leads to the plots.
+// After these options: what puts the pinned runs beside it, and leads to the plots.
 std::vector<Command> figure_steps(const Session& session, const Plots& plots);
 // The same, and everything else that is seen.
 std::vector<Command> explorer_steps(const Session& session);

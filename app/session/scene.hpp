@@ -16,7 +16,7 @@ class Scene {
     // The part of the world in the middle of the picture; nothing: all that the run needs.
     const std::optional<command::Look>& look() const { return look_; }
     // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations" and
-    // "energy", and the Zeno "lens" in place of the certificate.
+    // "energy", the Zeno "lens" in place of the plots, the table of the pinned "runs" beside the events, where there are any.
     bool shows(const std::string& what) const { return shown_.contains(what); }
     double speed() const { return speed_; }  // seconds of the run in one of the player's
     bool loops() const { return loops_; }
@@ -55,7 +55,7 @@ class Scene {
 
  private:
     std::optional<command::Look> look_;
-    std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events"};
+    std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<double> lens_;

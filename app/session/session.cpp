@@ -74,6 +74,7 @@ void Session::apply(const Command& command) {
 void Session::restore(Moment back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
+    if (!same_system(back.system->model->description(), description())) pinned_ = std::move(back.pinned);
     if (back.system != system_) return change_system(back.system, back.plots, back.run);
     plots_ = back.plots;
     rerun(back.run);
@@ -96,28 +97,7 @@ void Session::perform(const command::Reset&) { rerun(system_->file_run); }
 
 void Session::perform(const command::UseTheme& command) {
     theme_ = command.dark ? dark_theme() : light_theme();
-    pinned_revision_ = -1;
     compose_plots();
-    compose_pinned();
-}
-
-void Session::perform(const command::Pin& command) {
-    pinned_ = command.on ? simulated_ : nullptr;
-    pinned_revision_ = -1;
-    compose_pinned();
-}
-
-void Session::compose_pinned() {
-    const bool same = pinned_ && pinned_->system == simulated_->system;
-    if (!same) pinned_plots_.clear();
-    if (!same || pinned_revision_ == plots_.revision()) return;
-    pinned_revision_ = plots_.revision();
-    pinned_plots_ = plots_.compose(pinned_->trajectory, pinned_->samples, theme_);
-}
-
-std::optional<Sample> Session::pinned_now() const {
-    if (!pinned_ || pinned_->system != simulated_->system) return std::nullopt;
-    return pinned_->sampler.at(std::min(time_, pinned_->trajectory.end_time));
 }
 
 void Session::perform(const command::Open& command) {
@@ -141,7 +121,7 @@ void Session::begin_document(Document document) {
         time_ = run.options.start_time;
         scene_.forget_place();
         placed_.reset();
-        pinned_.reset();  // a run of another system is nothing to compare with
+        let_go();
         change_system(system, Plots(system->model), run);
         for (const std::string& told : outside_ranges(description, run)) warn(told);
         for (const std::string& told : unseen_lines(description)) warn(told);
@@ -182,6 +162,7 @@ void Session::read_document() {
             system->model->check(run);
         }
         placed_ = command::Seek{time_};
+        if (!same_system(description, this->description())) let_go();
         change_system(system, plots_.carried_over(system->model), run);
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
@@ -190,6 +171,7 @@ void Session::read_document() {
 
 // Shows the start of the system until its run is there. The run must be one that can start.
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
+    await_pin();
     system_ = system;
     plots_ = plots;
     simulated_.reset();
@@ -200,6 +182,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     Watch watch;
     watch.stop = at_once.get_token();
     simulated_ = std::make_shared<Simulated>(system_, run, plots_, theme_, &watch);
+    compose_pinned();
     move_to(run.options.start_time);
 }
 
@@ -270,6 +253,7 @@ void Session::perform(const command::UseOption& command) {
 // The same model with another run: nothing is read or derived again.
 void Session::rerun(const Run& run) {
     system_->model->check(run);
+    await_pin();
     asked_ = run;
     const auto watch = std::make_shared<Watch>();
     watch_ = watch;
@@ -294,6 +278,11 @@ void Session::receive(Patience patience) {
     if (!motion) return;
     simulated_ = *motion;
     watch_.reset();
+    try {
+        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt));
+    } catch (const InputError& problem) {
+        error_ = problem.what();
+    }
     compose_plots();  // they may have been changed meanwhile
     compose_pinned();
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;

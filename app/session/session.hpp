@@ -16,7 +16,9 @@
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
+#include "session/pinned_run.hpp"
 #include "session/plots.hpp"
+#include "session/run_table.hpp"
 #include "session/scene.hpp"
 #include "session/worker.hpp"
 #include "simulate/sampler.hpp"
@@ -78,14 +80,18 @@ class Session {
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return simulated_->trajectory; }
     const Mechanism& mechanism() const { return system_->mechanism; }
-    // A run that was pinned, to compare with; null where there is none. Its plots are of what is plotted now, and empty
-    // where it is of another system.
-    const Trajectory* pinned() const { return pinned_ ? &pinned_->trajectory : nullptr; }
-    const std::vector<Panel>& pinned_plots() const { return pinned_plots_; }
-    // As opened; only where there is one.
-    const std::string& pinned_system() const { return pinned_->system->name; }
-    // The pinned mechanism at the present time, of the same system; nothing otherwise.
-    std::optional<Sample> pinned_now() const;
+    // Runs of this system that were pinned, to compare with, in the order in which they were.
+    const std::vector<PinnedRun>& pinned() const { return pinned_; }
+    // One that is at this place; null where there is none.
+    const PinnedRun* pinned_at(int place) const;
+    // Where it is at the present time, or at its end.
+    Sample now_of(const PinnedRun& run) const { return run.sampler->at(std::min(time_, run.trajectory->end_time)); }
+    // How the present run differs from the pinned ones; empty: not at all.
+    const std::string& name_of_run() const { return name_; }
+    // The present run and the pinned ones, in a table; empty where none is pinned.
+    const RunTable& run_table() const { return run_table_; }
+    // What a plot draws: the present run over the pinned ones that are shown, or the difference to them.
+    const Panel& drawn(std::size_t plot) const { return drawn_.empty() ? plots()[plot] : drawn_[plot]; }
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
 
@@ -166,6 +172,10 @@ class Session {
     void perform(const command::Undo& command);
     void perform(const command::Redo& command);
     void perform(const command::Pin& command);
+    void perform(const command::Unpin& command);
+    void perform(const command::UnpinAll& command);
+    void perform(const command::ShowPinned& command);
+    void perform(const command::Recall& command);
     void perform(const command::Step& command);
     void perform(const command::Reset& command);
     void perform(const command::Done&) {}  // the history heard it
@@ -183,14 +193,18 @@ class Session {
         std::shared_ptr<const System> system;
         Plots plots;
         Run run;
+        std::vector<PinnedRun> pinned;  // which are nothing to undo, but come back with their system
         friend bool operator==(const Moment& a, const Moment& b) {
             return a.system == b.system && a.run == b.run && a.document.name == b.document.name &&
                    a.document.text == b.document.text && a.plots == b.plots;
         }
     };
-    Moment moment() const { return {document_, system_, plots_, asked_}; }
+    Moment moment() const { return {document_, system_, plots_, asked_, pinned_}; }
     void restore(Moment back);
     void compose_pinned();
+    void pin(int place);
+    void await_pin();
+    void let_go();
     void begin_document(Document document);
     void read_document();
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
@@ -222,9 +236,11 @@ class Session {
     std::string copied_;
     int copies_ = 0, replaying_ = 0;
     History<Moment> history_;
-    std::shared_ptr<Simulated> pinned_;
-    std::vector<Panel> pinned_plots_;
-    int pinned_revision_ = -1;
+    std::vector<PinnedRun> pinned_;
+    std::string name_;
+    RunTable run_table_;
+    std::vector<Panel> drawn_;      // empty: the present run's plots
+    std::optional<int> pin_waits_;  // the place that the run under way is to be pinned at
     Worker<std::shared_ptr<Simulated>> worker_;
 };
 

@@ -18,6 +18,9 @@ std::string to_text(const Session& session) {
     }
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
+    for (const PinnedRun& pinned : session.pinned())
+        text += fmt::format("pinned {}{}: {}\n", pinned.place, pinned.shown ? "" : " (hidden)",
+                            pinned.name.empty() ? "the same" : pinned.name);
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
     if (!session.error().empty()) text += "error " + session.error() + "\n";

@@ -10,7 +10,7 @@
 #include "figure/label.hpp"
 #include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
-#include "simulate/contact_forces.hpp"
+#include "figure/values.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -18,22 +18,6 @@ namespace achilles {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-// Evaluates all of a view's quantities at a sample, in the units they are shown in.
-class Values {
- public:
-    Values(const PreparedView& view, const Trajectory& trajectory)
-        : evaluator_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
-          quantities_(view.quantities()),
-          forces_(*trajectory.model, trajectory.run.parameters) {}
-    void set(const Sample& sample) { forces_.run_view(evaluator_, sample); }
-    double operator[](std::size_t i) const { return evaluator_.output(i) * quantities_[i].factor; }
-
- private:
-    Evaluator<double> evaluator_;
-    std::span<const PreparedView::Quantity> quantities_;
-    ContactForces forces_;
-};
 
 // The range of all finite values; of the positive ones where the axis is logarithmic.
 struct Range {
@@ -346,6 +330,16 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     return panel;
 }
 
+namespace {
+
+// Where a value is along an axis, 0 to 1 from its low to its high end.
+double share_of(const Axis& axis, double value) {
+    if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
+    return std::log(value / axis.low) / std::log(axis.high / axis.low);
+}
+
+}  // namespace
+
 void place_legend(Panel& panel) {
     panel.legend = true;
     constexpr double width = 0.3, height = 0.3;  // the part of a panel that a legend covers, at most
@@ -354,8 +348,7 @@ void place_legend(Panel& panel) {
         std::size_t covered = 0;
         for (const Curve& curve : panel.curves) {
             for (const Point& point : curve.points) {
-                const double x = (point.x - panel.x.low) / (panel.x.high - panel.x.low);
-                const double y = (point.y - panel.y.low) / (panel.y.high - panel.y.low);
+                const double x = share_of(panel.x, point.x), y = share_of(panel.y, point.y);
                 if (std::abs(x - corner[0]) < width && std::abs(y - corner[1]) < height) ++covered;
             }
         }
@@ -365,7 +358,10 @@ void place_legend(Panel& panel) {
     }
     if (least == 0) return;
     panel.legend_at = {1.0, 1.0};
-    set_ticks(panel.y, panel.y.low, panel.y.high + height / (1.0 - height) * (panel.y.high - panel.y.low), 0.0);
+    const double more = height / (1.0 - height);
+    const double high = panel.y.logarithmic ? panel.y.high * std::pow(panel.y.high / panel.y.low, more)
+                                            : panel.y.high + more * (panel.y.high - panel.y.low);
+    set_ticks(panel.y, panel.y.low, high, 0.0);
 }
 
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns) {

@@ -64,6 +64,8 @@ struct Framing {
     // For print a path is true to shape, h = 0 is drawn in it, and what lies on what is there already is not drawn again;
     // a legend stands above the panel, where it needs no room of the data.
     bool for_print = false;
+    // Not the quantities but how far those of other runs are from them, over time (difference.hpp).
+    bool difference = false;
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 

@@ -107,8 +107,28 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
     return stroke;
 }
 
-Stroke pinned_stroke(const Theme& theme, const Stroke& stroke) {
-    return {theme.dark ? Color{112, 118, 128, 255} : Color{140, 146, 154, 255}, 1.2, stroke.dash};
+Color run_color(const Theme& theme, int place) {
+    // Runs: none is the hue of a phase or of an event's sign, nor what is wrong.
+    const std::array<Color, most_pinned> light{{{118, 52, 200, 255},
+                                                {140, 84, 12, 255},
+                                                {225, 30, 180, 255},
+                                                {0, 140, 165, 255},
+                                                {92, 122, 0, 255},
+                                                {176, 20, 52, 255}}},
+        dark{{{170, 130, 255, 255},
+              {205, 150, 85, 255},
+              {245, 105, 215, 255},
+              {50, 200, 220, 255},
+              {165, 195, 60, 255},
+              {255, 100, 110, 255}}};
+    return (theme.dark ? dark : light)[static_cast<std::size_t>(std::max(place, 1) - 1) % light.size()];
+}
+
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above) {
+    Stroke wide{run_color(theme, place), 3.8 + 0.7 * static_cast<double>(above), stroke.dash};
+    // Its ends are round: as much as they cover is left free.
+    for (std::size_t i = 1; i < wide.dash.size(); i += 2) wide.dash[i] += 0.8 * wide.width;
+    return wide;
 }
 
 Markers event_markers(const Theme& theme, Event::Kind kind) {

@@ -36,8 +36,12 @@ Color on_theme(const Color& color, const Theme& theme);
 // has a hue of its own (the ninth has the first's again), and the dash still tells the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
-// Of a run that others are compared with: it stands back.
-Stroke pinned_stroke(const Theme& theme, const Stroke& stroke);
+// Runs that the present one is compared with have a hue each, by their places from 1 to most_pinned; where they are drawn
+// the present run is in ink, and stroke and dash alone tell its phases.
+inline constexpr int most_pinned = 6;
+Color run_color(const Theme& theme, int place);
+// Of such a run, which lies under `above` others and the present one: so wide that it is seen beside them where they coincide.
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
 // Hollow triangles above the squares of impacts that open a held contact; no points yet.

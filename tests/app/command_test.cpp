@@ -51,8 +51,14 @@ const std::vector<Command> one_of_each{
     command::Step{-1},
     command::Undo{},
     command::Redo{},
-    command::Pin{true},
-    command::Pin{false},
+    command::Pin{},
+    command::Pin{3},
+    command::Unpin{},
+    command::Unpin{2},
+    command::UnpinAll{},
+    command::ShowPinned{2, false},
+    command::Recall{4},
+    command::PlotDifference{3, true},
     command::Lens{2.5},
     command::UseTheme{true},
     command::UseTheme{false},
@@ -186,7 +192,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 53u) << list;
+    EXPECT_EQ(all.size(), 56u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.

@@ -190,7 +190,7 @@ TEST(Palette, is_walked_by_arrows_and_clicked) {
     EXPECT_EQ(hands.all, std::vector<Command>{});
     hands.click("command pin");
     ASSERT_FALSE(hands.all.empty());
-    EXPECT_EQ(hands.all[0], Command(command::Pin{true}));
+    EXPECT_EQ(hands.all[0], Command(command::Pin{}));
     EXPECT_FALSE(hands.session.scene().shows("palette"));
 }
 

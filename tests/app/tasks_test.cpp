@@ -68,14 +68,15 @@ TEST(Tasks, two_runs_are_compared_after_three_clicks_and_a_number) {
     hands.double_click("value of set e");
     hands.type("0.3");
     hands.press(key::enter);
-    EXPECT_EQ(hands.all, (std::vector<Command>{command::Pin{true}, command::Set{"e", 0.3}}));
-    ASSERT_NE(hands.session.pinned(), nullptr);
-    EXPECT_EQ(hands.session.pinned()->run.parameters[2], 0.5);
+    EXPECT_EQ(hands.all, (std::vector<Command>{command::Pin{}, command::Set{"e", 0.3}}));
+    ASSERT_EQ(hands.session.pinned().size(), 1U);
+    const Trajectory& pinned = *hands.session.pinned()[0].trajectory;
+    EXPECT_EQ(pinned.run.parameters[2], 0.5);
     EXPECT_EQ(hands.session.trajectory().run.parameters[2], 0.3);
     hands.rest(3);
     EXPECT_TRUE(hands.says("Comparison with the pinned run")) << hands.letters();
-    EXPECT_TRUE(hands.says("change e 0.5 0.3 \u22120.2 conditions")) << hands.letters();
-    for (const Trajectory* run : {hands.session.pinned(), &hands.session.trajectory()})
+    EXPECT_TRUE(hands.says("change e 0.3 0.5 Zeno 1")) << hands.letters();
+    for (const Trajectory* run : {&pinned, &hands.session.trajectory()})
         for (const Event& event : run->events)
             if (event.kind == Event::Kind::zeno) {
                 EXPECT_TRUE(hands.says(number(event.t, "{:.10g}"))) << hands.letters();

@@ -187,12 +187,13 @@ TEST(Escape, belongs_to_what_is_in_front) {
     ASSERT_EQ(hands.state.editor.asking, EditorState::Asking::open);
     hands.press(key::escape);
     EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::nothing);
-    EXPECT_NE(hands.session.pinned(), nullptr) << "the dialog had it";
+    EXPECT_TRUE(hands.session.scene().shows("runs")) << "the dialog had it";
     hands.double_click("value of set g");
     hands.press(key::escape);
-    EXPECT_NE(hands.session.pinned(), nullptr) << "the field had it";
+    EXPECT_TRUE(hands.session.scene().shows("runs")) << "the field had it";
     hands.press(key::escape);
-    EXPECT_EQ(hands.session.pinned(), nullptr);
+    EXPECT_FALSE(hands.session.scene().shows("runs"));
+    EXPECT_EQ(hands.session.pinned().size(), 1U) << "the table is closed, the run stays";
     // The lens first, then the card.
     hands.session.apply(command::Select{10});
     hands.session.apply(command::Show{"lens", true});
@@ -273,15 +274,6 @@ TEST(Plots, hues_are_of_curves_and_dashes_of_phases) {
                 EXPECT_NE(curves[i].stroke.color, phase_color(session.theme(), kind));
         }
     }
-}
-
-TEST(Pinned, goes_with_its_system) {
-    Session session = test::session("ball_on_sine");
-    session.apply(command::Pin{true});
-    session.apply(command::Set{"e", 0.3});
-    ASSERT_NE(session.pinned(), nullptr);
-    session.apply(command::Open{"double_pendulum"});
-    EXPECT_EQ(session.pinned(), nullptr);
 }
 
 TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {

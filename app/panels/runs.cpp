@@ -1,0 +1,129 @@
+// Under the sliders: the present run and those that are pinned, each with its colour and what it differs by.
+#include <algorithm>
+#include <cmath>
+
+#include "figure/palette.hpp"
+#include "paint/label.hpp"
+#include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr float sign_width = 20.0F, word_gap = 10.0F;
+
+// A quiet word that is pressed, which ends at x, on the line at y; its left end becomes x.
+bool word(const char* text, const std::string& name, const std::string& about, float& x, float y, PanelState& state) {
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    x = std::floor(x - size.x);
+    ImGui::SetCursorScreenPos({x, y});
+    const bool pressed = ImGui::InvisibleButton(name.c_str(), {size.x, ImGui::GetTextLineHeight()});
+    remember(state, name);
+    tooltip(about);
+    const Color color = ImGui::IsItemHovered() ? text_color() : current_theme().accent;
+    ImGui::GetWindowDrawList()->AddText({x, y}, packed(color), text);
+    x -= units(word_gap);
+    return pressed;
+}
+
+// A line as thick as in the plots; hollow where the run is hidden.
+void paint_sign(const ImVec2& at, const Color& color, bool shown) {
+    const float middle = std::floor(at.y + 0.5F * ImGui::GetTextLineHeight()), half = units(3.0F);
+    const ImVec2 low{at.x, middle - half}, high{at.x + units(14.0F), middle + half};
+    if (shown)
+        ImGui::GetWindowDrawList()->AddRectFilled(low, high, packed(color), units(1.5F));
+    else
+        ImGui::GetWindowDrawList()->AddRect({low.x + 0.5F, low.y + 0.5F}, {high.x - 0.5F, high.y - 0.5F}, packed(color),
+                                            units(1.5F));
+}
+
+void show_heading(const Session& session, PanelState& state, Commands& commands) {
+    const float free = ImGui::CalcTextSize("table").x + ImGui::CalcTextSize("unpin all").x + units(2.0F * word_gap);
+    section("Runs", free);
+    const float y = ImGui::GetItemRectMin().y;
+    const ImVec2 next = ImGui::GetCursorScreenPos();
+    float right = ImGui::GetWindowPos().x + content_right();
+    if (word("unpin all", "unpin all", "let go of all pinned runs", right, y, state))
+        commands.emplace_back(command::UnpinAll{});
+    const bool open = session.scene().shows("runs");
+    if (word("table", "runs table",
+             open ? "close the table of the runs" : "what differs between the runs, and what follows: a table below",
+             right, y, state)) {
+        commands.emplace_back(command::Show{"runs", !open});
+        // It stands where the reasons of an event do.
+        if (!open && session.selected() > 0) commands.emplace_back(command::Select{0});
+        if (!open && session.scene().shows("equations")) commands.emplace_back(command::Show{"equations", false});
+        if (!open && !session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
+    }
+    ImGui::SetCursorScreenPos(next);
+}
+
+void show_run(const PinnedRun& run, const Session& session, PanelState& state, Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
+    const std::string number = std::to_string(run.place);
+    float right = at.x + width;
+    if (word("\u00d7", "unpin " + number, "let go of this run", right, at.y, state))
+        commands.emplace_back(command::Unpin{run.place});
+    const bool is_present = run.trajectory->run == session.run();
+    if (!is_present &&
+        word("use", "recall " + number, "make it the present run: every slider goes where it was (Ctrl+Z goes back)",
+             right, at.y, state))
+        commands.emplace_back(command::Recall{run.place});
+    ImGui::SetCursorScreenPos(at);
+    if (ImGui::InvisibleButton(("pinned " + number).c_str(), {std::max(1.0F, right - at.x), line}))
+        commands.emplace_back(command::ShowPinned{run.place, !run.shown});
+    remember(state, "pinned " + number);
+    const bool is_hovered = ImGui::IsItemHovered();
+    const std::string name = run.name.empty() ? "as the present run" : run.name;
+    tooltip(name + (run.shown ? ": pinned. A click hides it" : ": pinned, hidden. A click shows it"));
+    paint_sign(at, run_color(session.theme(), run.place), run.shown);
+    const std::string told = fitted(name, right - at.x - units(sign_width));
+    cell({at.x + units(sign_width), at.y}, told, right - at.x - units(sign_width) + 1.0F,
+         run.shown || is_hovered ? text_color() : faint_color());
+    ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
+}
+
+}  // namespace
+
+float name_runs(const Session& session, const Rectangle& row, float right) {
+    const Scene& scene = session.scene();
+    const bool are_named = scene.shows("controls") && !scene.shows("editor") && !scene.presents();
+    if (session.pinned().empty() || are_named) return right;
+    const float size = 0.87F * ImGui::GetFontSize(), sign = units(16.0F), space = units(10.0F);
+    const float y = row.y + 0.5F * (row.height - 1.2F * size), middle = std::floor(row.y + 0.5F * row.height) + 0.5F;
+    const float room = right - (row.x + 0.35F * row.width);  // the title needs some
+    // From the right: the present run stands first.
+    std::vector<std::pair<std::string, Color>> names;
+    for (auto run = session.pinned().rbegin(); run != session.pinned().rend(); ++run)
+        if (run->shown) names.emplace_back(run->name, run_color(session.theme(), run->place));
+    names.emplace_back(session.name_of_run(), session.theme().ink);
+    const float each = room / static_cast<float>(names.size()) - sign - space;
+    if (each < units(24.0F)) return right;
+    for (const auto& [name, color] : names) {
+        const std::string text = fitted(name.empty() ? "the same" : name, each / 0.87F);
+        right -= label_width(text, size) + sign + space;
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddLine({right, middle}, {right + sign - units(4.0F), middle}, packed(color), units(3.0F));
+        paint_label(list, right + sign, y, text, text_color(), size);
+    }
+    return right;
+}
+
+void show_runs(const Session& session, PanelState& state, Commands& commands) {
+    if (session.pinned().empty()) return;
+    show_heading(session, state, commands);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
+    paint_sign(at, session.theme().ink, true);
+    cell({at.x + units(sign_width), at.y},
+         session.name_of_run().empty() ? "present run" : "present: " + session.name_of_run(), width - units(sign_width),
+         text_color());
+    ImGui::Dummy({width, ImGui::GetTextLineHeight()});
+    for (const PinnedRun& run : session.pinned()) show_run(run, session, state, commands);
+    ImGui::Dummy({1.0F, 0.0F});  // what stands last must have been laid out
+}
+
+}  // namespace achilles

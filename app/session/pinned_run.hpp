@@ -1,0 +1,30 @@
+// A run that stays beside the present one, as it was when it was pinned.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "figure/figure.hpp"
+#include "simulate/sampler.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+struct PinnedRun {
+    int place = 1;  // from 1 to most_pinned: its colour
+    bool shown = true;
+    std::shared_ptr<const Trajectory> trajectory;
+    std::shared_ptr<Sampler> sampler;
+    std::shared_ptr<const std::vector<Sample>> samples;  // for plots
+    std::string name;          // how it differs from the others and the present one; empty: not at all
+    std::vector<Panel> plots;  // of what is plotted now
+    int revision = -1;         // of that,
+    bool dark = false;         // and in which theme
+};
+
+// Whether two descriptions are of one system: the same coordinates, parameters, energies, forces and contacts, whatever the
+// values, ranges, views and drawings. Then a run of one is a run of the other.
+bool same_system(const SystemDescription& a, const SystemDescription& b);
+
+}  // namespace achilles

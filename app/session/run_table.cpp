@@ -1,0 +1,268 @@
+#include "session/run_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "figure/label.hpp"
+#include "figure/palette.hpp"
+#include "model/model.hpp"
+#include "number/angle.hpp"
+#include "output/contacts.hpp"
+#include "session/recipe.hpp"
+
+namespace achilles {
+
+std::vector<VaryingInput> varying_inputs(std::span<const Run* const> runs, const SystemDescription& description) {
+    std::vector<VaryingInput> all;
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+        // Every list is in the same order: what is new stands behind what was found last.
+        std::size_t at = 0;
+        for (const Difference& difference : differences(description, *runs[i], *runs[0])) {
+            auto found = std::find_if(all.begin(), all.end(),
+                                      [&](const VaryingInput& input) { return input.name == difference.name; });
+            if (found == all.end())
+                found = all.insert(
+                    all.begin() + static_cast<std::ptrdiff_t>(at),
+                    {difference.name, difference.is_option, std::vector<std::string>(runs.size(), difference.other)});
+            found->values[i] = difference.now;
+            at = static_cast<std::size_t>(found - all.begin()) + 1;
+        }
+    }
+    return all;
+}
+
+std::vector<std::string> names_of_runs(std::span<const Run* const> runs, const SystemDescription& description) {
+    const std::vector<VaryingInput> inputs = varying_inputs(runs, description);
+    const auto name_of = [&](std::size_t run, std::size_t most) {
+        std::vector<std::string> parts;
+        for (const VaryingInput& input : inputs)
+            parts.push_back(input.name + (input.is_option ? " " : " = ") + input.values[run]);
+        if (parts.size() > most) parts.resize(most), parts.emplace_back("\u2026");
+        return fmt::format("{}", fmt::join(parts, ", "));
+    };
+    constexpr std::size_t few = 3;
+    const auto tells_apart = [&](std::size_t most) {
+        std::map<std::string, const Run*> known;
+        for (std::size_t i = 0; i < runs.size(); ++i)
+            if (*known.try_emplace(name_of(i, most), runs[i]).first->second != *runs[i]) return false;
+        return true;
+    };
+    const std::size_t most = inputs.size() > few && !tells_apart(few) ? inputs.size() : few;
+    std::vector<std::string> names;
+    std::map<std::string, int> known;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        std::string& name = names.emplace_back(name_of(i, most));
+        if (i > 0 && *runs[i] == *runs[0])
+            name = names[0];
+        else if (const int count = ++known[name]; count > 1)
+            name += fmt::format(" ({})", count);
+    }
+    return names;
+}
+
+namespace {
+
+std::string told(double value, int digits) {
+    std::string text = fmt::format("{:.{}g}", value + 0.0, digits);
+    for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
+        text.replace(at, 1, "\u2212");
+    return text;
+}
+
+const std::string nothing = "\u2013";
+
+// What a table says of a run's course: contacts that come to rest, are released, or are thrown open.
+struct Step {
+    std::string name;
+    double t = 0.0;
+};
+
+std::vector<Step> steps_of(const Trajectory& run) {
+    std::vector<Step> steps;
+    for (const Event& event : run.events) {
+        if (event.kind == Event::Kind::impact && event.opened.empty()) continue;
+        const std::string contacts = contacts_told(run, event);
+        if (!event.opened.empty())
+            steps.push_back({contacts + " opens " + joined_names(*run.model, event.opened), event.t});
+        else if (event.kind == Event::Kind::zeno)
+            steps.push_back(
+                {(is_plastic_landing(event) ? "landing" : "Zeno") + (contacts.empty() ? "" : " " + contacts), event.t});
+        else
+            steps.push_back({"release" + (contacts.empty() ? "" : " " + contacts), event.t});
+    }
+    return steps;
+}
+
+// Where two runs go different ways.
+struct Parting {
+    std::string after;     // the event that both have still: "release 2"; empty: they part at the start
+    std::string sentence;  // what each has then
+};
+std::optional<Parting> parting(const std::vector<Step>& present, double present_end, const std::vector<Step>& other,
+                               double other_end) {
+    std::size_t same = 0;
+    while (same < present.size() && same < other.size() && present[same].name == other[same].name) ++same;
+    if (same == present.size() && same == other.size()) return std::nullopt;
+    Parting result;
+    if (same > 0) {
+        const std::string& last = present[same - 1].name;
+        const auto count = std::count_if(present.begin(), present.begin() + static_cast<std::ptrdiff_t>(same),
+                                         [&](const Step& step) { return step.name == last; });
+        result.after = fmt::format("{} {}", last, count);
+    }
+    const auto goes_on = [&](const std::vector<Step>& steps, double end) {
+        return same < steps.size() ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, 5))
+                                   : fmt::format("nothing more until {} s", told(end, 5));
+    };
+    result.sentence =
+        fmt::format("{}: {}; the present run: {}", same > 0 ? "after " + result.after : std::string("from the start"),
+                    goes_on(other, other_end), goes_on(present, present_end));
+    return result;
+}
+
+class Table {
+ public:
+    explicit Table(std::span<const Trajectory* const> runs) : runs_(runs), digits_(runs.size() <= 3 ? 10 : 7) {
+        for (const Trajectory* run : runs_) courses_.push_back(steps_of(*run));
+    }
+
+    RunTable made() {
+        inputs();
+        partings();
+        courses();
+        std::vector<double> impacts, ends;
+        for (const Trajectory* run : runs_) {
+            impacts.push_back(static_cast<double>(run->statistics.impacts));
+            ends.push_back(run->end_time);
+        }
+        numbers("impacts", impacts);
+        if (std::any_of(runs_.begin(), runs_.end(),
+                        [](const Trajectory* run) { return run->outcome.kind != Outcome::Kind::end_time; }))
+            outcomes();
+        numbers("end (s)", ends);
+        states();
+        return std::move(table_);
+    }
+
+ private:
+    void inputs() {
+        std::vector<const Run*> recipes;
+        for (const Trajectory* run : runs_) recipes.push_back(&run->run);
+        for (VaryingInput& input : varying_inputs(recipes, runs_[0]->model->description())) {
+            RunTable::Row& row = table_.rows.emplace_back();
+            row.name = std::move(input.name);
+            row.values = std::move(input.values);
+            for (const std::string& value : row.values) row.differs.push_back(value != row.values[0]);
+            row.is_cause = true;
+        }
+    }
+
+    // A value of no number is none.
+    void numbers(const std::string& name, const std::vector<double>& values) {
+        RunTable::Row& row = table_.rows.emplace_back();
+        row.name = name;
+        for (const double value : values) {
+            row.values.push_back(std::isfinite(value) ? told(value, digits_) : nothing);
+            row.differs.push_back(value != values[0] && !(std::isnan(value) && std::isnan(values[0])));
+        }
+        if (values.size() == 2 && std::isfinite(values[0]) && std::isfinite(values[1]))
+            row.change = told(values[1] - values[0], 3);
+    }
+
+    void partings() {
+        RunTable::Row row{"same course until", {nothing}, {false}, "", false};
+        for (std::size_t i = 1; i < runs_.size(); ++i) {
+            const auto found = parting(courses_[0], runs_[0]->end_time, courses_[i], runs_[i]->end_time);
+            row.values.push_back(!found ? "the end" : found->after.empty() ? "the start" : found->after);
+            row.differs.push_back(found.has_value());
+            if (found) table_.partings.emplace_back(i, found->sentence);
+        }
+        if (!table_.partings.empty()) table_.rows.push_back(std::move(row));
+    }
+
+    // Step by step as the present run takes them, behind them what only others have; beyond so many steps a table says nothing.
+    void courses() {
+        constexpr std::size_t most = 60;
+        const std::vector<std::vector<Step>>& all = courses_;
+        std::map<std::string, std::vector<std::vector<double>>> times;  // of every name, run by run
+        std::vector<std::pair<std::string, std::size_t>> order;         // the n-th of a name
+        for (std::size_t i = 0; i < all.size(); ++i)
+            for (const Step& step : all[i]) {
+                auto& of_runs = times[step.name];
+                of_runs.resize(all.size());
+                of_runs[i].push_back(step.t);
+                const std::pair<std::string, std::size_t> key{step.name, of_runs[i].size()};
+                const auto longest = [&] {
+                    std::size_t longest_of_others = 0;
+                    for (std::size_t j = 0; j < i; ++j)
+                        longest_of_others = std::max(longest_of_others, of_runs[j].size());
+                    return longest_of_others;
+                };
+                if (order.size() < most && key.second > longest()) order.push_back(key);
+            }
+        for (const auto& [name, number] : order) {
+            std::vector<double> values;
+            for (const std::vector<double>& of_run : times[name])
+                values.push_back(number <= of_run.size() ? of_run[number - 1] : std::nan(""));
+            numbers(fmt::format("{} {} (s)", name, number), values);
+        }
+    }
+
+    void outcomes() {
+        RunTable::Row& row = table_.rows.emplace_back();
+        row.name = "stopped by";
+        for (const Trajectory* run : runs_) {
+            row.values.emplace_back(to_text(run->outcome.kind));
+            row.differs.push_back(run->outcome.kind != runs_[0]->outcome.kind);
+        }
+    }
+
+    void states() {
+        const State scale = scale_of(*runs_[0]);
+        const auto& coordinates = runs_[0]->model->description().coordinates;
+        for (std::size_t i = 0; i < coordinates.size(); ++i) {
+            const auto at = static_cast<Eigen::Index>(i);
+            const bool is_angle = coordinates[i].unit == "rad";
+            const double factor = is_angle ? degrees(1.0) : 1.0;
+            for (const bool is_rate : {false, true}) {
+                std::vector<double> values;
+                for (const Trajectory* run : runs_)
+                    values.push_back(
+                        without_noise((is_rate ? run->end.v : run->end.q)[at], (is_rate ? scale.v : scale.q)[at]) *
+                        factor);
+                std::string unit = is_angle ? "\u00b0" : typeset_unit(coordinates[i].unit);
+                if (is_rate && !unit.empty()) unit += "/s";
+                numbers(with_unit(typeset_name(coordinates[i].name + (is_rate ? "'" : "")) + " at the end", unit),
+                        values);
+            }
+        }
+    }
+
+    std::span<const Trajectory* const> runs_;
+    int digits_;
+    std::vector<std::vector<Step>> courses_;
+    RunTable table_;
+};
+
+}  // namespace
+
+RunTable run_table(std::span<const Trajectory* const> runs) { return Table(runs).made(); }
+
+std::string to_text(const RunTable& table) {
+    std::string text;
+    for (const RunTable::Row& row : table.rows) {
+        text += row.name;
+        for (std::size_t i = 0; i < row.values.size(); ++i)
+            text += fmt::format(" | {}{}", row.values[i], row.differs[i] ? " *" : "");
+        text += (row.change.empty() ? "" : " | " + row.change) + "\n";
+    }
+    for (const auto& [run, sentence] : table.partings) text += fmt::format("run {} {}\n", run, sentence);
+    return text;
+}
+
+}  // namespace achilles

@@ -1,0 +1,46 @@
+// Several runs of one system in a table: what differs between them, and what follows from it.
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/trajectory.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+// A value or an option that not all of some runs have alike, as a person reads it: "e", "0.5", "0.3".
+struct VaryingInput {
+    std::string name;
+    bool is_option = false;
+    std::vector<std::string> values;  // run by run
+};
+std::vector<VaryingInput> varying_inputs(std::span<const Run* const> runs, const SystemDescription& description);
+
+// What tells each run from the others: "e = 0.3, x(0) = 1 m", a few words at most. Empty where nothing differs; runs whose
+// values differ by less than these words show are numbered, but those that are the present one, which is the first.
+std::vector<std::string> names_of_runs(std::span<const Run* const> runs, const SystemDescription& description);
+
+struct RunTable {
+    struct Row {
+        std::string name;
+        std::vector<std::string> values;  // run by run
+        std::vector<bool> differs;        // from the first, the present run
+        std::string change;               // of two runs: how much more the second has; may be empty
+        bool is_cause = false;            // a value or option, which others follow from
+    };
+    std::vector<Row> rows;
+    // Where a run goes another way than the present one: its number among the runs, and the sentence.
+    std::vector<std::pair<std::size_t, std::string>> partings;
+};
+
+// Of the present run and the pinned ones: the inputs that vary; after which event the course is another one; when contacts come to rest and are released, as far as the
+// runs go, the number of impacts, the end and the state there. Coordinates of angles are in degrees.
+RunTable run_table(std::span<const Trajectory* const> runs);
+
+// The table as text, for tests.
+std::string to_text(const RunTable& table);
+
+}  // namespace achilles
