@@ -22,7 +22,7 @@ Columns columns_of(const Session& session) {
     Columns columns;
     const std::size_t runs = session.pinned().size() + 1;
     columns.count = runs == 2 ? 3 : runs;
-    const float room = ImGui::GetContentRegionAvail().x;
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
     columns.first = std::min(units(name_width), 0.28F * room);
     columns.each = std::min(units(widest_column), (room - columns.first) / static_cast<float>(columns.count));
     return columns;

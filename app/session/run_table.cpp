@@ -171,7 +171,7 @@ class Table {
             row.differs.push_back(value != values[0] && !(std::isnan(value) && std::isnan(values[0])));
         }
         if (values.size() == 2 && std::isfinite(values[0]) && std::isfinite(values[1]))
-            row.change = told(values[1] - values[0], 3);
+            row.change = told(values[0] - values[1], 3);
     }
 
     void partings() {

@@ -28,7 +28,7 @@ struct RunTable {
         std::string name;
         std::vector<std::string> values;  // run by run
         std::vector<bool> differs;        // from the first, the present run
-        std::string change;               // of two runs: how much more the second has; may be empty
+        std::string change;               // of two runs: how much more the first has; may be empty
         bool is_cause = false;            // a value or option, which others follow from
     };
     std::vector<Row> rows;
