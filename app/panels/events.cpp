@@ -88,11 +88,12 @@ constexpr float button_gap = 6.0F;
 
 float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F * ImGui::GetStyle().FramePadding.x; }
 
-float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("pin"); }
+// (The button is wider than its word: a short one is hard to hit.)
+float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
 
 // Its left end at x: pin the present run, and the comparison of the two ways to cut a bouncing.
 void show_comparing(const Session& session, float x, PanelState& state, Commands& commands) {
-    const float pin_width = button_width("pin");
+    const float pin_width = button_width("unpin");
     ImGui::SameLine(x + pin_width + units(button_gap));
     if (ImGui::Button(both_ways)) {
         using namespace command;

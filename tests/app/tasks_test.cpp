@@ -74,6 +74,7 @@ TEST(Tasks, two_runs_are_compared_after_three_clicks_and_a_number) {
     EXPECT_EQ(pinned.run.parameters[2], 0.5);
     EXPECT_EQ(hands.session.trajectory().run.parameters[2], 0.3);
     hands.rest(3);
+    tell(hands, "unpin", "unpin all");
     EXPECT_TRUE(hands.says("Comparison with the pinned run")) << hands.letters();
     EXPECT_TRUE(hands.says("change e 0.3 0.5 Zeno 1")) << hands.letters();
     for (const Trajectory* run : {&pinned, &hands.session.trajectory()})

@@ -68,6 +68,9 @@ done_with compare 4
 xdotool key Escape
 recorded '^hide runs' "Escape does not close the table"
 grep -q '^unpin' "$folder/record" && fail "Escape lets go of the pinned run"
+click unpin
+recorded '^unpin all' "the pinned runs cannot be let go"
+actions=0 elsewhere=0
 
 # One plot as a figure.
 click plot
