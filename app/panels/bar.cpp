@@ -89,8 +89,8 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
         for (const std::string& panel : command::sized_panels)
             if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
     ImGui::Separator();
-    for (const auto& [what, name] :
-         {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"}, std::pair{"force", "Contact force"}})
+    for (const auto& [what, name] : {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"},
+                                     std::pair{"force", "Contact force"}, std::pair{"strobe", "Poses at events"}})
         if (menu_item(name, state, scene.shows(what))) commands.emplace_back(command::Show{what, !scene.shows(what)});
     const bool plane = scene.shows("plane");
     if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});

@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "figure/sides.hpp"
 #include "paint/mechanism.hpp"
+#include "panels/camera.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -18,32 +20,17 @@ namespace {
 
 using Holding = HeldMechanism::What;
 
-// The height of the line at the bottom that tells what is drawn.
-float switches_height() { return ImGui::GetTextLineHeight() + units(14.0F); }
-
-// More of the world below, so that what the run needs ends above the lowest `strip` pixels of the picture.
-void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
-    const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
-    const double unit = std::min(double{area.width} / width, double{area.height} / height);
-    const double below = 0.5 * (double{area.height} - unit * height);
-    if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 2.5 * strip) return;
-    double more = 2.0 * (strip - below) / unit;  // as long as the width decides what is seen
-    if (unit * (height + more) > double{area.height}) more = strip * height / (double{area.height} - strip);
-    drawing.y_low -= more;
-}
-
-// What can be seen of the world: all that the run needs, or what the user looks at.
-Drawing world(const Session& session, const Rectangle& area) {
-    Drawing drawing = session.limits();
-    keep_clear(drawing, area, double{switches_height()});
-    if (const auto& look = session.scene().look()) {
-        const double height = look->width * double{area.height} / double{area.width};
-        drawing.x_low = look->x - 0.5 * look->width;
-        drawing.x_high = look->x + 0.5 * look->width;
-        drawing.y_low = look->y - 0.5 * height;
-        drawing.y_high = look->y + 0.5 * height;
-    }
-    return drawing;
+// As much of an arrow as is inside: its head shows that it goes on that way.
+Point inside(const Point& from, const Point& to, const Rectangle& area) {
+    const double edge = units(3.0F);
+    double share = 1.0;
+    const auto limit = [&](double at, double way, double low, double high) {
+        if (way > 0.0 && at + share * way > high) share = std::max(0.0, (high - at) / way);
+        if (way < 0.0 && at + share * way < low) share = std::max(0.0, (low - at) / way);
+    };
+    limit(from.x, to.x - from.x, area.x + edge, area.x + area.width - edge);
+    limit(from.y, to.y - from.y, area.y + edge, area.y + area.height - edge);
+    return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)};
 }
 
 void arrow(const Point& from, const Point& to, const Color& color) {
@@ -60,12 +47,9 @@ void arrow(const Point& from, const Point& to, const Color& color) {
     list->AddTriangleFilled(at(0.0, 0.0), at(head, 0.4 * head), at(head, -0.4 * head), packed(color));
 }
 
-// The longest arrow of a run takes this share of the picture.
-constexpr double longest = 0.16;
-
 // Pixels for a unit of velocity or force.
 double arrow_scale(const Rectangle& area, double largest) {
-    return largest > 0.0 ? longest * double{std::min(area.width, area.height)} / largest : 0.0;
+    return largest > 0.0 ? longest_arrow * double{std::min(area.width, area.height)} / largest : 0.0;
 }
 
 // What the mouse needs to know of the picture.
@@ -119,10 +103,10 @@ void add_ghosts(const Session& session, Drawing& drawing) {
         if (!pinned.shown) continue;
         const Sample then = session.now_of(pinned);
         Color color = run_color(session.theme(), pinned.place);
-        for (Shape& shape :
-             session.mechanism()
-                 .draw(then.t, then.state, pinned.trajectory->run.parameters, drawing, session.theme(), then.held)
-                 .shapes) {
+        Drawing ghost = session.mechanism().draw(then.t, then.state, pinned.trajectory->run.parameters, drawing,
+                                                 session.theme(), then.held);
+        pinned.touch->rest(ghost, then.t, then.state);
+        for (Shape& shape : ghost.shapes) {
             const auto is_there = [&](const Shape& other) { return is_same(shape, other); };
             if (shape.kind == Shape::Kind::text ||
                 (!shape.moves && std::any_of(present.begin(), present.end(), is_there)))
@@ -142,28 +126,31 @@ void paint_arrows(const Session& session, const HeldMechanism& held, Picture& pi
     const Body& body = picture.bodies.front();
     const Point center = picture.centers.front(), v = body.velocity(shown_state(session, held).v);
     picture.scale = arrow_scale(picture.area, fastest);
+    const Rectangle& a = picture.area;
+    const bool is_seen = center.x >= a.x && center.x <= a.x + a.width && center.y >= a.y && center.y <= a.y + a.height;
     picture.tip = {center.x + picture.scale * v.x, center.y - picture.scale * v.y};
+    if (!is_seen) return;
     if (session.scene().shows("force") && session.now().contact && !holds_start(held)) {
         const double scale = arrow_scale(picture.area, strongest);
         if (const auto F = body.force(contact_force(session.trajectory(), session.now())))
-            arrow(center, {center.x + scale * F->x, center.y - scale * F->y},
+            arrow(center, inside(center, {center.x + scale * F->x, center.y - scale * F->y}, picture.area),
                   phase_color(session.theme(), Phase::Kind::constrained));
     }
-    if (session.scene().shows("velocity")) arrow(center, picture.tip, text_color());
+    if (session.scene().shows("velocity")) arrow(center, inside(center, picture.tip, picture.area), text_color());
 }
 
 Picture paint_picture(const Session& session, const Rectangle& area, const HeldMechanism& held) {
-    const State state = shown_state(session, held);
-    const double t = shown_time(session, held);
-    const auto& parameters = session.run().parameters;
-    Drawing seen = world(session, area);
-    if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
     // While the hand moves the start, nothing is known to be held.
-    const ContactSet touched = holds_start(held) ? ContactSet() : session.now().held;
-    Drawing drawing = session.mechanism().draw(t, state, parameters, seen, session.theme(), touched);
+    Sample now = session.now();
+    if (holds_start(held)) now = {}, now.state = shown_state(session, held), now.t = shown_time(session, held);
+    const State& state = now.state;
+    const double t = now.t;
+    const auto& parameters = session.run().parameters;
+    Drawing seen = seen_world(session, area);
+    if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
+    const Scene& scene = session.scene();
+    Drawing drawing = session.stage().draw(now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe")});
     add_ghosts(session, drawing);
-    if (session.scene().shows("trail"))
-        add_trail(drawing.shapes, session.trail(), session.samples(), session.time(), session.theme());
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
     for (Grip& grip : session.mechanism().grips(parameters)) {
@@ -303,6 +290,9 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
                                               packed(text_color(), 0.5F), 32, units(1.5F));
         tooltip(under.what == Holding::arrow ? "drag: the rates to start with" : "drag: where the run starts");
     }
+    const ImVec2 delta = ImGui::GetIO().MouseDelta;
+    if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
+        commands.emplace_back(look_again(picture, mouse, 1.0, delta));
     if (ImGui::IsItemActivated()) take_hold(session, picture, under, state.held);
     if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == Holding::world)
         commands.emplace_back(command::LookAll{});
@@ -316,14 +306,18 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
 bool shows_plane(const Session& session) { return session.scene().shows("plane") || session.mechanism().is_empty(); }
 
 // What is drawn besides the mechanism, in the corner.
-void show_switches(const Session& session, const Rectangle& area, PanelState& state, Commands& commands) {
-    float x = area.x + area.width - units(10.0F);
+// Returns where they begin.
+float show_switches(const Session& session, const Rectangle& area, float right, PanelState& state, Commands& commands) {
+    float x = right;
     const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
-    const bool plane = shows_plane(session);
-    for (const char* what : {"plane", "force", "velocity", "trail"}) {
-        // Of the plane nothing else is switched, and where nothing is drawn not even that.
-        const bool is_plane = std::string_view(what) == "plane";
+    const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
+    const bool has_sides = Sides(session.trajectory(), session.samples()).exist();
+    for (const char* what : {"plane", "sides", "force", "velocity", "strobe", "trail"}) {
+        // Of the plane nothing else is switched, and where nothing is drawn not even that; of the sides the trail is.
+        const std::string_view word = what;
+        const bool is_plane = word == "plane";
         if (is_plane ? session.mechanism().is_empty() : plane) continue;
+        if (word == "sides" ? !has_sides : sides && word != "trail" && !is_plane) continue;
         const bool shown = session.scene().shows(what);
         const ImVec2 size = ImGui::CalcTextSize(what);
         x -= size.x;
@@ -335,12 +329,15 @@ void show_switches(const Session& session, const Rectangle& area, PanelState& st
         const bool lit = ImGui::IsItemHovered();
         tooltip(is_plane && shown ? "back to the mechanism"
                 : is_plane        ? "the configuration plane: two coordinates, where the gap is open, and the run"
-                                  : std::string(shown ? "hide the " : "show the ") + what);
+                : word == "sides" ? (shown ? "back to the drawing" : "from two sides: x and z, y and z")
+                : word == "strobe" && !shown ? "show the poses at the events"
+                                             : std::string(shown ? "hide the " : "show the ") + what);
         ImDrawList* list = ImGui::GetWindowDrawList();
         list->AddText({x, y}, packed(lit ? text_color() : faint_color(), shown || lit ? 1.0F : 0.6F), what);
         if (shown) list->AddLine({x, y + size.y}, {x + size.x, y + size.y}, packed(faint_color()), units(1.0F));
         x -= units(14.0F);
     }
+    return x;
 }
 
 }  // namespace
@@ -354,14 +351,28 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
     show_state(session, area);
     const Rectangle rest{area.x, area.y + strip, area.width, area.height - strip};
     if (rest.height < 2.0F) return;
+    const float right = rest.x + rest.width - units(10.0F);
     if (shows_plane(session)) {
         state.held = {};
         show_plane(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - switches_height())}, state,
                    commands);
-        return show_switches(session, rest, state, commands);
+        show_switches(session, rest, right, state, commands);
+        return;
+    }
+    if (shows_sides(session)) {
+        state.held = {};
+        const double unit =
+            show_sides(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - switches_height())});
+        return show_scale_bar(session, rest, unit, show_switches(session, rest, right, state, commands), state);
     }
     const Picture picture = paint_picture(session, rest, state.held);
-    show_switches(session, rest, state, commands);
+    const Point low = picture.placement.world({rest.x, double{rest.y} + double{rest.height}});
+    const Point high = picture.placement.world({double{rest.x} + double{rest.width}, rest.y});
+    Drawing seen;
+    seen.x_low = low.x, seen.x_high = high.x, seen.y_low = low.y, seen.y_high = high.y;
+    const float y = rest.y + rest.height - ImGui::GetTextLineHeight() - units(8.0F);
+    const float menu = show_camera_menu(session, seen, right, y, state, commands) - units(14.0F);
+    show_scale_bar(session, rest, picture.placement.unit, show_switches(session, rest, menu, state, commands), state);
     use_mouse(session, picture, state, commands);
 }
 

@@ -94,14 +94,15 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "energy",  "equations",
-                                                   "events",   "force",    "help",   "lens",    "palette",
-                                                   "plane",    "plots",    "runs",   "trail",   "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "energy",  "equations", "events",
+                                                   "force",    "help",     "lens",   "palette", "plane",     "plots",
+                                                   "runs",     "sides",    "strobe", "trail",   "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
-                       // the events), energy (under the results); or trail, velocity, force; the section accuracy of
-                       // the controls, the configuration plane in place of the mechanism; help: the card of keys and
-                       // words; runs: the table of the pinned ones beside the events
+                       // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
+                       // events); the section accuracy of the controls; in place of the mechanism the configuration
+                       // plane, or of a system in space two sides; help: the card of keys and words; runs: the table
+                       // of the pinned ones beside the events
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -176,6 +177,14 @@ struct Look {
     double x = 0.0, y = 0.0, width = 1.0;  // of the world: the middle of the picture, and how much of it is seen
     static constexpr auto said =
         Said("look", "write: look X Y WIDTH, or: look all", Change::view, &Look::x, &Look::y, &Look::width);
+};
+inline const std::vector<std::string> camera_modes{"fit", "fixed", "follow", "zeno"};
+struct Camera {
+    std::string
+        mode;  // CameraMode: all of the run; where was looked last; with the body; closer to the next Zeno point
+    static constexpr auto said =
+        Said("camera", "write: camera fit, camera fixed, camera follow, or: camera zeno", Change::view,
+             Field(&Camera::mode, {.one_of = &camera_modes, .complaint = "there is no camera '{}'{}"}));
 };
 constexpr double slowest = 1e-3, fastest = 10.0;
 struct Speed {
@@ -318,11 +327,12 @@ using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::Find,
                  command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
-                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Speed,
-                 command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::UnpinAll,
-                 command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference, command::Lens,
-                 command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset, command::Done,
-                 command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
+                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Camera,
+                 command::Speed, command::Loop, command::Step, command::Undo, command::Redo, command::Pin,
+                 command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
+                 command::Lens, command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset,
+                 command::Done, command::Export, command::Copy, command::Wait, command::Say, command::Highlight,
+                 command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "figure/figure.hpp"
+#include "figure/touch.hpp"
 #include "simulate/sampler.hpp"
 #include "system/description.hpp"
 
@@ -17,6 +18,7 @@ struct PinnedRun {
     std::shared_ptr<const Trajectory> trajectory;
     std::shared_ptr<Sampler> sampler;
     std::shared_ptr<const std::vector<Sample>> samples;  // for plots
+    std::shared_ptr<const Touch> touch;                  // how its discs rest in the present drawing
     std::string name;          // how it differs from the others and the present one; empty: not at all
     std::vector<Panel> plots;  // of what is plotted now
     int revision = -1;         // of that,

@@ -16,9 +16,31 @@ void Scene::perform(const command::Look& command) {
         !std::isfinite(command.width))
         throw refusal(fmt::format("a part of the world {} wide cannot be shown", command.width));
     look_ = command;
+    camera_ = CameraMode::fixed;
 }
 
-void Scene::perform(const command::LookAll&) { look_.reset(); }
+void Scene::perform(const command::LookAll&) {
+    look_.reset();
+    camera_ = CameraMode::fit;
+}
+
+void Scene::perform(const command::Camera& command) {
+    const auto mode = camera_mode_from(command.mode);
+    if (!mode)
+        throw refusal(
+            fmt::format("there is no camera '{}'{}", command.mode, did_you_mean(command.mode, command::camera_modes)));
+    if (*mode == CameraMode::fixed && !look_)
+        throw refusal("nobody has looked anywhere yet, where the camera could stay",
+                      "look X Y WIDTH does so, or the wheel of the mouse");
+    camera_ = *mode;
+    if (camera_ == CameraMode::fit) look_.reset();
+}
+
+void Scene::forget_place() {
+    look_.reset();
+    if (camera_ == CameraMode::fixed) camera_ = CameraMode::fit;
+    lens_.reset();
+}
 
 void Scene::perform(const command::Show& command) {
     const auto& things = command::shown_things;
@@ -88,7 +110,9 @@ double Scene::text_scale(double width, double height) const {
 
 std::vector<Command> steps_to(const Scene& scene) {
     std::vector<Command> steps;
-    if (scene.look()) steps.emplace_back(*scene.look());
+    if (scene.look_) steps.emplace_back(*scene.look_);
+    if (scene.camera() != (scene.look_ ? CameraMode::fixed : CameraMode::fit))
+        steps.emplace_back(command::Camera{std::string(to_text(scene.camera()))});
     for (const std::string& thing : command::shown_things)
         if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
     if (!scene.finds().empty()) steps.emplace_back(command::Find{scene.finds()});
@@ -107,6 +131,8 @@ std::string to_text(const Scene& scene) {
     std::string text;
     if (const auto& look = scene.look())
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
+    if (scene.camera() == CameraMode::follow || scene.camera() == CameraMode::zeno)
+        text += fmt::format("camera {}\n", to_text(scene.camera()));
     // The editor stands in the session's text as what it does to it.
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))

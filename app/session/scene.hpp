@@ -7,14 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "figure/camera_mode.hpp"
 #include "session/command.hpp"
 
 namespace achilles {
 
 class Scene {
  public:
-    // The part of the world in the middle of the picture; nothing: all that the run needs.
-    const std::optional<command::Look>& look() const { return look_; }
+    CameraMode camera() const { return camera_; }
+    // Of a fixed camera the part of the world in the middle of the picture; nothing: all that the run needs, or what another
+    // camera chooses.
+    std::optional<command::Look> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
     // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations" and
     // "energy", the Zeno "lens" in place of the plots, the table of the pinned "runs" beside the events, where there are any.
     bool shows(const std::string& what) const { return shown_.contains(what); }
@@ -39,6 +42,7 @@ class Scene {
     // Each throws InputError and changes nothing where it makes no sense.
     void perform(const command::Look& command);
     void perform(const command::LookAll& command);
+    void perform(const command::Camera& command);
     void perform(const command::Show& command);
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
@@ -51,10 +55,12 @@ class Scene {
     void perform(const command::Present& command);
 
     // Another system: another world, but the same taste.
-    void forget_place() { look_.reset(), lens_.reset(); }
+    void forget_place();
 
  private:
-    std::optional<command::Look> look_;
+    CameraMode camera_ = CameraMode::fit;
+    std::optional<command::Look> look_;  // where a fixed camera looked last
+    friend std::vector<Command> steps_to(const Scene& scene);
     std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
     double speed_ = 1.0;
     bool loops_ = false;

@@ -10,6 +10,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "figure/stage.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
@@ -35,11 +36,16 @@ Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, 
       least_gap(achilles::least_gap(trajectory)),
       remarks(achilles::remarks(trajectory)),
       sentences(trajectory),
-      limits(system->mechanism.limits(trajectory, samples)),
-      trail(trail_of(system->mechanism, trajectory, samples)),
+      stage(std::make_unique<Stage>(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
       dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
+
+Session::Simulated::~Simulated() = default;
+
+const Trail& Session::trail() const { return simulated_->stage->trail(); }
+
+const Drawing& Session::limits() const { return simulated_->stage->limits(); }
 
 Session::Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
                  Patience patience)

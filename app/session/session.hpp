@@ -26,6 +26,8 @@
 
 namespace achilles {
 
+class Stage;
+
 // How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
 struct SystemSource {
     std::function<std::filesystem::path(const std::string& system)> find{};  // its file
@@ -96,14 +98,16 @@ class Session {
     bool can_redo() const { return history_.can_redo(); }
 
     // Its body along the run that is shown, a point a sample.
-    const Trail& trail() const { return simulated_->trail; }
+    const Trail& trail() const;
     std::span<const Sample> samples() const { return simulated_->samples; }
     const State& scale() const { return simulated_->scale; }  // scale_of() the run
     double least_gap() const { return simulated_->least_gap; }
     std::span<const Remark> remarks() const { return simulated_->remarks; }
     const Sentences& sentences() const { return simulated_->sentences; }  // of its events
     // The world the mechanism needs during the whole run.
-    const Drawing& limits() const { return simulated_->limits; }
+    const Drawing& limits() const;
+    // How the mechanism is looked at along the run that is shown.
+    Stage& stage() const { return *simulated_->stage; }
     // What is plotted, and the plots, composed.
     const Plots& plotted() const { return plots_; }
     const std::vector<Panel>& plots() const { return simulated_->plots; }
@@ -142,6 +146,9 @@ class Session {
     struct Simulated {
         Simulated(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
                   Watch* watch);
+        ~Simulated();
+        Simulated(const Simulated&) = delete;  // the stage refers to the others
+        Simulated& operator=(const Simulated&) = delete;
         Trajectory trajectory;
         std::shared_ptr<const System> system;
         Sampler sampler;
@@ -150,8 +157,7 @@ class Session {
         double least_gap;
         std::vector<Remark> remarks;
         Sentences sentences;
-        Drawing limits;
-        Trail trail;
+        std::unique_ptr<Stage> stage;
         int revision = 0;   // of what is plotted
         bool dark = false;  // in which theme
         std::vector<Panel> plots;

@@ -107,18 +107,19 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
 }
 
 Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size,
-                     double step)
+                     double step, CameraMode camera)
     : trajectory_(trajectory),
       size_(size),
       decimals_(decimals_for(step)),
       sampler_(trajectory),
       samples_(plot_samples(trajectory)),
       mechanism_(*trajectory.model),
-      trail_(trail_of(mechanism_, trajectory, samples_)),
-      limits_(mechanism_.limits(trajectory, samples_)) {
+      stage_(mechanism_, trajectory, samples_),
+      camera_(camera) {
     for (const ViewDescription& view : views) views_.emplace_back(*trajectory.model, view);
     const float heading = heading_height(still_scale(size));
-    const double shape = (limits_.x_high - limits_.x_low) / (limits_.y_high - limits_.y_low);
+    const Drawing& limits = stage_.limits();
+    const double shape = (limits.x_high - limits.x_low) / (limits.y_high - limits.y_low);
     areas_ = still_areas(shape, views.size(),
                          {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
     figure_ = pale_figure(trajectory, views, areas_.columns);
@@ -180,8 +181,13 @@ Still Animation::at(double t) {
     Still still;
     still.areas = areas_;
     const double scale = still.scale = still_scale(size_);
-    still.world = mechanism_.draw(now.t, now.state, trajectory_.run.parameters, limits_, theme, now.held);
-    add_trail(still.world.shapes, trail_, samples_, now.t, theme);
+    const double room = std::round(still_margin * scale);
+    const double wide = double{areas_.world.width} - 2.0 * room, high = double{areas_.world.height} - room;
+    Drawing seen = widened(stage_.camera().at(camera_, now, {wide, high}), wide, high);
+    const double edge = room * (seen.x_high - seen.x_low) / wide;  // only the ground goes on there
+    seen.x_low -= edge, seen.x_high += edge, seen.y_low -= edge;
+    still.world = stage_.draw(now, seen, theme, {});
+    still.unit = stage_.unit();
     still.plane = plane_;
     for (Panel& panel : still.plane.panels) add_present(panel, *plane_view_, now);
     still.plots = figure_;

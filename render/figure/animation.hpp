@@ -2,10 +2,10 @@
 // passes. Whatever does not move stands in every still at the same place.
 #pragma once
 
-#include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/drawing.hpp"
 #include "figure/sheet.hpp"
+#include "figure/stage.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -24,6 +24,7 @@ struct StillSize {
     double scale = 1.0;               // of text and strokes, over what fits the size
 };
 constexpr double still_title_size = 17.0;  // pixels at scale 1
+constexpr double still_margin = 16.0;      // the same, around the mechanism but above it
 
 // The scale of everything in a still: a small film is a large one made smaller, as long as it can be read.
 double still_scale(const StillSize& size);
@@ -36,6 +37,7 @@ struct Still {
     Figure plots;
     StillAreas areas;
     double scale = 1.0;
+    std::string unit;  // of lengths in the world
 };
 
 // The still as text, what moves with 9 significant digits: for tests.
@@ -45,7 +47,8 @@ class Animation {
  public:
     // Refers to the trajectory. `step`: seconds of the run from one still to the next, which decide the digits of the
     // clock. Throws InputError for a view that cannot be evaluated.
-    Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size, double step);
+    Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size, double step,
+              CameraMode camera = CameraMode::fit);
     // At a time within the run.
     Still at(double t);
 
@@ -59,8 +62,8 @@ class Animation {
     std::vector<Sample> samples_;
     std::vector<PreparedView> views_;
     Mechanism mechanism_;
-    Trail trail_;
-    Drawing limits_;
+    Stage stage_;
+    CameraMode camera_;
     Figure figure_;  // the whole run, pale
     std::optional<PreparedView> plane_view_;
     Figure plane_;

@@ -111,30 +111,42 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
         const auto body = Body::of(*grip, t, state);
         if (!body) continue;
         const Point v = body->velocity(state.v);
+        const auto F = body->force(contact_force(trajectory, samples[i]));
+        trail.arrows.push_back({body->at(), v, F.value_or(Point{})});
         trail.fastest = std::max(trail.fastest, std::hypot(v.x, v.y));
-        if (const auto F = body->force(contact_force(trajectory, samples[i])))
-            trail.strongest = std::max(trail.strongest, std::hypot(F->x, F->y));
+        if (F) trail.strongest = std::max(trail.strongest, std::hypot(F->x, F->y));
+    }
+    const auto divide = [](Point& p, double largest) { p = largest > 0.0 ? Point{p.x / largest, p.y / largest} : p; };
+    for (Trail::Arrows& arrows : trail.arrows) {
+        divide(arrows.velocity, trail.fastest);
+        divide(arrows.force, trail.strongest);
     }
     return trail;
 }
 
-void add_trail(std::vector<Shape>& shapes, const Trail& trail, std::span<const Sample> samples, double t,
-               const Theme& theme) {
-    std::vector<Shape> way;
-    for (std::size_t i = 0; i < trail.points.size() && samples[i].t <= t; ++i) {
-        const Phase::Kind phase = samples[i].phase;
-        if (i == 0 || phase != samples[i - 1].phase) {
-            Shape& shape = way.emplace_back();
-            shape.stroke = phase_stroke(theme, phase, 0, 1);
+void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
+    constexpr std::uint8_t passed = 150, to_come = 60;
+    std::vector<Shape> lines;
+    const WayPoint* before = nullptr;
+    for (const WayPoint& here : way) {
+        const bool is_passed = here.t <= t;
+        if (before == nullptr || here.phase != before->phase || is_passed != (before->t <= t)) {
+            Shape& line = lines.emplace_back();
+            line.stroke = phase_stroke(theme, here.phase, 0, 1);
+            const bool in_contact = here.phase == Phase::Kind::constrained;
             // In contact it lies on the line of the surface, which must not shine through.
-            shape.stroke.color.a = phase == Phase::Kind::constrained ? 255 : 150;
-            if (phase == Phase::Kind::constrained) shape.stroke.width = 3.0;
-            if (i > 0) shape.points.push_back(trail.points[i - 1]);
+            line.stroke.color.a = !is_passed ? to_come : in_contact ? 255 : passed;
+            if (in_contact) line.stroke.width = 3.0;
+            if (before != nullptr) line.points.push_back(before->at);
         }
-        way.back().points.push_back(trail.points[i]);
+        lines.back().points.push_back(here.at);
+        before = &here;
     }
+    // What is to come under what has passed.
+    std::stable_partition(lines.begin(), lines.end(),
+                          [&](const Shape& line) { return line.stroke.color.a == to_come; });
     const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });
-    shapes.insert(first, way.begin(), way.end());
+    shapes.insert(first, lines.begin(), lines.end());
 }
 
 }  // namespace achilles

@@ -42,13 +42,22 @@ struct Trail {
     std::vector<Point> points;  // one a sample; none where the mechanism has no body
     double fastest = 0.0;       // largest speed of the body
     double strongest = 0.0;     // largest contact force at it
+    struct Arrows {             // of some of the samples, as shares of the two above
+        Point at, velocity, force;
+    };
+    std::vector<Arrows> arrows;
 };
 Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
 
-// Puts the way of the body until t among a mechanism's shapes, each phase in its colour: over the world, where a motion
-// in contact would be hidden by the surface, and under what moves.
-void add_trail(std::vector<Shape>& shapes, const Trail& trail, std::span<const Sample> samples, double t,
-               const Theme& theme);
+// A place on the way of the body.
+struct WayPoint {
+    double t = 0.0;
+    Phase::Kind phase = Phase::Kind::hybrid;
+    Point at;
+};
+// Puts the way of the body among a mechanism's shapes, each phase in its colour, what is to come after t faintly: over the
+// world, where a motion in contact would be hidden by the surface, and under what moves.
+void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
 
 // The contact force of a sample, sum lambda_i g_i' over what is held, as a generalised force; zero in flight.
 Vector contact_force(const Trajectory& trajectory, const Sample& sample);

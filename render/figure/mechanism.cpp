@@ -9,6 +9,7 @@
 #include "expression/parse.hpp"
 #include "figure/field.hpp"
 #include "figure/parts.hpp"
+#include "figure/refine.hpp"
 
 namespace achilles {
 
@@ -17,6 +18,7 @@ namespace {
 using Kind = DrawingDescription::Shape;
 
 constexpr int curve_points = 400;
+constexpr double hatch_of_world = 0.022;  // between the strokes under a ground
 
 // "#8f96a0", as the file was read.
 Color color_of(const std::string& text) {
@@ -104,6 +106,15 @@ void light(Shape& shape, const Theme& theme) {
     if (shape.stroke.width > 0.0) shape.stroke.width += shape.fill ? 1.5 : 0.75;
 }
 
+double diagonal(const Drawing& seen) { return std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low); }
+
+// Of a ground that goes right through the picture all behind it is solid, not only a strip.
+bool ends_are_outside(const Drawing& seen, const std::vector<Point>& line) {
+    return std::all_of(line.begin(), line.end(), [&](const Point& p) {
+        return p.x < seen.x_low || p.x > seen.x_high || p.y < seen.y_low || p.y > seen.y_high;
+    });
+}
+
 // Whether an expression names one of the coordinates, or t.
 bool names_what_moves(const SystemDescription& description, std::string_view text) {
     const std::vector<std::string> names = names_in(text);
@@ -132,7 +143,8 @@ Mechanism::Mechanism(const Model& model) : model_(model), start_(model.default_r
     plane_ = items_.empty() && named(0, "x") && named(1, "y");
 }
 
-Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state) const {
+Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state,
+                                   const Drawing* seen) const {
     set_state(run, state);
     run.input(model_.layout().t()) = t;
     run.run();
@@ -151,11 +163,16 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
         return placed;
     }
     const double low = run.output(2), high = run.output(3);
-    for (int i = 0; i <= curve_points; ++i) {
-        run.input(model_.layout().own()) = low + (high - low) * i / curve_points;
+    const auto at = [&](double parameter) {
+        run.input(model_.layout().own()) = parameter;
         run.run();
-        placed.points.push_back({run.output(0), run.output(1)});
+        return Point{run.output(0), run.output(1)};
+    };
+    if (seen != nullptr) {
+        placed.points = refined(at, low, high, curve_points, *seen);
+        return placed;
     }
+    for (int i = 0; i <= curve_points; ++i) placed.points.push_back(at(low + (high - low) * i / curve_points));
     return placed;
 }
 
@@ -165,7 +182,6 @@ std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& 
                                            double world) const {
     const Point &from = placed.points.front(), &to = placed.points.back();
     const Kind shape = item.description.shape;
-    constexpr double hatch_of_world = 0.022;
     if (shape == Kind::ground) return hatching(from, to, hatch_of_world * world);
     const Placed at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
     const Point &a = at_rest.points.front(), &b = at_rest.points.back();
@@ -187,15 +203,20 @@ Grip::Hold Grip::at(double t, const State& state) {
     return {{run_->output(first_), run_->output(first_ + 1)}, radius};
 }
 
-std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
-    if (plane_) return Grip();
+// What a hand takes hold of first; null where nothing but texts, curves and what lies between others moves.
+const Mechanism::Item* Mechanism::body() const {
     const Item *body = nullptr, *line = nullptr;
     for (const Item& item : items_) {
         if (!item.moves) continue;
         if (is_body(item.description.shape)) body = &item;
         if (item.description.shape == Kind::segment || item.description.shape == Kind::polyline) line = &item;
     }
-    const Item* held = body != nullptr ? body : line;
+    return body != nullptr ? body : line;
+}
+
+std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
+    if (plane_) return Grip();
+    const Item* held = body();
     if (held == nullptr) return std::nullopt;
     return grip_of(*held, held->description.points.size() - 1, parameters);
 }
@@ -223,36 +244,82 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
     return all;
 }
 
+std::vector<std::pair<std::size_t, Grip>> Mechanism::discs(std::span<const double> parameters) const {
+    std::vector<std::pair<std::size_t, Grip>> all;
+    for (std::size_t i = 0; i < items_.size(); ++i)
+        if (items_[i].moves && is_round(items_[i].description.shape) && !items_[i].description.contact)
+            all.emplace_back(i, grip_of(items_[i], 0, parameters));
+    return all;
+}
+
+namespace {
+
+Shape& add(Drawing& drawing, Shape::Kind kind, const Color& color, double width) {
+    Shape& shape = drawing.shapes.emplace_back();
+    shape.kind = kind;
+    shape.stroke.color = shape.fill_color = color;
+    shape.stroke.width = width;
+    return shape;
+}
+
+}  // namespace
+
+// Of a system without a drawing, whose coordinates are x and y: the border of where the gaps are open, and where it is.
+void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::span<const double> parameters,
+                          const Theme& theme) const {
+    std::vector<PlaneFunction> gaps;
+    for (std::size_t i = 0; i < model_.contacts(); ++i) {
+        Evaluator<double> gap = model_.evaluator(model_.gap(i), parameters);
+        gap.input(model_.layout().t()) = t;
+        gaps.emplace_back([gap](const Point& p) mutable {
+            gap.input(0) = p.x;
+            gap.input(1) = p.y;
+            gap.run();
+            return gap.output(0);
+        });
+    }
+    add(drawing, Shape::Kind::polyline, theme.surface, 2.0).points = border(drawing, gaps);
+    Shape& disc = add(drawing, Shape::Kind::disc, theme.body, 0.0);
+    disc.moves = true;
+    disc.points = {{state.q[0], state.q[1]}};
+    disc.radius = 0.012 * (drawing.x_high - drawing.x_low + drawing.y_high - drawing.y_low);
+    disc.fill = true;
+}
+
 Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                        const Theme& theme, ContactSet held) const {
+                        const Theme& theme, ContactSet held, Part part) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
-    const auto add = [&](Shape::Kind kind, const Color& color, double width) -> Shape& {
-        Shape& shape = drawing.shapes.emplace_back();
-        shape.kind = kind;
-        shape.stroke.color = shape.fill_color = color;
-        shape.stroke.width = width;
-        return shape;
-    };
+    const bool all = part == Part::all;
+    ContactSet of_body = held;
+    for (const Item& item : items_)
+        if (item.description.contact) of_body = of_body.without(*item.description.contact);
     for (const Item& item : items_) {
+        if (!all && !item.moves) continue;
         const DrawingDescription& d = item.description;
         const Color own = item.moves && d.shape != Kind::ground ? theme.body : theme.surface;
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
-        Placed placed = place(item, run, t, state);
+        Placed placed = place(item, run, t, state, &limits);
         const Shape::Kind kind = is_round(d.shape)       ? Shape::Kind::disc
                                  : d.shape == Kind::text ? Shape::Kind::text
                                                          : Shape::Kind::polyline;
         const bool is_part = d.shape == Kind::spring || d.shape == Kind::damper;
-        const bool is_lit = d.contact && held.contains(*d.contact);
+        const bool is_lit = d.contact ? held.contains(*d.contact) : !of_body.empty() && &item == body();
         if (d.shape == Kind::ground) {
-            Shape& hatches = add(kind, color, 0.5 * placed.width);
+            Shape& earth = add(drawing, Shape::Kind::area, theme.ground, 0.0);
+            earth.points = beneath(
+                placed.points.front(), placed.points.back(),
+                ends_are_outside(limits, placed.points) ? 2.0 * diagonal(limits) : hatch_of_world * limits.size);
+            earth.moves = item.moves;
+            Shape& hatches = add(drawing, kind, color, 0.5 * placed.width);
             hatches.points = line_between(item, run, placed, limits.size);
             hatches.moves = item.moves;
             if (is_lit) light(hatches, theme);
         }
         if (is_part) placed.points = line_between(item, run, placed, limits.size);
-        Shape& shape = add(kind, color, placed.width);
+        Shape& shape = add(drawing, kind, color, placed.width);
+        shape.item = static_cast<std::size_t>(&item - items_.data());
         shape.moves = item.moves;
         shape.points = std::move(placed.points);
         shape.fill = d.fill;
@@ -262,25 +329,9 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         shape.radius = placed.radius;
     }
     if (plane_) {
-        std::vector<PlaneFunction> gaps;
-        for (std::size_t i = 0; i < model_.contacts(); ++i) {
-            Evaluator<double> gap = model_.evaluator(model_.gap(i), parameters);
-            gap.input(model_.layout().t()) = t;
-            gaps.emplace_back([gap](const Point& p) mutable {
-                gap.input(0) = p.x;
-                gap.input(1) = p.y;
-                gap.run();
-                return gap.output(0);
-            });
-        }
-        add(Shape::Kind::polyline, theme.surface, 2.0).points = border(limits, gaps);
-        Shape& disc = add(Shape::Kind::disc, theme.body, 0.0);
-        disc.moves = true;
-        disc.points = {{state.q[0], state.q[1]}};
-        disc.radius = 0.012 * (limits.x_high - limits.x_low + limits.y_high - limits.y_low);
-        disc.fill = true;
-    } else if (items_.empty()) {
-        Shape& note = add(Shape::Kind::text, theme.surface, 1.0);
+        add_plane(drawing, t, state, parameters, theme);
+    } else if (items_.empty() && all) {
+        Shape& note = add(drawing, Shape::Kind::text, theme.surface, 1.0);
         note.points = {{0.5 * (limits.x_low + limits.x_high), 0.5 * (limits.y_low + limits.y_high)}};
         note.text = "this system has no [[drawing]]";
     }

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "figure/drawing.hpp"
 #include "figure/palette.hpp"
@@ -35,9 +37,11 @@ class Mechanism {
     // else a note. Throws InputError for an expression that is none. Refers to the model.
     explicit Mechanism(const Model& model);
 
-    // The shapes at a time and a state, within given limits (see limits()). What belongs to a contact that is held is lit.
+    // The shapes at a time and a state, seen within given limits (see limits()): curves are smooth there. What belongs to a
+    // contact that is held is lit, and the body (grip()) for one to which nothing belongs.
+    enum class Part { all, what_moves };
     Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                 const Theme& theme, ContactSet held = {}) const;
+                 const Theme& theme, ContactSet held = {}, Part part = Part::all) const;
 
     // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
@@ -47,6 +51,8 @@ class Mechanism {
     // That one, then every other point by which a hand can take hold: centres, and both ends of lines. Some may stand
     // still.
     std::vector<Grip> grips(std::span<const double> parameters) const;
+    // Of every disc that moves, and is not what is touched, its centre and radius, with its place among the file's drawings.
+    std::vector<std::pair<std::size_t, Grip>> discs(std::span<const double> parameters) const;
     // Whether there is nothing to draw but a note that says so.
     bool is_empty() const { return items_.empty() && !plane_; }
 
@@ -61,9 +67,13 @@ class Mechanism {
         double radius = 0.0, width = 2.0;
         std::vector<double> sizes{};
     };
-    Placed place(const Item& item, Evaluator<double>& run, double t, const State& state) const;
+    Placed place(const Item& item, Evaluator<double>& run, double t, const State& state,
+                 const Drawing* seen = nullptr) const;
     std::vector<Point> line_between(const Item& item, Evaluator<double>& run, const Placed& placed, double world) const;
     Grip grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
+    const Item* body() const;
+    void add_plane(Drawing& drawing, double t, const State& state, std::span<const double> parameters,
+                   const Theme& theme) const;
 
     const Model& model_;
     Run start_;  // as the file has it: parts are at rest there

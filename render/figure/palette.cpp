@@ -25,6 +25,7 @@ Theme light_theme() {
     theme.ink = theme.body = {35, 38, 43, 255};
     theme.grid = {228, 230, 233, 255};
     theme.surface = {120, 126, 134, 255};
+    theme.ground = {236, 235, 231, 255};
     theme.page = {244, 245, 247, 255};
     theme.frame = {229, 231, 235, 255};
     theme.border = {203, 207, 213, 255};
@@ -43,6 +44,7 @@ Theme dark_theme() {
     theme.ink = theme.body = {222, 225, 230, 255};
     theme.grid = {50, 54, 61, 255};
     theme.surface = {128, 135, 145, 255};
+    theme.ground = {40, 42, 46, 255};
     theme.page = {18, 19, 22, 255};
     theme.frame = {44, 47, 54, 255};
     theme.border = {66, 71, 80, 255};

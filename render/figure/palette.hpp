@@ -13,6 +13,7 @@ struct Theme {
     bool dark = false;
     Color background, ink, grid;  // of a figure, or of a card in the explorer
     Color surface;                // what does not move: the contact surface, a pivot
+    Color ground;                 // what is solid behind such a surface
     Color body;                   // what moves
     // Of the interface around the figures.
     Color page;               // behind the cards

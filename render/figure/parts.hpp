@@ -32,4 +32,7 @@ std::vector<Point> damper_line(const Point& from, const Point& to, const PartSiz
 // Strokes at 45 degrees on the right of from -> to, about so far apart.
 std::vector<Point> hatching(const Point& from, const Point& to, double apart);
 
+// The strip on that side, so deep, as a polygon.
+std::vector<Point> beneath(const Point& from, const Point& to, double deep);
+
 }  // namespace achilles

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "figure/camera.hpp"
 #include "paint/label.hpp"
 #include "surface/curves.hpp"
 #include "surface/polyline.hpp"
@@ -15,7 +16,6 @@ namespace achilles {
 namespace {
 
 constexpr double text_size = 14.0;
-constexpr double still_margin = 16.0;  // around the mechanism of a still
 
 double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -54,28 +54,78 @@ void fill_polygon(ImDrawList* list, std::vector<Point> rest, ImU32 color) {
     }
 }
 
-// The outline in pixels.
-std::vector<Point> outline(const Shape& shape, const Placement& placement) {
-    std::vector<Point> points;
-    if (shape.kind == Shape::Kind::disc) {
-        const Point center = placement.pixel(shape.points.front());
-        const double radius = shape.radius * placement.unit;
-        if (!(radius > 0.0) || !is_finite({radius, 0.0})) return points;
-        // Corners stay within 0.02 px of the circle.
-        const int corners = std::clamp(static_cast<int>(std::numbers::pi * std::sqrt(radius / 0.04)), 16, 720);
-        for (int i = 0; i < corners; ++i) {
-            const double angle = 2.0 * std::numbers::pi * i / corners;
-            points.push_back({center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)});
+struct Clip {
+    Point low, high;
+    double reach() const { return 0.5 * std::hypot(high.x - low.x, high.y - low.y); }
+    Point middle() const { return {0.5 * (low.x + high.x), 0.5 * (low.y + high.y)}; }
+};
+
+Clip clip_of(const ImDrawList* list) {
+    constexpr double room = 64.0;  // strokes reach beyond their line
+    const ImVec2 low = list->GetClipRectMin(), high = list->GetClipRectMax();
+    return {{low.x - room, low.y - room}, {high.x + room, high.y + room}};
+}
+
+// What of a polygon is inside, as one polygon; its edge may run along the clip's in two directions.
+std::vector<Point> clipped(std::vector<Point> polygon, const Clip& clip) {
+    for (int side = 0; side < 4; ++side) {
+        const auto inside = [&](const Point& p) {
+            return side == 0   ? p.x - clip.low.x
+                   : side == 1 ? clip.high.x - p.x
+                   : side == 2 ? p.y - clip.low.y
+                               : clip.high.y - p.y;
+        };
+        std::vector<Point> rest;
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+            const double from = inside(a), to = inside(b);
+            if (from >= 0.0) rest.push_back(a);
+            if ((from < 0.0) == (to < 0.0)) continue;
+            const double s = from / (from - to);
+            rest.push_back({a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)});
         }
-    } else {
-        for (const Point& p : shape.points) points.push_back(placement.pixel(p));
+        polygon = std::move(rest);
     }
+    return polygon;
+}
+
+// A circle in pixels, whose corners stay within 0.02 px of it where it is seen.
+std::vector<Point> circle(const Point& center, double radius, const Clip& clip) {
+    std::vector<Point> points;
+    if (!(radius > 0.0) || !is_finite({radius, 0.0}) || !is_finite(center)) return points;
+    const auto add = [&](double angle) {
+        points.push_back({center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)});
+    };
+    constexpr double large = 2000.0;
+    const double corners = std::max(16.0, std::numbers::pi * std::sqrt(radius / 0.04));
+    if (radius <= large) {
+        const int count = static_cast<int>(corners);
+        for (int i = 0; i < count; ++i) add(2.0 * std::numbers::pi * i / count);
+        return points;
+    }
+    // The arc that may be seen finely, the others as far as it takes for none of their chords to be seen.
+    const double x = clip.middle().x - center.x, y = clip.middle().y - center.y;
+    const double half = std::min(0.25 * std::numbers::pi, 2.0 * clip.reach() / radius);
+    const double towards = std::atan2(y, x), step = 2.0 * half * radius > 0.0 ? 2.0 * std::numbers::pi / corners : half;
+    const int fine = std::clamp(static_cast<int>(2.0 * half / step), 8, 2000);
+    for (int i = 0; i <= fine; ++i) add(towards - half + 2.0 * half * i / fine);
+    for (int i = 1; i < 64; ++i) add(towards + half + 2.0 * (std::numbers::pi - half) * i / 64);
+    return points;
+}
+
+// The outline in pixels.
+std::vector<Point> outline(const Shape& shape, const Placement& placement, const Clip& clip) {
+    std::vector<Point> points;
+    if (shape.kind == Shape::Kind::disc)
+        points = circle(placement.pixel(shape.points.front()), shape.radius * placement.unit, clip);
+    else
+        for (const Point& p : shape.points) points.push_back(placement.pixel(p));
     if ((shape.closed || shape.kind == Shape::Kind::disc) && !points.empty()) points.push_back(points.front());
     return points;
 }
 
-void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double scale) {
-    if (!std::all_of(rim.begin(), rim.end(), is_finite)) return;
+void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double scale, const Clip& clip) {
+    if (rim.size() < 4 || !std::all_of(rim.begin(), rim.end(), is_finite)) return;
     // Cutting ears takes the square of the number of corners.
     constexpr std::size_t most_corners = 1000;
     double tolerance = 0.05;
@@ -83,9 +133,33 @@ void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double s
     while (corners.size() > most_corners && tolerance < 10.0) corners = thinned(rim, tolerance *= 2.0);
     if (corners.size() < 4) return;
     corners.pop_back();  // the first again
+    const auto is_outside = [&](const Point& p) {
+        return p.x < clip.low.x || p.x > clip.high.x || p.y < clip.low.y || p.y > clip.high.y;
+    };
+    if (std::any_of(corners.begin(), corners.end(), is_outside)) corners = clipped(std::move(corners), clip);
+    if (corners.size() < 3) return;
     fill_polygon(list, corners, IM_COL32(color.r, color.g, color.b, color.a));
     // A translucent rim would show where it overlaps the inside.
     if (color.a == 255) add_curve(list, rim, {color, scale, {}});
+}
+
+// Convex polygons, each as a fan. Their edges are not smoothed: none shows, but that of all together, which has a line.
+void fill_area(ImDrawList* list, const Shape& shape, const Placement& placement, const Clip& clip) {
+    const Color& c = shape.fill_color;
+    const ImU32 color = IM_COL32(c.r, c.g, c.b, c.a);
+    std::vector<Point> polygon;
+    const auto put = [&] {
+        polygon = clipped(std::move(polygon), clip);
+        for (std::size_t i = 2; i < polygon.size(); ++i) triangle(list, polygon[0], polygon[i - 1], polygon[i], color);
+        polygon.clear();
+    };
+    for (const Point& p : shape.points) {
+        if (is_finite(p))
+            polygon.push_back(placement.pixel(p));
+        else
+            put();
+    }
+    put();
 }
 
 void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placement, double scale) {
@@ -99,8 +173,11 @@ void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placemen
                     shape.stroke.color, size);
         return;
     }
-    const std::vector<Point> points = outline(shape, placement);
-    if (shape.fill && (shape.closed || shape.kind == Shape::Kind::disc)) fill(list, points, shape.fill_color, scale);
+    const Clip clip = clip_of(list);
+    if (shape.kind == Shape::Kind::area) return fill_area(list, shape, placement, clip);
+    const std::vector<Point> points = outline(shape, placement, clip);
+    if (shape.fill && (shape.closed || shape.kind == Shape::Kind::disc))
+        fill(list, points, shape.fill_color, scale, clip);
     add_curve(list, points, screen_stroke(shape.stroke, scale));
 }
 
@@ -125,14 +202,37 @@ Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double
     return placement;
 }
 
+double paint_scale_bar(ImDrawList* list, const Point& corner, double most, double unit, const std::string& unit_name,
+                       const Color& color, double scale) {
+    const double length = round_length(most / unit), pixels = std::round(length * unit), tooth = 4.0 * scale;
+    if (!(length > 0.0) || !std::isfinite(pixels)) return 0.0;
+    const double x = std::round(corner.x), y = std::round(corner.y);
+    const ImU32 ink = IM_COL32(color.r, color.g, color.b, color.a);
+    const auto thick = static_cast<float>(std::max(1.0, std::round(1.5 * scale)));
+    const auto bar = [&](double left, double top, double right, double bottom) {
+        list->AddRectFilled(vec({left, top}), vec({right, bottom}), ink);
+    };
+    bar(x, y - thick, x + pixels, y);
+    bar(x, y - tooth - thick, x + thick, y);
+    bar(x + pixels - thick, y - tooth - thick, x + pixels, y);
+    const auto size = static_cast<float>(text_size * scale);
+    const std::string label = length_label(length, unit_name);
+    const double gap = 6.0 * scale;
+    paint_label(list, static_cast<float>(x + pixels + gap), static_cast<float>(y) - 0.85F * size, label, color, size);
+    return pixels + gap + label_width(label, size);
+}
+
 void paint(const Still& still, ImDrawList* list) {
     paint(still.heading, list);
     const auto room = static_cast<float>(std::round(still_margin * still.scale));
     const Rectangle& w = still.areas.world;
-    if (still.plane.panels.empty())
-        paint(still.world, list, {w.x + room, w.y, w.width - 2.0F * room, w.height - room}, still.scale);
-    else
+    if (still.plane.panels.empty()) {
+        const Placement placement = paint(still.world, list, w, still.scale);
+        paint_scale_bar(list, {w.x + room, double{w.y} + double{w.height} - room}, 0.2 * double{w.width},
+                        placement.unit, still.unit, light_theme().faint, still.scale);
+    } else {
         paint(still.plane, list, w, still.scale);
+    }
     if (!still.plots.panels.empty()) paint(still.plots, list, still.areas.plots, still.scale);
 }
 

@@ -1,6 +1,8 @@
 // The mechanism onto an ImGui draw list: strokes only, no memory.
 #pragma once
 
+#include <string>
+
 #include "figure/animation.hpp"
 #include "figure/drawing.hpp"
 #include "paint/paint.hpp"
@@ -19,6 +21,11 @@ Placement place(const Drawing& drawing, Rectangle area);
 
 // Draws the shapes, clipped to the area; scale multiplies text sizes and stroke widths.
 Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale = 1.0);
+
+// A bar of round length with its label, its left end at the lower left corner given; at most so long. Returns how long it is,
+// label and all, in pixels.
+double paint_scale_bar(ImDrawList* list, const Point& corner, double most, double unit, const std::string& unit_name,
+                       const Color& color, double scale = 1.0);
 
 // A still of an animation.
 void paint(const Still& still, ImDrawList* list);

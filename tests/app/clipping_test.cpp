@@ -240,6 +240,10 @@ const State states[] = {
     {"equations of several contacts", "double_pendulum_two_stops", {"show equations"}},
     {"equations of long names", "long", {"show equations"}},
     {"equations in a narrow place", "ball_on_table", {"show equations", "show editor", "size editor 0.6"}},
+    {"close to a Zeno point", "ball_on_sine", {"camera zeno", "seek 2.72", "show strobe"}},
+    {"with the body", "double_pendulum_two_stops", {"camera follow", "seek 2", "show strobe"}},
+    {"two sides", "ball_on_egg_crate", {"show sides", "seek 1"}},
+    {"two sides narrow", "ball_on_egg_crate", {"show sides", "size controls 0.6"}},
     {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},
 };
 

@@ -74,6 +74,11 @@ void frames() {
         for (int i = 0; i < 3; ++i) desk.frame();
         say("    the same with the energy", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
         desk.session.apply(parse_command("hide energy"));
+        for (const char* line : {"camera zeno", "show strobe", "step 8"}) desk.session.apply(parse_command(line));
+        for (int i = 0; i < 3; ++i) desk.frame();
+        say("    the same near a Zeno point, with the poses at events",
+            median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
+        for (const char* line : {"camera fit", "hide strobe"}) desk.session.apply(parse_command(line));
         desk.session.apply(parse_command("select 1"));
         for (int i = 0; i < 3; ++i) desk.frame();
         say("    the same with an event chosen", median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);

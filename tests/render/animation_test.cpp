@@ -85,16 +85,22 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     EXPECT_EQ(second.markers[3].points[0].x, 3.2);
     EXPECT_EQ(second.markers[4].points[0].x, 3.2);
     EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
-    // The surface, on it the ball's ways in flight and in contact, before them the ball.
+    // What is solid, the surface, lit where it is touched; the ball's ways to come and those it went, in flight and in contact;
+    // before them the ball, whose rim is where the file has its centre.
     const std::vector<Shape>& shapes = after.world.shapes;
-    ASSERT_EQ(shapes.size(), 4u);
-    EXPECT_EQ(shapes[0].stroke.color, light_theme().surface);
-    EXPECT_FALSE(shapes[1].stroke.dash.empty());
-    EXPECT_TRUE(shapes[2].stroke.dash.empty());
-    EXPECT_EQ(shapes[2].stroke.color, phase_color(light_theme(), Phase::Kind::constrained));
-    const Shape& disc = shapes[3];
+    ASSERT_EQ(shapes.size(), 9u);
+    const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
+    EXPECT_EQ(shapes[0].kind, Shape::Kind::area);
+    EXPECT_EQ(shapes[1].stroke.color, light_theme().surface);
+    EXPECT_EQ(shapes[2].stroke.color, lit);
+    for (std::size_t i = 3; i < 6; ++i) EXPECT_LT(shapes[i].stroke.color.a, 100);
+    EXPECT_FALSE(shapes[6].stroke.dash.empty());
+    EXPECT_TRUE(shapes[7].stroke.dash.empty());
+    EXPECT_EQ(shapes[7].stroke.color, lit);
+    const Shape& disc = shapes[8];
     EXPECT_EQ(disc.kind, Shape::Kind::disc);
-    EXPECT_NEAR(disc.points[0].x, Sampler(trajectory).at(3.2).state.q[0], 1e-12);
+    const Vector q = Sampler(trajectory).at(3.2).state.q;
+    EXPECT_NEAR(std::hypot(disc.points[0].x - q[0], disc.points[0].y - q[1]), disc.radius, 1e-9);
 }
 
 }  // namespace

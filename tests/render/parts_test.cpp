@@ -136,21 +136,21 @@ struct Machine {
 TEST(Mechanism, draws_parts_between_things_that_move) {
     const Machine machine;
     const Drawing start = machine.at(0.0), later = machine.at(1.0);
-    ASSERT_EQ(start.shapes.size(), 5u);  // hatches, their line, spring, damper, box
+    ASSERT_EQ(start.shapes.size(), 6u);  // what is solid, hatches, their line, spring, damper, box
     const auto breadth = [](const Shape& shape) {
         const auto [least, most] = std::minmax_element(shape.points.begin(), shape.points.end(),
                                                        [](const Point& a, const Point& b) { return a.x < b.x; });
         return most->x - least->x;
     };
-    const Shape &spring = start.shapes[2], &stretched = later.shapes[2];
+    const Shape &spring = start.shapes[3], &stretched = later.shapes[3];
     EXPECT_EQ(spring.points.size(), stretched.points.size());
     EXPECT_NEAR(spring.points.back().y, 1.8, 1e-12);
     EXPECT_NEAR(stretched.points.back().y, 1.3, 1e-8);  // x = 2 - t^2/2
     EXPECT_NEAR(breadth(spring), breadth(stretched), 1e-15);
     EXPECT_GT(breadth(spring), 0.02);
     EXPECT_TRUE(spring.moves);
-    EXPECT_NEAR(start.shapes[3].points[4].x - start.shapes[3].points[5].x, -0.2, 1e-15);  // the cup, across = w/2
-    const Shape& box = later.shapes[4];
+    EXPECT_NEAR(start.shapes[4].points[4].x - start.shapes[4].points[5].x, -0.2, 1e-15);  // the cup, across = w/2
+    const Shape& box = later.shapes[5];
     ASSERT_EQ(box.points.size(), 4u);
     EXPECT_TRUE(box.closed && box.fill);
     EXPECT_NEAR(apart(box.points[0], box.points[1]), 0.8, 1e-12);
@@ -169,7 +169,7 @@ TEST(Mechanism, lights_what_is_touched_while_it_is_held) {
     const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
     const Drawing falling = machine.at(1.0), resting = machine.at(2.5);
     for (std::size_t i = 0; i < falling.shapes.size(); ++i) {
-        const bool is_table = i < 2;
+        const bool is_table = i == 1 || i == 2;
         EXPECT_FALSE(falling.shapes[i].stroke.color == lit);
         EXPECT_EQ(resting.shapes[i].stroke.color == lit, is_table) << i;
         EXPECT_EQ(resting.shapes[i].stroke.width > falling.shapes[i].stroke.width, is_table) << i;

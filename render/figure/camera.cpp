@@ -1,0 +1,291 @@
+#include "figure/camera.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace achilles {
+
+namespace {
+
+constexpr std::array<std::pair<CameraMode, std::string_view>, 4> names{{{CameraMode::fit, "fit"},
+                                                                        {CameraMode::fixed, "fixed"},
+                                                                        {CameraMode::follow, "follow"},
+                                                                        {CameraMode::zeno, "zeno"}}};
+
+void include(Drawing& all, const Point& p) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) return;
+    all.x_low = std::min(all.x_low, p.x), all.x_high = std::max(all.x_high, p.x);
+    all.y_low = std::min(all.y_low, p.y), all.y_high = std::max(all.y_high, p.y);
+}
+
+double unit_of(const Drawing& limits, const CameraPicture& picture) {
+    return std::min(picture.width / (limits.x_high - limits.x_low), picture.height / (limits.y_high - limits.y_low));
+}
+
+Drawing square(const Drawing& like, const Point& middle, double size) {
+    Drawing drawing;
+    drawing.size = like.size;
+    drawing.x_low = middle.x - 0.5 * size, drawing.x_high = middle.x + 0.5 * size;
+    drawing.y_low = middle.y - 0.5 * size, drawing.y_high = middle.y + 0.5 * size;
+    return drawing;
+}
+
+Point middle_of(const Drawing& d) { return {0.5 * (d.x_low + d.x_high), 0.5 * (d.y_low + d.y_high)}; }
+
+// 0 to 1, without a jerk at either end.
+double eased(double s) { return s * s * (3.0 - 2.0 * s); }
+
+}  // namespace
+
+std::string_view to_text(CameraMode mode) { return names[static_cast<std::size_t>(mode)].second; }
+
+std::optional<CameraMode> camera_mode_from(std::string_view text) {
+    for (const auto& [mode, name] : names)
+        if (name == text) return mode;
+    return std::nullopt;
+}
+
+Drawing widened(const Drawing& limits, double width, double height) {
+    Drawing seen = limits;
+    seen.shapes.clear();
+    const double unit = unit_of(limits, {width, height});
+    if (!(unit > 0.0) || !std::isfinite(unit)) return seen;
+    const Point middle = middle_of(limits);
+    seen.x_low = middle.x - 0.5 * width / unit, seen.x_high = middle.x + 0.5 * width / unit;
+    seen.y_low = middle.y - 0.5 * height / unit, seen.y_high = middle.y + 0.5 * height / unit;
+    return seen;
+}
+
+Camera::Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory& trajectory,
+               std::span<const Sample> samples, const Trail& trail, const Drawing& limits)
+    : touch_(touch),
+      trajectory_(trajectory),
+      samples_(samples),
+      trail_(trail),
+      limits_(limits),
+      grips_(mechanism.grips(trajectory.run.parameters)) {
+    Point sum;
+    for (std::size_t i = 0; i < trail.points.size(); ++i) {
+        if (i > 0) {
+            const double half = 0.5 * (samples[i].t - samples[i - 1].t);
+            sum.x += half * (trail.points[i].x + trail.points[i - 1].x);
+            sum.y += half * (trail.points[i].y + trail.points[i - 1].y);
+        }
+        integral_.push_back(sum);
+    }
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i)
+        if (trajectory.events[i].kind == Event::Kind::zeno)
+            if (auto approach = approach_to(i)) approaches_.push_back(std::move(*approach));
+}
+
+// ---- the way to a Zeno point ----
+
+Camera::Bounce Camera::bounce(std::size_t grip, std::size_t contact, const Sample& sample) const {
+    Grip asked = grips_[grip];
+    const auto body = Body::of(asked, sample.t, sample.state);
+    if (!body) return {};
+    const Model& model = *trajectory_.model;
+    auto terms = model.evaluator(model.programs_of(contact).contact_terms, trajectory_.run.parameters);
+    State state = sample.state;
+    state.t = sample.t;
+    set_state(terms, state);
+    terms.run();
+    Vector n(state.q.size());
+    for (Eigen::Index i = 0; i < n.size(); ++i) n[i] = terms.impulse_direction(static_cast<std::size_t>(i));
+    const Point carried = body->velocity(n);
+    const bool is_known = std::isfinite(carried.x) && std::isfinite(carried.y) && std::isfinite(terms.h());
+    return is_known ? Bounce{terms.h(), carried} : Bounce{};
+}
+
+// The point that comes onto the ground; else the one that the bouncing moves most, the first of those that it moves as much.
+std::size_t Camera::grip_for(std::size_t contact, const Sample& near) const {
+    if (const auto tip = touch_.tip_of(contact)) return *tip;
+    std::size_t best = 0;
+    double most = 0.0;
+    for (std::size_t i = 0; i < grips_.size(); ++i) {
+        const Point carried = bounce(i, contact, near).rise;
+        if (const double size = std::hypot(carried.x, carried.y); size > most * 1.01) most = size, best = i;
+    }
+    return best;
+}
+
+std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
+    const Event& zeno = trajectory_.events[event];
+    if (grips_.empty() || is_plastic_landing(zeno) || zeno.contacts.empty()) return std::nullopt;
+    Approach approach;
+    approach.zeno = zeno.t;
+    for (approach.contact = 0; !zeno.contacts.contains(approach.contact);) ++approach.contact;
+    std::vector<double> times{zeno.t};
+    std::size_t i = event;
+    approach.begin = trajectory_.run.options.start_time;
+    while (i-- > 0) {
+        const Event& before = trajectory_.events[i];
+        if (before.kind != Event::Kind::impact) {
+            approach.begin = before.t;
+            break;
+        }
+        if (before.contacts.contains(approach.contact)) times.push_back(before.t);
+    }
+    std::reverse(times.begin(), times.end());
+    if (times.size() < 3) return std::nullopt;
+    Sampler sampler(trajectory_);
+    const Sample first = sampler.at(times.front());
+    const auto known = std::find_if(approaches_.begin(), approaches_.end(),
+                                    [&](const Approach& other) { return other.contact == approach.contact; });
+    approach.grip = known != approaches_.end() ? known->grip : grip_for(approach.contact, first);
+    Grip grip = grips_[approach.grip];
+    approach.on_ground = touch_.ground_below(grip, approach.contact, first.t, first.state).has_value();
+    const Point way = bounce(approach.grip, approach.contact, first).rise;
+    const double carried = std::hypot(way.x, way.y);
+    if (!(carried > 0.0)) return std::nullopt;
+    auto gap = trajectory_.model->evaluator(trajectory_.model->gap(approach.contact), trajectory_.run.parameters);
+    for (std::size_t k = 0; k + 2 < times.size(); ++k) {
+        Sample middle = sampler.at(0.5 * (times[k] + times[k + 1]));
+        middle.state.t = middle.t;
+        set_state(gap, middle.state);
+        gap.run();
+        const double height = carried * gap.output(0);
+        if (std::isfinite(height) && height > 0.0 && zeno.t > times[k])
+            approach.flights.push_back({zeno.t - times[k], height});
+    }
+    // From behind: none reaches higher than those before.
+    for (std::size_t k = approach.flights.size(); k-- > 1;)
+        approach.flights[k - 1].height = std::max(approach.flights[k - 1].height, approach.flights[k].height);
+    if (approach.flights.empty()) return std::nullopt;
+    return approach;
+}
+
+// Between flights as a power of the time that is left, after the last as its square, as under constant acceleration.
+double Camera::Approach::height(double t) const {
+    const double left = std::max(0.0, zeno - t);
+    const auto next = std::find_if(flights.begin(), flights.end(), [&](const Flight& f) { return f.left <= left; });
+    if (next == flights.begin()) return flights.front().height;
+    const Flight& before = *std::prev(next);
+    if (next == flights.end()) return before.height * (left / before.left) * (left / before.left);
+    const double s = std::log(before.left / left) / std::log(before.left / next->left);
+    return before.height * std::pow(next->height / before.height, s);
+}
+
+std::optional<double> Camera::height_left(double t) const {
+    for (const Approach& approach : approaches_)
+        if (t >= approach.zeno - approach.flights.front().left && t <= approach.zeno) return approach.height(t);
+    return std::nullopt;
+}
+
+// ---- what is seen ----
+
+Drawing Camera::at(CameraMode mode, const Sample& now, const CameraPicture& picture) const {
+    if (mode == CameraMode::follow && !trail_.points.empty()) return follow(now, picture);
+    if (mode == CameraMode::zeno) return near_zeno(now, picture);
+    return fit(picture);
+}
+
+// The arrows are so many pixels long, and so longer in the world where more of it is seen.
+Drawing Camera::fit(const CameraPicture& picture) const {
+    Drawing seen = limits_;
+    if (!(picture.velocity > 0.0) && !(picture.force > 0.0)) return seen;
+    constexpr int rounds = 4;
+    for (int round = 0; round < rounds; ++round) {
+        const double unit = unit_of(seen, picture);
+        if (!(unit > 0.0) || !std::isfinite(unit)) return limits_;
+        seen = limits_;
+        for (const Trail::Arrows& arrows : trail_.arrows)
+            for (const auto& [share, length] :
+                 {std::pair{arrows.velocity, picture.velocity}, std::pair{arrows.force, picture.force}})
+                include(seen, {arrows.at.x + share.x * length / unit, arrows.at.y + share.y * length / unit});
+    }
+    return seen;
+}
+
+// The mean over [t - reach, t + reach], or what of it the run has.
+Point Camera::mean_place(double t, double reach) const {
+    const double low = std::max(t - reach, samples_.front().t), high = std::min(t + reach, samples_.back().t);
+    const auto until = [&](double time) {
+        const auto after = std::upper_bound(samples_.begin(), samples_.end(), time,
+                                            [](double value, const Sample& sample) { return value < sample.t; });
+        const auto i = static_cast<std::size_t>(after - samples_.begin());
+        if (i == 0) return integral_.front();
+        Point sum = integral_[i - 1];
+        const Point& p = trail_.points[i - 1];
+        const double rest = time - samples_[i - 1].t;
+        const double whole = i < samples_.size() ? samples_[i].t - samples_[i - 1].t : 0.0;
+        const Point& q = whole > 0.0 ? trail_.points[i] : p;
+        const double s = whole > 0.0 ? rest / whole : 0.0;
+        sum.x += rest * (p.x + 0.5 * s * (q.x - p.x));
+        sum.y += rest * (p.y + 0.5 * s * (q.y - p.y));
+        return sum;
+    };
+    if (!(high > low)) return trail_.points.front();
+    const Point a = until(low), b = until(high);
+    return {(b.x - a.x) / (high - low), (b.y - a.y) / (high - low)};
+}
+
+Drawing Camera::follow(const Sample& now, const CameraPicture& picture) const {
+    if (grips_.empty()) return fit(picture);
+    Grip grip = grips_.front();
+    const Grip::Hold body = grip.at(now.t, now.state);
+    const Drawing all = fit(picture);
+    const double largest = std::max(all.x_high - all.x_low, all.y_high - all.y_low);
+    constexpr double share = 0.4, radii = 20.0, window = 0.04;
+    const double size = std::min(std::max(share * largest, radii * body.radius), largest);
+    Point middle = mean_place(now.t, window * (trajectory_.end_time - trajectory_.run.options.start_time));
+    // With its arrow inside: as far from the edge as the longest.
+    const double unit = std::min(picture.width, picture.height) / size;
+    const double room = std::max(0.1, 0.44 - std::max(picture.velocity, picture.force) / (unit * size)) * size;
+    middle.x = std::clamp(middle.x, body.at.x - room, body.at.x + room);
+    middle.y = std::clamp(middle.y, body.at.y - room, body.at.y + room);
+    return square(limits_, middle, size);
+}
+
+// How much is seen (world units) on the way to a Zeno point and after it, of so much at other times.
+double Camera::size_at(std::size_t which, double t, double full) const {
+    constexpr double heights = 4.0;  // of the highest bounce that is left fit into the picture
+    const Approach& approach = approaches_[which];
+    const auto sized = [&](double height) { return std::clamp(heights * height, smallest(approach), full); };
+    const double first = approach.zeno - approach.flights.front().left;
+    if (t < approach.begin) return full;
+    if (t < first)
+        return full *
+               std::pow(sized(approach.height(first)) / full, eased((t - approach.begin) / (first - approach.begin)));
+    if (t <= approach.zeno) return sized(approach.height(t));
+    const bool is_last = which + 1 == approaches_.size();
+    const double end =
+        is_last ? trajectory_.end_time : approaches_[which + 1].zeno - approaches_[which + 1].flights.front().left;
+    constexpr double most = 0.1, of_rest = 0.5;
+    const double run = trajectory_.end_time - trajectory_.run.options.start_time;
+    const double lasts = std::min(most * run, of_rest * (end - approach.zeno));
+    if (t >= approach.zeno + lasts) return full;
+    return full * std::pow(sized(0.0) / full, 1.0 - eased((t - approach.zeno) / lasts));
+}
+
+// What is looked at: the ground that is touched, in the lower part of the picture.
+Point Camera::focus(const Approach& approach, const Sample& now, double size) const {
+    Grip grip = grips_[approach.grip];
+    if (const auto touched = touch_.ground_below(grip, approach.contact, now.t, now.state)) {
+        constexpr double above = 0.2;
+        return {touched->foot.x + above * size * touched->away.x, touched->foot.y + above * size * touched->away.y};
+    }
+    // The drawing does not tell where: of a joint's stop, say. The body is near it.
+    Grip body = grips_.front();
+    return body.at(now.t, now.state).at;
+}
+
+Drawing Camera::near_zeno(const Sample& now, const CameraPicture& picture) const {
+    const Drawing all = widened(fit(picture), picture.width, picture.height);
+    const double full = std::min(all.x_high - all.x_low, all.y_high - all.y_low);
+    const Approach* on_way = nullptr;
+    double size = full;
+    for (std::size_t i = 0; i < approaches_.size(); ++i)
+        if (const double here = size_at(i, now.t, full); here < size) size = here, on_way = &approaches_[i];
+    if (on_way == nullptr) return all;
+    // As if one came nearer to it: it goes to the middle, and what was in the middle out of the picture.
+    const double left = std::max(0.0, (size - smallest(*on_way)) / (full - smallest(*on_way)));
+    const Point looked_at = focus(*on_way, now, size * (1.0 - left)), middle = middle_of(all);
+    const Point there{looked_at.x + left * left * (middle.x - looked_at.x),
+                      looked_at.y + left * left * (middle.y - looked_at.y)};
+    return widened(square(limits_, there, size), picture.width, picture.height);
+}
+
+}  // namespace achilles

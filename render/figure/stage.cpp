@@ -1,0 +1,163 @@
+#include "figure/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+constexpr std::size_t most_poses = 40;
+constexpr double apart = 0.035;  // of the world: poses that are nearer than this would be a blot
+constexpr std::uint8_t pose = 55;
+
+// What moves of a drawing, so pale. Its texts would be unreadable.
+std::vector<Shape> paled(std::vector<Shape> shapes, std::uint8_t alpha) {
+    std::erase_if(shapes, [](const Shape& shape) { return !shape.moves || shape.kind == Shape::Kind::text; });
+    for (Shape& shape : shapes) shape.stroke.color.a = shape.fill_color.a = alpha;
+    return shapes;
+}
+
+void put_under_what_moves(std::vector<Shape>& shapes, const std::vector<Shape>& more) {
+    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });
+    shapes.insert(first, more.begin(), more.end());
+}
+
+// A disc that is as large as the picture would be a blot: the nearer one comes, the more of it is its rim.
+void thin_out_large(std::vector<Shape>& shapes, const Drawing& seen) {
+    constexpr double large = 0.4, huge = 1.2;  // radius, of the picture's smaller side
+    constexpr double least = 26.0, rim = 2.0;
+    const double size = std::min(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+    for (Shape& shape : shapes) {
+        if (shape.kind != Shape::Kind::disc || !shape.moves || !shape.fill || !(shape.radius > large * size)) continue;
+        const double s = std::min(1.0, (shape.radius / size - large) / (huge - large));
+        shape.fill_color.a = static_cast<std::uint8_t>(255.0 + s * (least - 255.0));
+        shape.stroke.width = std::max(shape.stroke.width, rim);
+    }
+}
+
+}  // namespace
+
+Stage::Stage(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples)
+    : mechanism_(mechanism),
+      trajectory_(trajectory),
+      samples_(samples),
+      sampler_(trajectory),
+      limits_(mechanism.limits(trajectory, samples)),
+      trail_(trail_of(mechanism, trajectory, samples)),
+      touch_(mechanism, trajectory, limits_.size),
+      camera_(mechanism, touch_, trajectory, samples, trail_, limits_),
+      unit_(length_unit(trajectory.model->description())) {
+    find_poses();
+}
+
+// The start, and each event at which some point of the mechanism is far enough from where it was in every pose that is kept:
+// the crowd of impacts before a Zeno point gives one or two. Of very many impacts some are looked at.
+void Stage::find_poses() {
+    auto grips = mechanism_.grips(trajectory_.run.parameters);
+    std::vector<std::vector<Point>> kept;
+    const auto keep = [&](double t, const State& state) {
+        if (kept.size() >= most_poses) return;
+        std::vector<Point> places;
+        for (Grip& grip : grips) places.push_back(grip.at(t, state).at);
+        const auto is_near = [&](const std::vector<Point>& other) {
+            for (std::size_t i = 0; i < places.size(); ++i)
+                if (std::hypot(places[i].x - other[i].x, places[i].y - other[i].y) > apart * limits_.size) return false;
+            return true;
+        };
+        if (std::any_of(kept.begin(), kept.end(), is_near)) return;
+        kept.push_back(std::move(places));
+        poses_.push_back(sampler_.at(t));
+    };
+    if (grips.empty()) return;
+    const Run& run = trajectory_.run;
+    keep(run.options.start_time, {run.q, run.v, run.options.start_time});
+    const auto& events = trajectory_.events;
+    const std::size_t stride = 1 + events.size() / 2000;
+    for (std::size_t i = 0; i < events.size(); ++i)
+        if (i % stride == 0 || events[i].kind != Event::Kind::impact)
+            keep(events[i].t, {events[i].q, events[i].v_after, events[i].t});
+}
+
+std::vector<double> Stage::poses() const {
+    std::vector<double> times;
+    for (const Sample& sample : poses_) times.push_back(sample.t);
+    return times;
+}
+
+// A point a sample; where little of the world is seen, as many as make it smooth around the present.
+std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
+    std::vector<WayPoint> all;
+    const auto add = [&](std::size_t i) { all.push_back({samples_[i].t, samples_[i].phase, trail_.points[i]}); };
+    auto grip = mechanism_.grip(trajectory_.run.parameters);
+    if (trail_.points.empty() || !grip) return all;
+    const double size = std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+    const auto body = Body::of(*grip, now.t, now.state);
+    constexpr double close = 0.3;
+    double low = now.t, high = now.t;
+    if (body && size < close * limits_.size) {
+        const Point v = body->velocity(now.state.v);
+        const double start = trajectory_.run.options.start_time, run = trajectory_.end_time - start;
+        const double reach = std::min(0.02 * run, 2.0 * size / std::max(std::hypot(v.x, v.y), 1e-3 * trail_.fastest));
+        low = std::max(start, now.t - reach), high = std::min(trajectory_.end_time, now.t + reach);
+    }
+    // As near as within a disc its lowest point is followed: its centre is far outside.
+    Point aside;
+    if (body && size < body->radius())
+        for (std::size_t contact = 0; contact < trajectory_.model->contacts(); ++contact) {
+            const auto ground = touch_.ground_below(*grip, contact, now.t, now.state);
+            const auto near = touch_.nearness(*grip, contact, now.t, now.state);
+            if (ground && near && near->distance < size)
+                aside = {ground->foot.x - near->foot.x, ground->foot.y - near->foot.y};
+        }
+    std::size_t i = 0;
+    for (; i < samples_.size() && samples_[i].t < low; ++i) add(i);
+    const auto put = [&](double t) {
+        const Sample sample = sampler_.at(t);
+        all.push_back({t, sample.phase, grip->at(t, sample.state).at});
+    };
+    if (high > low) {
+        constexpr int fine = 240;
+        const auto& events = trajectory_.events;
+        auto event =
+            std::lower_bound(events.begin(), events.end(), low, [](const Event& e, double t) { return e.t < t; });
+        for (int k = 0; k <= fine; ++k) {
+            const double t = low + (high - low) * k / fine;
+            int corners = 0;
+            for (; event != events.end() && event->t < t && corners < 4; ++event, ++corners) put(event->t);
+            while (event != events.end() && event->t < t) ++event;
+            put(t);
+        }
+        while (i < samples_.size() && samples_[i].t <= high) ++i;
+    } else {
+        for (; i < samples_.size() && samples_[i].t <= now.t; ++i) add(i);
+        put(now.t);
+    }
+    // What is to come is faint: of very many points some will do.
+    constexpr std::size_t most_to_come = 3000;
+    const std::size_t stride = 1 + (samples_.size() - i) / most_to_come;
+    for (; i < samples_.size(); i += stride) add(i);
+    if (stride > 1) add(samples_.size() - 1);
+    for (WayPoint& point : all) point.at = {point.at.x + aside.x, point.at.y + aside.y};
+    return all;
+}
+
+Drawing Stage::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {
+    const auto& parameters = trajectory_.run.parameters;
+    Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.held);
+    touch_.rest(drawing, now.t, now.state);
+    thin_out_large(drawing.shapes, seen);
+    touch_.add_ground(drawing, now.t, now.state, now.held, theme);
+    if (layers.way) add_way(drawing.shapes, way(now, seen), now.t, theme);
+    if (layers.strobe)
+        for (const Sample& then : poses_)
+            if (then.t < now.t) {
+                Drawing there =
+                    mechanism_.draw(then.t, then.state, parameters, seen, theme, {}, Mechanism::Part::what_moves);
+                touch_.rest(there, then.t, then.state);
+                put_under_what_moves(drawing.shapes, paled(std::move(there.shapes), pose));
+            }
+    return drawing;
+}
+
+}  // namespace achilles

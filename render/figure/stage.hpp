@@ -1,0 +1,56 @@
+// One run of a mechanism as it is looked at: what is solid, the way of the body, the poses at events, the camera. All that
+// a run decides is found out once.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "figure/body.hpp"
+#include "figure/camera.hpp"
+#include "figure/touch.hpp"
+
+namespace achilles {
+
+// What is drawn besides the mechanism.
+struct Layers {
+    bool way = true;      // of the body: passed, and faintly to come
+    bool strobe = false;  // the poses at the events that have passed, as far as they can be told apart
+};
+
+class Stage {
+ public:
+    // Refers to what it is given.
+    Stage(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    // The world that the run needs (Mechanism::limits).
+    const Drawing& limits() const { return limits_; }
+    const Trail& trail() const { return trail_; }
+    const Camera& camera() const { return camera_; }
+    const Touch& touch() const { return touch_; }
+    const std::string& unit() const { return unit_; }  // of lengths
+
+    // The mechanism at an instant of the run, and what else is asked for, in the part of the world that is seen.
+    Drawing draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers);
+    // The instants of the strobe's poses.
+    std::vector<double> poses() const;
+
+ private:
+    void find_poses();
+    std::vector<WayPoint> way(const Sample& now, const Drawing& seen);
+
+    const Mechanism& mechanism_;
+    const Trajectory& trajectory_;
+    std::span<const Sample> samples_;
+    Sampler sampler_;
+    Drawing limits_;
+    Trail trail_;
+    Touch touch_;
+    Camera camera_;
+    std::vector<Sample> poses_;
+    std::string unit_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,141 @@
+// The cameras of the mechanism's panel: commands, the menu, the mouse, the scale bar.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <iostream>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+Scene after(const std::vector<const char*>& journal) {
+    Session session = test::session("ball_on_sine");
+    for (const char* line : journal) session.apply(parse_command(line));
+    return session.scene();
+}
+
+TEST(CameraCommand, chooses_a_camera_and_keeps_where_one_looked) {
+    EXPECT_EQ(after({}).camera(), CameraMode::fit);
+    EXPECT_EQ(after({"camera follow"}).camera(), CameraMode::follow);
+    EXPECT_EQ(after({"look 1 2 3"}).camera(), CameraMode::fixed);
+    EXPECT_EQ(after({"look 1 2 3", "look all"}).camera(), CameraMode::fit);
+    EXPECT_EQ(after({"look 1 2 3", "camera fit"}).camera(), CameraMode::fit);
+    // Where the user looked waits until the camera is fixed again.
+    EXPECT_FALSE(after({"look 1 2 3", "camera zeno"}).look());
+    ASSERT_TRUE(after({"look 1 2 3", "camera zeno", "camera fixed"}).look());
+    EXPECT_EQ(after({"look 1 2 3", "camera zeno", "camera fixed"}).look()->width, 3.0);
+    // Another system is another world: there is nothing to look at where one looked.
+    EXPECT_EQ(after({"look 1 2 3", "open double_pendulum"}).camera(), CameraMode::fit);
+    EXPECT_EQ(after({"camera zeno", "open double_pendulum"}).camera(), CameraMode::zeno);
+    Session session = test::session("ball_on_sine");
+    session.apply(parse_command("camera fixed"));
+    EXPECT_NE(session.error().find("nobody has looked anywhere yet"), std::string::npos) << session.error();
+    EXPECT_THROW(parse_command("camera above"), InputError);
+}
+
+TEST(CameraCommand, is_in_the_recipe_of_a_session) {
+    for (const std::vector<const char*>& journal : std::vector<std::vector<const char*>>{
+             {"camera zeno"}, {"look 1 2 3", "camera follow"}, {"look 1 2 3"}, {"look 1 2 3", "camera fit"}}) {
+        const Scene scene = after(journal);
+        Scene again;
+        for (const Command& command : steps_to(scene))
+            std::visit(
+                [&](const auto& what) {
+                    if constexpr (requires { again.perform(what); }) again.perform(what);
+                },
+                static_cast<const AnyCommand&>(command));
+        EXPECT_EQ(to_text(again), to_text(scene)) << journal[0];
+        EXPECT_EQ(again.camera(), scene.camera());
+    }
+}
+
+TEST(CameraMenu, chooses_each_camera) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::Seek{2.0});
+    hands.rest(2);
+    const auto choose = [&](const std::string& item) {
+        hands.click("camera");
+        ASSERT_TRUE(hands.state.places.contains("menu " + item)) << item;
+        hands.click("menu " + item);
+    };
+    choose("follow: with the body");
+    EXPECT_EQ(hands.session.scene().camera(), CameraMode::follow);
+    const Rectangle before = hands.state.places.at("body");
+    choose("fixed: as it is now");
+    ASSERT_TRUE(hands.session.scene().look());
+    // It stays as it was, and from then on whatever time it is.
+    EXPECT_NEAR(hands.state.places.at("body").x, before.x, 0.5);
+    EXPECT_NEAR(hands.state.places.at("body").y, before.y, 0.5);
+    const command::Look look = *hands.session.scene().look();
+    hands.session.apply(command::Seek{9.0});
+    hands.rest(2);
+    EXPECT_EQ(hands.session.scene().look()->x, look.x);
+    choose("zeno: closer to the next Zeno point");
+    EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
+    choose("fit: all of the run");
+    EXPECT_EQ(hands.session.scene().camera(), CameraMode::fit);
+    EXPECT_TRUE(hands.state.places.contains("scale bar"));
+}
+
+TEST(CameraMouse, middle_drag_moves_the_picture_also_over_the_body) {
+    Hands hands("ball_on_sine");
+    hands.point("body");
+    const Rectangle body = hands.state.places.at("body");
+    hands.hand.middle = true;
+    hands.rest(1);
+    for (int i = 0; i < 10; ++i) {
+        hands.hand.mouse_x += 5.0;
+        hands.hand.mouse_y += 3.0;
+        hands.frame();
+    }
+    hands.hand.middle = false;
+    hands.rest(2);
+    ASSERT_TRUE(hands.session.scene().look());
+    EXPECT_NEAR(hands.state.places.at("body").x - body.x, 50.0, 1.0);
+    EXPECT_NEAR(hands.state.places.at("body").y - body.y, 30.0, 1.0);
+    EXPECT_EQ(*hands.session.value("x"), 0.0) << "the body is not what moves";
+}
+
+TEST(CameraPicture, says_its_scale_at_every_zoom) {
+    Hands hands("ball_on_sine");
+    EXPECT_TRUE(hands.says("1 m"));
+    hands.session.apply(command::Look{4.6, -0.99, 1e-6});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("2\u00b710\u22127 m")) << hands.letters();
+    // Whatever is shown beside it, the bar and the words keep apart.
+    for (const auto& [width, height] : {std::pair{1000, 700}, {1366, 768}, {1600, 1000}}) {
+        Hands other("ball_on_egg_crate", test::surface(width, height));
+        const Rectangle bar = other.state.places.at("scale bar"), trail = other.state.places.at("show trail");
+        const bool beside = bar.x + bar.width < trail.x;
+        EXPECT_TRUE(beside || bar.y + bar.height < trail.y) << width;
+    }
+}
+
+TEST(SidesOfSpace, are_offered_where_there_is_space) {
+    Hands ball("ball_on_sine"), crate("ball_on_egg_crate");
+    EXPECT_FALSE(ball.state.places.contains("show sides"));
+    crate.click("show sides");
+    EXPECT_TRUE(crate.session.scene().shows("sides"));
+    EXPECT_TRUE(crate.says("across")) << crate.letters();
+}
+
+// Where the window's test presses.
+TEST(CameraMenu, tells_where_it_is) {
+    Hands hands("ball_on_sine");
+    const auto tell = [&](const char* name, const std::string& place) {
+        std::cout << name << " " << std::lround(hands.middle(place).x) << " " << std::lround(hands.middle(place).y)
+                  << "\n";
+    };
+    tell("menu", "camera");
+    tell("picture", "mechanism");
+    hands.click("camera");
+    tell("zeno", "menu zeno: closer to the next Zeno point");
+}
+
+}  // namespace
+}  // namespace achilles
