@@ -43,7 +43,7 @@ Asked parsed(const std::string& command_line) {
     add_run_options(command, asked.settings, asked.overrides);
     // Known, so that their values are not taken for the system.
     std::string ignored;
-    for (const char* flag : {"--size", "--scale", "--columns", "--format", "--fps", "--speed", "--record"})
+    for (const char* flag : {"--size", "--scale", "--columns", "--format", "--fps", "--speed", "--camera", "--record"})
         command.add_option(flag, ignored);
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
     try {

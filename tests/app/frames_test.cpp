@@ -135,10 +135,11 @@ TEST(Frames, OfAnotherRunAreNeitherMixedNorLost) {
 
 TEST(Frames, KnowWhereTheyComeFrom) {
     const Folder folder;
-    ASSERT_EQ(folder.run(short_film + "--jobs 2 --out film").status, 0);
+    const std::string film = short_film + "--camera follow";
+    ASSERT_EQ(folder.run(film + " --jobs 2 --out film").status, 0);
     const std::string bytes = content(folder.path() / "film/frame_00004.png");
     const Origin origin = origin_of(bytes);
-    EXPECT_EQ(origin.command, "achilles " + short_film.substr(0, short_film.size() - 1));
+    EXPECT_EQ(origin.command, "achilles " + film);
     EXPECT_EQ(origin.picture, "frame_00004");
     ASSERT_EQ(origin.sources.size(), 1u);
     EXPECT_EQ(origin.sources[0].text, content(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml"));
@@ -154,6 +155,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
         {"--out film --fps 0", "--fps 0: this must lie in [0.001, 1000]\n"},
         {"--out film --fps x", "--fps x: 'x' is not a finite number: no name but pi has a value here\n"},
         {"--out film --speed -1", "--speed -1: this must lie in [1e-09, 1000000000]\n"},
+        {"--out film --camera fixed", "--camera fixed: a camera is fit, follow or zeno\n"},
         {"--out film --jobs 1.5", "--jobs 1.5: 1 to 256 processes can draw\n"},
         {"--out film --jobs 0", "--jobs 0: 1 to 256 processes can draw\n"},
         {"--out film --speed 0.001 --fps 60",

@@ -27,6 +27,7 @@ struct FramesArguments {
     OptionOverrides overrides;
     StillSize size;
     double fps = 30.0, speed = 1.0;
+    CameraMode camera = CameraMode::fit;
     int jobs = 1;
     bool overwrite = false;
 };
@@ -126,7 +127,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
 
     const Trajectory trajectory = simulate(model, run);
     const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
-    Animation animation(trajectory, views, arguments.size, arguments.speed / arguments.fps);
+    Animation animation(trajectory, views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
     const std::vector<Shown> shown{{arguments.system, &trajectory}};
     int status = reached_end;
     if (job.reproduces()) {
@@ -140,6 +141,13 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
                            [&](const std::string& name) { return job.notes_of(name, shown); });
     }
     return status == reached_end ? told_of(trajectory) : status;
+}
+
+CameraMode camera_from(const std::string& text) {
+    const auto mode = camera_mode_from(text);
+    if (!mode || *mode == CameraMode::fixed)
+        throw InputError("--camera " + text, {}, "a camera is fit, follow or zeno");
+    return *mode;
 }
 
 int jobs_from(const std::string& text) {
@@ -178,6 +186,13 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
     add_number("--fps", arguments->fps, 0.001, 1000.0, "frames for a second of the film (default 30)");
     add_number("--speed", arguments->speed, 1e-9, 1e9, "seconds of the run in a second of the film (default 1)");
     add_view_option(*command, arguments->views, "a view of the system; may be given again (default: the first three)");
+    command
+        ->add_option_function<std::string>(
+            "--camera", [arguments](const std::string& text) { arguments->camera = camera_from(text); },
+            "where the mechanism's picture looks: fit (all of the run, the default), follow (the body), zeno (closer "
+            "and "
+            "closer towards a Zeno point)")
+        ->type_name("fit|follow|zeno");
     command
         ->add_option_function<std::string>(
             "--jobs", [arguments](const std::string& text) { arguments->jobs = jobs_from(text); },
