@@ -22,7 +22,8 @@ constexpr std::size_t largest_picture = std::size_t{1} << 28;  // bytes
 
 // What of a picture's command line leads to what it shows; how large it was drawn does not.
 struct Asked {
-    std::string kind, system, journal;
+    std::string kind, system, journal, at;
+    bool dark = false;
     std::vector<std::string> settings, views, steps;
     OptionOverrides overrides;
 };
@@ -43,7 +44,10 @@ Asked parsed(const std::string& command_line) {
     add_run_options(command, asked.settings, asked.overrides);
     // Known, so that their values are not taken for the system.
     std::string ignored;
-    for (const char* flag : {"--size", "--scale", "--columns", "--format", "--fps", "--speed", "--camera", "--record"})
+    command.add_option("--at", asked.at);
+    command.add_flag("--dark", asked.dark);
+    for (const char* flag : {"--width-mm", "--height-mm", "--font-pt", "--dpi", "--size", "--scale", "--columns",
+                             "--format", "--fps", "--speed", "--camera", "--record"})
         command.add_option(flag, ignored);
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
     try {
@@ -149,6 +153,8 @@ std::vector<Command> session_of(const Origin& origin, Opening& opening) {
         !asked.journal.empty() && journal != nullptr)
         replay(parse_journal(journal->text, journal->name), origin, opening);
     replay(parse_steps(asked.steps), origin, opening);
+    if (!asked.at.empty()) opening.commands.push_back(parse_command("seek " + asked.at, opening.picture));
+    if (asked.dark) opening.commands.emplace_back(command::UseTheme{true});
     return opening.commands;
 }
 

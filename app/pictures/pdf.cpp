@@ -8,14 +8,13 @@
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "pictures/find_program.hpp"
 #include "system/description.hpp"
 
 extern char** environ;  // NOLINT: POSIX has it here
@@ -25,14 +24,6 @@ namespace achilles {
 namespace {
 
 constexpr const char* writer = "rsvg-convert";
-
-bool is_installed() {
-    const char* const path = std::getenv("PATH");
-    std::istringstream folders(path == nullptr ? "" : path);
-    for (std::string folder; std::getline(folders, folder, ':');)
-        if (!folder.empty() && ::access((folder + "/" + writer).c_str(), X_OK) == 0) return true;
-    return false;
-}
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -91,17 +82,16 @@ Written written(std::FILE* svg, const std::string& format, double points) {
 }  // namespace
 
 void need_pdf_writer(const std::string& file) {
-    if (is_installed()) return;
+    if (!find_program(writer).empty()) return;
     throw InputError(file, {}, fmt::format("a PDF is written by {}, which is not installed", writer),
                      "install the package librsvg2-bin, or end the name in .svg");
 }
 
-std::string pdf_of_svg(const std::string& svg, int width) {
-    constexpr double page_pixels = 1200.0, page_points = 170.0 / 25.4 * 72.0;
+std::string pdf_of_svg(const std::string& svg, double width_mm) {
     const File in = temporary();
     if (std::fwrite(svg.data(), 1, svg.size(), in.get()) != svg.size() || std::fflush(in.get()) != 0)
         throw std::runtime_error("a temporary file cannot be written");
-    const double points = width * page_points / page_pixels;
+    const double points = width_mm / 25.4 * 72.0;
     // Cairo 1.18 compresses what notes are added to, but in PDF 1.4; where that cannot be asked for, cairo is older.
     std::string pdf = written(in.get(), "pdf1.4", points).pdf;
     if (!pdf.empty()) return pdf;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view written[] = {"png", "svg", "pdf"};
 // What a person may hope for: bytes of another kind in such a file would be a trap.
-constexpr std::string_view others[] = {"jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "eps", "ps"};
+constexpr std::string_view others[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
 
 template <std::size_t count>
 bool is_among(const std::string& ending, const std::string_view (&endings)[count]) {
@@ -32,12 +32,12 @@ std::string large(const std::string& text) {
     return each(text, [](int c) { return std::toupper(c); });
 }
 
+}  // namespace
+
 std::string ending_of(const std::string& file) {
     const std::string ending = std::filesystem::path(file).extension().string();
     return each(ending.substr(std::min<std::size_t>(1, ending.size())), [](int c) { return std::tolower(c); });
 }
-
-}  // namespace
 
 std::string ending_of_picture(const std::string& file) {
     const std::string ending = ending_of(file);

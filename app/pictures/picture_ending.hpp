@@ -5,6 +5,9 @@
 
 namespace achilles {
 
+// The ending of a name in small letters, without its dot: "svg"; empty where it has none.
+std::string ending_of(const std::string& file);
+
 // "png", "svg" or "pdf", by the ending, in letters of either case; empty: the name says none of these.
 std::string ending_of_picture(const std::string& file);
 

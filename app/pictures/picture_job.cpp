@@ -7,6 +7,7 @@
 #include "image/pdf_notes.hpp"
 #include "image/png_notes.hpp"
 #include "output/output.hpp"
+#include "paint/mechanism.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
 #include "pictures/pdf.hpp"
@@ -75,26 +76,66 @@ std::string PictureSurface::png(const FrameFunction& draw, const Notes& notes) {
     return with_notes(png_bytes(surface_.frame(draw)), notes);
 }
 
-std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
+namespace {
+
+// For print: curves twice as fine as a screen's.
+SurfaceOptions surface_for(const PictureSize& size, double text_size, const Color& background) {
     SurfaceOptions options;
     options.width = size.width;
     options.height = size.height;
     options.scale = size.scale;
-    options.text_size = options.figure_text_size = figure.text_size;
+    options.text_size = options.figure_text_size = text_size;
     options.curve_fineness = 2;
-    options.transparent = figure.background.a < 255;
-    const Rectangle area{0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
-    return PictureSurface(options).png([&] { paint(figure, ImGui::GetBackgroundDrawList(), area, size.scale); }, notes);
+    options.transparent = background.a < 255;
+    return options;
+}
+
+Rectangle area_of(const PictureSize& size) {
+    return {0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
+}
+
+// A PNG for paper says how large its pixels are.
+std::string on_paper(std::string png, const PictureSize& size) {
+    return size.width_mm > 0.0 ? with_resolution(png, size.width / size.width_mm) : png;
+}
+
+std::string pdf_of(const std::string& svg, const PictureSize& size, const Notes& notes) {
+    return with_pdf_notes(pdf_of_svg(svg, size.width_mm > 0.0 ? size.width_mm : page_mm(size.width)), notes);
+}
+
+}  // namespace
+
+std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
+    PictureSurface surface(surface_for(size, figure.text_size, figure.background));
+    const auto draw = [&] { paint(figure, ImGui::GetBackgroundDrawList(), area_of(size), size.scale); };
+    return on_paper(surface.png(draw, notes), size);
 }
 
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes) {
-    return svg(figure, size.width, size.height, size.scale, assets() / "fonts", notes);
+    return svg(figure, {size.width, size.height, size.scale, size.width_mm}, assets() / "fonts", notes);
 }
 
 std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format) {
     if (format == "png") return png_of(figure, size, notes);
     if (format == "svg") return svg_of(figure, size, notes);
-    return with_pdf_notes(pdf_of_svg(svg_of(figure, size, {}), size.width), notes);
+    return pdf_of(svg_of(figure, size, {}), size, notes);
+}
+
+std::string picture_of(const Drawing& world, const Color& background, const PictureSize& size, const Notes& notes,
+                       const std::string& format) {
+    if (format == "png") {
+        PictureSurface surface(surface_for(size, world_text_size, background));
+        const auto draw = [&] {
+            paint(Sheet{Fill{area_of(size), background}}, ImGui::GetBackgroundDrawList());
+            paint(world, ImGui::GetBackgroundDrawList(), area_of(size), size.scale);
+        };
+        return on_paper(surface.png(draw, notes), size);
+    }
+    const auto drawn = [&](const Notes& carried) {
+        return svg(world, background, {size.width, size.height, size.scale, size.width_mm}, assets() / "fonts",
+                   carried);
+    };
+    return format == "svg" ? drawn(notes) : pdf_of(drawn({}), size, notes);
 }
 
 }  // namespace achilles

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/write_files.hpp"
+#include "figure/drawing.hpp"
 #include "figure/figure.hpp"
 #include "pictures/origin.hpp"
 #include "surface/offscreen.hpp"
@@ -65,10 +66,14 @@ class PictureSurface {
 struct PictureSize {
     int width = 1200, height = 800;  // pixels
     double scale = 1.0;
+    double width_mm = 0.0;  // on paper, which the file says; 0: as its format has it
 };
 std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes);
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes);
 // By the format's name: "png", "svg" or "pdf".
 std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format);
+// The same of a mechanism, over this colour; where that is clear there is no background.
+std::string picture_of(const Drawing& world, const Color& background, const PictureSize& size, const Notes& notes,
+                       const std::string& format);
 
 }  // namespace achilles

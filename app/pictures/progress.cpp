@@ -20,10 +20,11 @@ std::string progress_line(std::size_t done, std::size_t count, double seconds, c
     return line + fmt::format("  {:.1f}/s  {}:{:02} left", rate, left / 60, left % 60);
 }
 
-Progress::Progress(std::size_t count, std::string things)
+Progress::Progress(std::size_t count, std::string things, bool lines)
     : count_(count),
       things_(std::move(things)),
       on_terminal_(::isatty(STDERR_FILENO) == 1),
+      lines_(lines && !on_terminal_),
       begin_(std::chrono::steady_clock::now()) {
     show(0);
 }
@@ -33,9 +34,10 @@ Progress::~Progress() {
 }
 
 void Progress::show(std::size_t done) {
-    if (!on_terminal_) return;
+    if (!on_terminal_ && !lines_) return;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    fmt::print(stderr, "\r\x1b[K{}", progress_line(done, count_, seconds, things_));
+    const std::string line = progress_line(done, count_, seconds, things_);
+    fmt::print(stderr, fmt::runtime(lines_ ? "{}\n" : "\r\x1b[K{}"), line);
     std::fflush(stderr);
 }
 

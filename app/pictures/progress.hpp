@@ -10,10 +10,11 @@ namespace achilles {
 // "[#####.....]  50%  60/120 frames  11.3/s  0:05 left"; without times before the first is done.
 std::string progress_line(std::size_t done, std::size_t count, double seconds, const std::string& things);
 
-// A line on standard error that is written over and over, and taken away at the end; nothing where that is no terminal.
+// A line on standard error that is written over and over, and taken away at the end; where that is no terminal nothing, or
+// with `lines` a line each time for a program that reads them.
 class Progress {
  public:
-    Progress(std::size_t count, std::string things);
+    Progress(std::size_t count, std::string things, bool lines = false);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
@@ -22,7 +23,7 @@ class Progress {
  private:
     std::size_t count_;
     std::string things_;
-    bool on_terminal_;
+    bool on_terminal_, lines_;
     std::chrono::steady_clock::time_point begin_;
 };
 

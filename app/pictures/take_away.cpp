@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -11,7 +11,9 @@
 #include "figure/difference.hpp"
 #include "journal/journal.hpp"
 #include "output/output.hpp"
+#include "paint/mechanism.hpp"
 #include "pictures/origin.hpp"
+#include "pictures/page.hpp"
 #include "pictures/pdf.hpp"
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
@@ -58,44 +60,79 @@ Words figure_words(const Session& session, const Plots& plots, const std::string
     return words;
 }
 
-std::string figure_bytes(const Session& session, const Plots& plots, const std::string& format) {
+Words mechanism_words(const Session& session, const std::string& name) {
+    Words words{"figure", name};
+    const Words options = run_options(session);
+    words.insert(words.end(), options.begin(), options.end());
+    words.insert(words.end(), {"--mechanism", "--at", fmt::format("{}", session.time())});
+    if (const auto& look = session.scene().look()) add_steps(words, {*look});
+    if (!session.scene().shows("trail")) add_steps(words, {command::Show{"trail", false}});
+    return words;
+}
+
+Page page_of(const command::Export& what) { return {what.width, what.height, what.font, what.dpi}; }
+
+void add_page(Words& words, const command::Export& what) {
+    for (const auto& [option, value] : {std::pair{"--width-mm", what.width}, std::pair{"--height-mm", what.height},
+                                        std::pair{"--font-pt", what.font}, std::pair{"--dpi", what.dpi}})
+        if (value > 0.0) words.insert(words.end(), {option, fmt::format("{}", value)});
+    if (what.dark) words.emplace_back("--dark");
+}
+
+// What a picture of this session carries, that was made by these words.
+Notes notes_of(const Session& session, Words words, const command::Export& what) {
+    add_page(words, what);
     const std::string& name = session.system();
     const Origin origin{"Achilles " + version(),
-                        command_line(figure_words(session, plots, name)),
+                        command_line(words),
                         "",
                         {{Source::Kind::system, name, session.description().source_text}}};
+    return notes(origin, {{name, &session.trajectory()}});
+}
+
+std::string figure_bytes(const Session& session, const Plots& plots, const command::Export& what,
+                         const std::string& format) {
     PublicationStyle style;
     style.columns = plots.columns();
+    style.dark = what.dark;
     const Figure figure = figure_of(session, plots, style);
-    PictureSize size;
-    size.scale *= publication_scale;
-    const Notes carried = notes(origin, {{name, &session.trajectory()}});
-    return picture_of(figure, size, carried, format);
+    const PictureSize size = size_of(page_of(what), {}, figure, format);
+    return picture_of(figure, size, notes_of(session, figure_words(session, plots, session.system()), what), format);
+}
+
+std::string mechanism_bytes(const Session& session, const command::Export& what, const std::string& format) {
+    const Theme theme = what.dark ? dark_theme() : light_theme();
+    const Drawing world = mechanism_of(session, theme);
+    return picture_of(world, theme.background, size_of(page_of(what), {}, world, format),
+                      notes_of(session, mechanism_words(session, session.system()), what), format);
 }
 
 // Of what cannot be drawn here (a library that is missing) only the message matters.
-std::string drawn(const Session& session, const Plots& plots, const std::string& file, const std::string& format) {
-    if (format == "pdf") need_pdf_writer(file);
+std::string drawn(const Session& session, const command::Export& what, const std::string& format) {
+    check(page_of(what), what.file);
+    if (format == "pdf") need_pdf_writer(what.file);
+    const Plots plots = what.plot > 0 ? session.plotted().only(what.plot) : session.plotted();
     try {
-        return figure_bytes(session, plots, format);
+        return what.mechanism ? mechanism_bytes(session, what, format) : figure_bytes(session, plots, what, format);
     } catch (const InputError&) {
         throw;
     } catch (const std::runtime_error& problem) {
-        throw InputError(file, {}, problem.what());
+        throw InputError(what.file, {}, problem.what());
     }
 }
 
-std::string bytes_of(const Session& session, const std::string& file, int plot) {
-    std::string ending = fs::path(file).extension().string();
-    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    const Plots plots = plot > 0 ? session.plotted().only(plot) : session.plotted();
-    if (const std::string format = ending_of_picture(file); !format.empty()) return drawn(session, plots, file, format);
-    if (plot > 0) throw InputError(file, {}, "one plot is a figure", "end it in .svg, .png or .pdf");
-    if (ending == ".json") return to_json(session.trajectory());
-    if (ending == ".csv") return to_csv(session.trajectory());
-    if (ending == ".journal") return journal_text(recipe(session));
-    throw InputError(file, {}, "this name does not say what to export",
-                     "end it in .svg, .png or .pdf (the plots), .json or .csv (the run), or .journal (the session)");
+std::string bytes_of(const Session& session, const command::Export& what) {
+    if (const std::string format = ending_of_picture(what.file); !format.empty()) return drawn(session, what, format);
+    if (what.plot > 0 || what.mechanism || what.width > 0.0)
+        throw InputError(what.file, {}, "one plot, a mechanism and a width make a figure",
+                         "end it in .svg, .png or .pdf");
+    const std::string ending = ending_of(what.file);
+    if (ending == "json") return to_json(session.trajectory());
+    if (ending == "csv") return to_csv(session.trajectory());
+    if (ending == "journal") return journal_text(recipe(session));
+    throw InputError(what.file, {}, "this name does not say what to export",
+                     "end it in .svg, .png or .pdf (the plots), .mp4 or .gif (a film), .json or .csv (the run), or "
+                     ".journal (the session)");
 }
 
 // Which run is which: the present one is in ink, the others in their hues; so a dash alone tells a phase.
@@ -115,12 +152,41 @@ void name_runs(Figure& figure, const Session& session, const std::vector<const P
 
 }  // namespace
 
+PictureSize size_of(const Page& page, PictureSize in_pixels, const Figure& figure, const std::string& format) {
+    if (page.width > 0.0) return on_page(page, format, figure.text_size, shape_of(figure));
+    in_pixels.scale *= publication_scale;
+    return in_pixels;
+}
+
+PictureSize size_of(const Page& page, PictureSize in_pixels, const Drawing& world, const std::string& format) {
+    if (page.width > 0.0) return on_page(page, format, world_text_size, shape_of(world));
+    in_pixels.scale *= publication_scale;
+    return in_pixels;
+}
+
+Drawing mechanism_of(const Session& session, const Theme& theme) {
+    if (session.mechanism().is_empty())
+        throw InputError({}, {}, "this system draws no mechanism", "[[drawing]] in its file makes one");
+    Drawing seen = session.limits();
+    if (const auto& look = session.scene().look()) {
+        const double height = look->width / shape_of(seen);
+        seen.x_low = look->x - 0.5 * look->width, seen.x_high = look->x + 0.5 * look->width;
+        seen.y_low = look->y - 0.5 * height, seen.y_high = look->y + 0.5 * height;
+    }
+    const Sample& now = session.now();
+    Drawing world =
+        session.mechanism().draw(now.t, now.state, session.trajectory().run.parameters, seen, theme, now.held);
+    if (session.scene().shows("trail"))
+        add_trail(world.shapes, session.trail(), session.samples(), session.time(), theme);
+    return world;
+}
+
 Figure figure_of(const Session& session, const PublicationStyle& style) {
     return figure_of(session, session.plotted(), style);
 }
 
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style) {
-    const Theme theme = light_theme();
+    const Theme theme = style.dark ? dark_theme() : light_theme();
     std::vector<Panel> panels = plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print);
     std::vector<const PinnedRun*> pinned;
     for (const PinnedRun& run : session.pinned())
@@ -146,16 +212,76 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
     return figure;
 }
 
-void take_away(const Session& session, const command::Export& what) {
+namespace {
+
+void check_file(const command::Export& what) {
     const std::string& file = what.file;
     if (file.empty() || file == "-") throw InputError({}, {}, "a file to export to is missing");
     std::error_code ignored;
     if (!what.overwrite && fs::exists(file, ignored))
         throw InputError(file, {}, "there is a file already",
                          "export under another name, or overwrite it: export FILE overwrite");
+}
+
+// What a file holds; nothing where there is none.
+std::string held_by(const std::string& file) {
+    try {
+        return read_text(file);
+    } catch (const InputError&) {
+        return {};
+    }
+}
+
+double fps_of(const command::Export& what) { return what.fps > 0.0 ? what.fps : 30.0; }
+double speed_of(const Session& session, const command::Export& what) {
+    return what.speed > 0.0 ? what.speed : session.scene().speed();
+}
+
+}  // namespace
+
+FilmExtent extent_of(const Session& session, const command::Export& what) {
+    const Trajectory& trajectory = session.trajectory();
+    const int width = std::max(what.pixels > 0 ? what.pixels : 1280, 2) / 2 * 2;
+    const double seconds = (trajectory.end_time - trajectory.run.options.start_time) / speed_of(session, what);
+    return {std::floor(seconds * fps_of(what)) + 1.0, width, width * 5 / 16 * 2};
+}
+
+std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Export& what) {
+    check_file(what);
+    if (what.plot > 0 || what.mechanism || what.width > 0.0)
+        throw InputError(what.file, {}, "a film shows the mechanism beside the plots, and is measured in pixels",
+                         "export F.mp4 pixels 1280 fps 30 speed 1");
+    const FilmExtent extent = extent_of(session, what);
+    if (extent.width < 320 || extent.width > 3840)
+        throw InputError(what.file, {}, fmt::format("a film is not {} pixels wide", extent.width),
+                         "it may be 320 to 3840");
+    if (!(extent.frames <= most_film_frames))
+        throw InputError(what.file, {}, fmt::format("these would be more than {:.0f} frames", most_film_frames),
+                         "a higher speed or fewer frames a second make it less");
+    Words words{"frames", name_anywhere(session.system())};
+    const Words options = run_options(session);
+    words.insert(words.end(), options.begin(), options.end());
+    if (const auto views = views_of(session, session.plotted()))
+        words.insert(words.end(), views->begin(), views->end());
+    else
+        add_steps(words, figure_steps(session, session.plotted()));
+    words.insert(words.end(),
+                 {"--fps", fmt::format("{}", fps_of(what)), "--speed", fmt::format("{}", speed_of(session, what)),
+                  "--size", fmt::format("{}x{}", extent.width, extent.height), "--out", what.file, "--progress"});
+    if (what.dark) words.emplace_back("--dark");
+    if (what.overwrite) words.emplace_back("--overwrite");
+    // A text that no file holds goes into one.
+    const std::string& text = session.description().source_text;
+    return std::make_unique<FilmJob>(what.file, std::move(words),
+                                     held_by(session.description().file) == text ? "" : text);
+}
+
+void take_away(const Session& session, const command::Export& what) {
+    const std::string& file = what.file;
+    check_file(what);
     OutputFiles files;
     files.add(file);  // before the work
-    files.put(file, bytes_of(session, file, what.plot));
+    files.put(file, bytes_of(session, what));
     files.commit();
 }
 

@@ -71,20 +71,25 @@ void read(bool& value, const How& how, Reading& from) {
     const std::size_t at = how.is_name ? 0 : from.at;
     value = at < from.line.count() && from.line.word(at).text == how.yes;
     if (how.is_name || from.at_end()) return;
+    if (!value && how.may_lack) return;
     if (!value && (from.word() != how.no || how.no.empty())) throw from.error(filled(how.complaint, from.word()));
     ++from.at;
 }
+// Whether the word that a number stands behind is there; it is read.
+bool is_there(const How& how, Reading& from) {
+    if (how.after.empty()) return true;
+    if (from.at_end() || from.word() != how.after) return false;
+    if (++from.at; from.at_end()) throw from.line.error(from.line.word(from.at - 1).column, from.usage);
+    return true;
+}
 void read(int& value, const How& how, Reading& from) {
-    if (!how.after.empty()) {
-        if (from.at_end() || from.word() != how.after) return;
-        if (++from.at; from.at_end()) throw from.line.error(from.line.word(from.at - 1).column, from.usage);
-    }
-    if (how.may_lack && from.at_end()) return;
+    if (!is_there(how, from) || (how.may_lack && from.at_end())) return;
     value = from.line.whole_number(from.at);
     if ((!how.after.empty() || how.may_lack) && value < 1) throw from.error(filled(how.complaint, value));
     ++from.at;
 }
 void read(double& value, const How& how, Reading& from) {
+    if (!is_there(how, from)) return;
     const bool is_zero = !how.zero.empty() && from.word() == how.zero;
     value = is_zero ? 0.0 : from.line.number(from.at);
     if (!is_zero && how.fits && !how.fits(value)) throw from.error(filled(how.complaint, value));
@@ -131,6 +136,7 @@ std::string written(int value, const How& how) {
     return how.after.empty() ? fmt::format(" {}", value) : fmt::format(" {} {}", how.after, value);
 }
 std::string written(double value, const How& how) {
+    if (!how.after.empty()) return value == 0.0 ? "" : fmt::format(" {} {}", how.after, value);
     return value == 0.0 && !how.zero.empty() ? fmt::format(" {}", how.zero) : fmt::format(" {}", value);
 }
 std::string written(const Given& given, const How& how) {

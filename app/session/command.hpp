@@ -94,15 +94,15 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy", "controls", "editor", "energy",  "equations", "events",
-                                                   "force",    "help",     "lens",   "palette", "plane",     "plots",
-                                                   "runs",     "sides",    "strobe", "trail",   "velocity"};
+inline const std::vector<std::string> shown_things{
+    "accuracy", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery", "help",
+    "lens",     "palette",  "plane",  "plots",  "runs",      "sides",  "strobe", "trail", "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
                        // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
                        // events); the section accuracy of the controls; in place of the mechanism the configuration
                        // plane, or of a system in space two sides; help: the card of keys and words; runs: the table
-                       // of the pinned ones beside the events
+                       // of the pinned ones beside the events; the gallery; the dialog of export
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -277,13 +277,28 @@ struct Done {  // with this change: what follows is another one, be it of the sa
 };
 
 struct Export {
-    std::string file;  // what goes there, its ending tells: .svg, .png the plots; .json, .csv the run; .journal all
-    bool overwrite = false;  // whatever file may be there
-    int plot = 0;            // this one alone; 0: all
+    std::string
+        file;  // what goes there, its ending tells: .svg, .png, .pdf the plots; .json, .csv the run; .journal all;
+               // .mp4, .gif the mechanism in motion beside the plots
+    bool overwrite = false;                                   // whatever file may be there
+    int plot = 0;                                             // this one alone; 0: all
+    bool mechanism = false;                                   // as it is now, in place of the plots
+    double width = 0.0, height = 0.0, font = 0.0, dpi = 0.0;  // of a picture: mm, mm, pt; 0: see Page
+    double fps = 0.0, speed = 0.0;                            // of a film; 0: 30, and as the player's
+    int pixels = 0;                                           // its width; 0: 1280
+    bool dark = false;
     static constexpr auto said = Said(
-        "export", "write: export FILE, or: export FILE overwrite; one plot alone: export FILE plot 2", Change::view,
-        &Export::file, Field(&Export::plot, {.after = "plot", .complaint = "plots count from 1: there is no plot {}"}),
-        Field(&Export::overwrite, command::overwrite));
+        "export",
+        "write: export FILE, or: export FILE overwrite; one plot alone: export FILE plot 2, or mechanism; on paper: "
+        "width MM height MM font PT dpi N; of a film: fps N speed X pixels N; dark",
+        Change::view, &Export::file,
+        Field(&Export::plot, {.after = "plot", .complaint = "plots count from 1: there is no plot {}"}),
+        Field(&Export::mechanism, {.yes = "mechanism", .may_lack = true}), Field(&Export::width, length_after("width")),
+        Field(&Export::height, length_after("height")), Field(&Export::font, length_after("font")),
+        Field(&Export::dpi, length_after("dpi")), Field(&Export::fps, length_after("fps")),
+        Field(&Export::speed, length_after("speed")),
+        Field(&Export::pixels, {.after = "pixels", .complaint = "{} pixels are no width"}),
+        Field(&Export::dark, {.yes = "dark", .may_lack = true}), Field(&Export::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> copied_things{"explorer", "figure", "run"};
 struct Copy {

@@ -35,16 +35,20 @@ struct How {
     bool is_name = false;                              // these are names of the command, not words after it
     bool in_quotes = false;                            // a text, always
     const std::vector<std::string>* one_of = nullptr;  // a text
-    std::string_view known = {};      // what is said, with {} for them, where it is none of these; else the usage
-    bool (*fits)(double) = nullptr;   // a number
-    std::string_view zero = {};       // the word for 0
-    std::string_view after = {};      // a whole number from 1, behind this word; 0 where both are left out
-    bool may_lack = false;            // a whole number from 1; 0 where it is left out
+    std::string_view known = {};     // what is said, with {} for them, where it is none of these; else the usage
+    bool (*fits)(double) = nullptr;  // a number
+    std::string_view zero = {};      // the word for 0
+    std::string_view after = {};     // a number above 0, behind this word; 0 where both are left out
+    // A bool of one word: another one is the next field's. A whole number from 1: 0 where it is left out.
+    bool may_lack = false;
     std::string_view complaint = {};  // {}: what stands there instead, and for a text what was probably meant
 };
 constexpr How in_quotes{.in_quotes = true};
 constexpr How on_off{.yes = "on", .no = "off", .complaint = "'{}' is neither on nor off"};
 constexpr How x_or_y{.yes = "x", .no = "y", .complaint = "an axis is x or y"};
+constexpr How length_after(std::string_view word) {
+    return {.fits = [](double x) { return x > 0.0; }, .after = word, .complaint = "this must be above 0, not {}"};
+}
 constexpr How overwrite{.yes = "overwrite", .complaint = "'{}' is not expected here"};
 
 template <class Kind, class Value>

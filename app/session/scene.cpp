@@ -47,8 +47,10 @@ void Scene::perform(const command::Show& command) {
     if (std::find(things.begin(), things.end(), command.what) == things.end())
         throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
     // One card in front of everything is enough.
-    for (const char* card : {"help", "palette"})
-        if (command.on && (command.what == "help" || command.what == "palette")) shown_.erase(card);
+    const auto is_card = [](const std::string& what) {
+        return what == "help" || what == "palette" || what == "gallery" || what == "export";
+    };
+    if (command.on && is_card(command.what)) std::erase_if(shown_, is_card);
     if (command.what == "palette") finds_.clear();
     if (command.on)
         shown_.insert(command.what);
@@ -114,7 +116,8 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.camera() != (scene.look_ ? CameraMode::fixed : CameraMode::fit))
         steps.emplace_back(command::Camera{std::string(to_text(scene.camera()))});
     for (const std::string& thing : command::shown_things)
-        if (scene.shows(thing) != Scene().shows(thing)) steps.emplace_back(command::Show{thing, scene.shows(thing)});
+        if (thing != "export" && scene.shows(thing) != Scene().shows(thing))
+            steps.emplace_back(command::Show{thing, scene.shows(thing)});
     if (!scene.finds().empty()) steps.emplace_back(command::Find{scene.finds()});
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
     if (scene.loops()) steps.emplace_back(command::Loop{true});

@@ -26,6 +26,7 @@
 
 namespace achilles {
 
+class FilmJob;
 class Stage;
 
 // How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
@@ -37,6 +38,8 @@ struct SystemSource {
     std::function<std::vector<Command>(const std::string& journal)> journal{};  // what is in one; empty: there are none
     std::string folder{};  // where paths without one begin, for messages of what is written; empty: they do not tell
     bool exports = true;   // false: `export` writes nothing
+    // Takes a film that was begun; empty: the session waits for it.
+    std::function<void(std::unique_ptr<FilmJob>)> film{};
     std::function<void(const std::string& file)> before_writing{};  // `save` and `export`; may be empty
     bool saves_any_text = true;                                     // false: only one that is a system
 };
@@ -60,6 +63,9 @@ class Session {
 
     // A mistake that is no command's: error() tells it until the next command.
     void refuse(const InputError& problem) { error_ = problem.what(); }
+
+    // What was done meanwhile, that cannot be seen otherwise.
+    void tell(const std::string& done) { notice_ = done; }
 
     void set_patience(Patience patience) { patience_ = patience; }
     // Called on another thread when update() would take something in.

@@ -1,6 +1,7 @@
 // What a session gives away, and the journals that it replays.
 #include <fmt/format.h>
 
+#include "pictures/film.hpp"
 #include "pictures/take_away.hpp"
 #include "session/refusal.hpp"
 #include "session/session.hpp"
@@ -27,10 +28,20 @@ void Session::perform(const command::Export& command) {
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
         throw refusal("the run is still under way", "export again when it is there");
     if (library_.before_writing) library_.before_writing(command.file);
-    if (library_.exports) take_away(*this, command);
     const std::filesystem::path file(command.file);
-    notice_ =
-        fmt::format("{} is written", (file.is_absolute() ? file : library_.folder / file).lexically_normal().string());
+    const std::string path = (file.is_absolute() ? file : library_.folder / file).lexically_normal().string();
+    notice_ = fmt::format("{} is written", path);
+    if (!library_.exports) return;
+    if (!is_film(command.file)) return take_away(*this, command);
+    std::unique_ptr<FilmJob> film = begin_film(*this, command);
+    if (library_.film) {
+        notice_.clear();
+        return library_.film(std::move(film));
+    }
+    film->wait();
+    if (film->is_made()) return;
+    if (film->has_frames()) return warn(film->said());  // without ffmpeg
+    throw InputError(command.file, {}, film->said());
 }
 
 void Session::perform(const command::Copy& command) {

@@ -37,8 +37,11 @@ void append(std::vector<Thing>& all, const std::vector<Thing>& more) {
 }
 
 // What a run will show, without what has happened.
-Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns) {
-    Figure figure = publication(trajectory, views, {columns, false});
+Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns, bool dark) {
+    PublicationStyle style;
+    style.columns = columns;
+    style.dark = dark;
+    Figure figure = publication(trajectory, views, style);
     for (Panel& panel : figure.panels) {
         for (Markers& markers : panel.markers) markers.points.clear();
         for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
@@ -122,25 +125,25 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
     const double shape = (limits.x_high - limits.x_low) / (limits.y_high - limits.y_low);
     areas_ = still_areas(shape, views.size(),
                          {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
-    figure_ = pale_figure(trajectory, views, areas_.columns);
+    figure_ = pale_figure(trajectory, views, areas_.columns, size.dark);
     if (!mechanism_.is_empty()) return;
     const ViewDescription plane = plane_of(trajectory.model->description());
     plane_view_.emplace(*trajectory.model, plane);
-    plane_ = pale_figure(trajectory, {&plane, 1}, 1);
+    plane_ = pale_figure(trajectory, {&plane, 1}, 1, size.dark);
     if (!views.empty()) plane_.keys.clear();
 }
 
 // The curves until now in full colour, what happened until now, and a dot where the run is.
 void Animation::add_present(Panel& panel, const PreparedView& view, const Sample& now) const {
+    const Theme theme = size_.dark ? dark_theme() : light_theme();
     const auto end = std::upper_bound(samples_.begin(), samples_.end(), now.t,
                                       [](double t, const Sample& sample) { return t < sample.t; });
     if (!view.quantities()[0].is_time && has_moving_gap(*trajectory_.model)) {
-        panel.boundary.stroke = {light_theme().surface, 1.0, {}};
+        panel.boundary.stroke = {theme.surface, 1.0, {}};
         panel.boundary.points = boundary(trajectory_, samples_, view, panel, now.t);
     }
     std::vector<Sample> past(samples_.begin(), end);
     past.push_back(now);
-    const Theme theme = light_theme();
     Framing framing;
     framing.x = {panel.x.low, panel.x.high};
     framing.y = {panel.y.low, panel.y.high};
@@ -176,7 +179,7 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
 
 Still Animation::at(double t) {
     const Sample now = sampler_.at(t);
-    const Theme theme = light_theme();
+    const Theme theme = size_.dark ? dark_theme() : light_theme();
     const SystemDescription& description = trajectory_.model->description();
     Still still;
     still.areas = areas_;

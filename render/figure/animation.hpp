@@ -22,6 +22,7 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area);
 struct StillSize {
     int width = 1600, height = 1000;  // pixels
     double scale = 1.0;               // of text and strokes, over what fits the size
+    bool dark = false;
 };
 constexpr double still_title_size = 17.0;  // pixels at scale 1
 constexpr double still_margin = 16.0;      // the same, around the mechanism but above it

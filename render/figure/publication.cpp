@@ -159,10 +159,10 @@ void share_axes(Figure& figure) {
     for (std::size_t i = 0; i < cells.size(); ++i) panels[i].x.labelled = cells[i].rows > 1 || !shared[cells[i].row];
 }
 
-void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
+void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme) {
     figure.grid.a = 0;
     figure.smallest_text = 0.9;  // 7 points on a page
-    figure.keys = keys_of(runs, figure.panels, light_theme());
+    figure.keys = keys_of(runs, figure.panels, theme);
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;
         for (Markers& markers : panel.markers) {
@@ -174,7 +174,7 @@ void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs) {
 
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
                    const PublicationStyle& style) {
-    const Theme theme = light_theme();
+    const Theme theme = style.dark ? dark_theme() : light_theme();
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
     framing.for_print = true;
@@ -185,14 +185,14 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
 }
 
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style) {
-    const Theme theme = light_theme();
+    const Theme theme = style.dark ? dark_theme() : light_theme();
     Figure figure;
     figure.background = theme.background;
     figure.ink = theme.ink;
     figure.panels = std::move(panels);
     if (style.transparent) figure.background.a = 0;
     const Trajectory* const run = &trajectory;
-    dress_for_print(figure, {&run, 1});
+    dress_for_print(figure, {&run, 1}, theme);
     figure.columns = style.columns > 0 ? style.columns : figure.panels.empty() ? 1 : columns_for(figure.panels);
     if (style.columns == 0) set_path(figure, style);
     share_axes(figure);

@@ -11,16 +11,17 @@ struct PublicationStyle {
     bool transparent = false;  // no background
     bool ordered = false;      // the panels stay in their order, even where a path would stand better as the first
     double shape = 1.5;        // of the picture: its width over its height
+    bool dark = false;         // for a screen in a dark room, not for paper
 };
 
 // Throws InputError for a view that cannot be evaluated.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
 
-// The same of panels that are composed already, for a white page.
+// The same of panels that are composed already, in the colours of the style.
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);
 // What a composed figure looks like in print: no grid, smaller markers, and one legend above all panels that tells what
 // occurs in the runs they show.
-void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs);
+void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme = light_theme());
 
 // Takes the labels off the x axes of every row whose panels all stand on others with the same axes. A panel beside
 // several rows keeps its own.

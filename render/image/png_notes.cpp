@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -47,6 +48,14 @@ bool is_keyword(std::string_view word) {
 }
 
 bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos && is_utf8(text); }
+
+// Where the chunks after the header begin.
+std::size_t header_end(std::string_view png) {
+    const std::size_t end = signature.size() + header_size;
+    if (png.size() < end || png.substr(0, signature.size()) != signature)
+        throw std::runtime_error("notes need a PNG file to stand in");
+    return end;
+}
 
 std::string chunk(const Note& note) {
     if (!is_keyword(note.keyword))
@@ -105,10 +114,16 @@ void read_note(std::string_view name, std::string_view data, Notes& notes) {
 
 }  // namespace
 
+std::string with_resolution(std::string_view png, double pixels_per_mm) {
+    const std::size_t begin = header_end(png);
+    const std::string per_metre = big_endian(static_cast<std::uint32_t>(std::lround(1000.0 * pixels_per_mm)));
+    const std::string body = "pHYs" + per_metre + per_metre + '\1';
+    return std::string(png.substr(0, begin)) + big_endian(9) + body + big_endian(check_sum(body)) +
+           std::string(png.substr(begin));
+}
+
 std::string with_notes(std::string_view png, const Notes& notes) {
-    const std::size_t begin = signature.size() + header_size;
-    if (png.size() < begin || png.substr(0, signature.size()) != signature)
-        throw std::runtime_error("notes need a PNG file to stand in");
+    const std::size_t begin = header_end(png);
     if (notes.size() > most_notes) throw std::runtime_error(too_many);
     std::string result(png.substr(0, begin));
     for (const Note& note : notes) result += chunk(note);

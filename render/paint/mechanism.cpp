@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double text_size = 14.0;
+constexpr double still_margin = 16.0;  // around the mechanism of a still
 
 double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -167,7 +167,7 @@ void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placemen
     if (shape.kind == Shape::Kind::text) {
         const Point at = placement.pixel(shape.points.front());
         if (!is_finite(at)) return;
-        const auto size = static_cast<float>(text_size * scale);
+        const auto size = static_cast<float>(world_text_size * scale);
         const float width = label_width(shape.text, size);
         paint_label(list, static_cast<float>(at.x) - width / 2.0F, static_cast<float>(at.y) - size / 2.0F, shape.text,
                     shape.stroke.color, size);
@@ -182,6 +182,10 @@ void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placemen
 }
 
 }  // namespace
+
+std::vector<Point> outline(const Shape& shape, const Placement& placement, const Rectangle& seen) {
+    return outline(shape, placement, Clip{{seen.x, seen.y}, {seen.x + seen.width, seen.y + seen.height}});
+}
 
 Placement place(const Drawing& drawing, Rectangle area) {
     const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;

@@ -19,6 +19,13 @@ struct Placement {
 // The largest placement with equal axes that shows the drawing's limits in the middle of the area.
 Placement place(const Drawing& drawing, Rectangle area);
 
+// Of texts that stand in a mechanism, pixels at scale 1.
+constexpr double world_text_size = 14.0;
+
+// The outline of a shape that is no text, in pixels; a closed one ends where it begins. Of a large disc the arc that may be
+// seen is fine.
+std::vector<Point> outline(const Shape& shape, const Placement& placement, const Rectangle& seen);
+
 // Draws the shapes, clipped to the area; scale multiplies text sizes and stroke widths.
 Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale = 1.0);
 

@@ -13,6 +13,7 @@
 #include "image/xml.hpp"
 #include "paint/font_file.hpp"
 #include "paint/marker.hpp"
+#include "paint/mechanism.hpp"
 #include "surface/polyline.hpp"
 
 namespace achilles {
@@ -75,6 +76,15 @@ class Writer {
         }
         if (stroke.dash.empty()) body_ += "\"/>\n";
         body_ += "</g>\n";
+    }
+
+    // What a closed line encloses.
+    void fill(const std::vector<Point>& rim, const Color& inside, const Rectangle& within) {
+        if (rim.size() < 3 || inside.a == 0 || !std::all_of(rim.begin(), rim.end(), is_finite)) return;
+        body_ += fmt::format("<path clip-path=\"url(#{})\"{} d=\"M", clip(within), color("fill", inside));
+        for (const Point& p : thinned(nearby({rim, {}, {}}), thinning_tolerance))
+            body_ += number(p.x) + "," + number(p.y) + " ";
+        body_ += "Z\"/>\n";
     }
 
     void operator()(const Mark& mark) {
@@ -195,19 +205,16 @@ class Writer {
     std::map<std::tuple<float, float, float, float>, std::string> clips_;
 };
 
-}  // namespace
-
-std::string svg(const Figure& figure, int width, int height, double scale, const std::filesystem::path& fonts,
-                const Notes& notes) {
-    const FontFile font(fonts);
-    const auto measure = [&font](const std::string& label, float size) { return font.width(label, size); };
-    const Rectangle area{0.0F, 0.0F, static_cast<float>(width), static_cast<float>(height)};
-    Writer writer(font);
-    for (const auto& item : layout(figure, measure, area, scale)) std::visit(writer, item);
+// The file around what was written into it.
+std::string file_of(const Writer& writer, const SvgSize& size, const Notes& notes) {
+    const double height_mm = size.width_mm * size.height / size.width;
+    const std::string extent = size.width_mm > 0.0
+                                   ? fmt::format("width=\"{:.6g}mm\" height=\"{:.6g}mm\"", size.width_mm, height_mm)
+                                   : fmt::format("width=\"{}\" height=\"{}\"", size.width, size.height);
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n",
-        width, height);
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" {} viewBox=\"0 0 {} {}\">\n",
+        extent, size.width, size.height);
     for (const Note& note : notes)
         if (note.keyword == "Title") text += "<title>" + xml_escaped(note.text) + "</title>\n";
     text += xml_notes(notes);
@@ -216,6 +223,48 @@ std::string svg(const Figure& figure, int width, int height, double scale, const
         "<g font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linecap=\"round\" "
         "stroke-linejoin=\"round\" xml:space=\"preserve\">\n";
     return text + writer.body() + "</g>\n</svg>\n";
+}
+
+Rectangle area_of(const SvgSize& size) {
+    return {0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
+}
+
+}  // namespace
+
+std::string svg(const Figure& figure, const SvgSize& size, const std::filesystem::path& fonts, const Notes& notes) {
+    const FontFile font(fonts);
+    const auto measure = [&font](const std::string& label, float size_of_it) { return font.width(label, size_of_it); };
+    Writer writer(font);
+    for (const auto& item : layout(figure, measure, area_of(size), size.scale)) std::visit(writer, item);
+    return file_of(writer, size, notes);
+}
+
+std::string svg(const Drawing& world, const Color& background, const SvgSize& size, const std::filesystem::path& fonts,
+                const Notes& notes) {
+    const FontFile font(fonts);
+    Writer writer(font);
+    const Rectangle area = area_of(size);
+    if (background.a > 0) writer(Fill{area, background});
+    const Placement placement = place(world, area);
+    for (const Shape& shape : world.shapes) {
+        if (shape.points.empty()) continue;
+        if (shape.kind == Shape::Kind::text) {
+            const Point at = placement.pixel(shape.points.front());
+            const auto high = static_cast<float>(world_text_size * size.scale);
+            if (is_finite(at))
+                writer(TextRun{static_cast<float>(at.x), static_cast<float>(at.y) - high / 2.0F, 0.5F, shape.text,
+                               shape.stroke.color, high});
+            continue;
+        }
+        const std::vector<Point> points = outline(shape, placement, area);
+        const bool is_closed = shape.closed || shape.kind == Shape::Kind::disc;
+        if (shape.fill && is_closed) writer.fill(points, shape.fill_color, area);
+        Stroke stroke = shape.stroke;
+        stroke.width *= size.scale;
+        for (double& length : stroke.dash) length *= size.scale;
+        writer(Path{points, stroke, area});
+    }
+    return file_of(writer, size, notes);
 }
 
 Notes svg_notes(std::string_view text) { return xml_notes_of(text); }

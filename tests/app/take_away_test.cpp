@@ -163,7 +163,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
     EXPECT_EQ(nlohmann::json::parse(test::content(in_folder("a.json")))["outcome"]["kind"], "end time");
     EXPECT_EQ(test::content(in_folder("a.csv")).rfind("t,phase,", 0), 0U);
     EXPECT_EQ(test::content(in_folder("a.journal")), "open ball_on_sine\n");
-    for (const auto& [name, says] : {std::pair{"a.gif", "does not say what to export"},
+    for (const auto& [name, says] : {std::pair{"a.bmp", "does not say what to export"},
                                      {"no/folder/a.svg", "cannot be written"},
                                      {"", "missing"},
                                      {"-", "missing"}}) {

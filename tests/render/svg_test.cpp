@@ -24,7 +24,7 @@ const std::filesystem::path fonts = ACHILLES_BINARY_DIR "/assets/fonts";
 
 const Notes quoted_notes{{"Title", "θ & <friends>"}, {"Achilles Command", "achilles figure 'a \"b\".toml'\r\n\t]]>"}};
 
-std::string sample(int panels = 4) { return svg(samples::figure(panels), 900, 600, 1.0, fonts, quoted_notes); }
+std::string sample(int panels = 4) { return svg(samples::figure(panels), {900, 600, 1.0}, fonts, quoted_notes); }
 
 std::size_t count(const std::string& text, const std::string& part) {
     std::size_t found = 0;
@@ -69,7 +69,7 @@ TEST(Svg, keeps_curves_within_a_hundredth_and_small) {
     Curve& curve = figure.panels[0].curves[0];
     curve.points.clear();
     for (int i = 0; i <= 200000; ++i) curve.points.push_back({i * 2.5e-5, 1.0 + std::sin(i * 1e-4)});
-    EXPECT_LT(svg(figure, 900, 600, 1.0, fonts, {}).size(), 30000u);
+    EXPECT_LT(svg(figure, {900, 600, 1.0}, fonts, {}).size(), 30000u);
 }
 
 // Everything but words: glyphs are rasterised differently, which alone scores 0.16. What the words are is tested above.
@@ -92,7 +92,7 @@ Figure without_words(Figure figure) {
 TEST(Svg, looks_like_the_png) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_look.svg";
     const auto rendered = [&](const Figure& figure) {
-        const std::string text = svg(figure, 900, 600, 1.0, fonts, {});
+        const std::string text = svg(figure, {900, 600, 1.0}, fonts, {});
         EXPECT_EQ(status_of("rsvg-convert %s -o %s.png", file, text), 0);
         return read_png(file.string() + ".png");
     };
@@ -123,7 +123,7 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
         const auto model = std::make_shared<const Model>(read_system(entry.path()));
         const Trajectory trajectory = simulate(model, model->default_run());
         const Figure figure = publication(trajectory, model->description().views, {});
-        const auto as_svg = [&](const Figure& f) { return svg(f, 1200, 800, publication_scale, fonts, {}); };
+        const auto as_svg = [&](const Figure& f) { return svg(f, {1200, 800, publication_scale}, fonts, {}); };
         EXPECT_EQ(status_of("xmllint --noout %s", file, as_svg(figure)), 0) << entry.path();
         // Curves of many thousand pixels: where their dashes begin drifts with how finely they are thinned.
         Figure bare = without_words(figure);
@@ -176,7 +176,7 @@ TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
     const Figure inside = figure_from(release->t - 0.3 * span, impact->t + 0.3 * span);
 
     // SVG: outside every clipping group, and to both sides of the axis' end.
-    std::istringstream lines(svg(at_ends, 600, 400, 1.4, fonts, {}));
+    std::istringstream lines(svg(at_ends, {600, 400, 1.4}, fonts, {}));
     const Color green = event_markers(light_theme(), Event::Kind::release).fill;
     const std::string fill = fmt::format("fill=\"#{:02x}{:02x}{:02x}\"", green.r, green.g, green.b);
     int triangles = 0;
@@ -223,7 +223,7 @@ TEST(Svg, labels_of_the_gallery_are_whole) {
     for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/assets/systems")) {
         const auto model = std::make_shared<const Model>(read_system(entry.path()));
         const Figure figure = publication(simulate(model, model->default_run()), model->description().views, {});
-        EXPECT_EQ(svg(figure, 1200, 800, publication_scale, fonts, {}).find("\u2026"), std::string::npos)
+        EXPECT_EQ(svg(figure, {1200, 800, publication_scale}, fonts, {}).find("\u2026"), std::string::npos)
             << entry.path();
         for (const Panel& panel : figure.panels)
             EXPECT_NE(panel.y.label.find(" ("), std::string::npos) << entry.path() << panel.title << ": no unit";
@@ -259,7 +259,7 @@ TEST(Svg, survives_figures_that_make_no_sense) {
     empty.panels[1].y.low = std::numeric_limits<double>::quiet_NaN();
     for (const Figure& figure : {nothing, empty, samples::figure(6)})
         for (const int size : {1, 60, 300})
-            EXPECT_EQ(svg(figure, size, size, 1.0, fonts, {}).find("nan"), std::string::npos);
+            EXPECT_EQ(svg(figure, {size, size, 1.0}, fonts, {}).find("nan"), std::string::npos);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <functional>
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
@@ -27,23 +28,56 @@ struct FigureArguments {
     OptionOverrides overrides;
     PublicationStyle style;
     PictureSize size;
+    Page page;
+    bool mechanism = false;
+    std::string at;  // "": the start
 };
 
-// Puts a figure of a finished run where it belongs.
-int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
-        PictureJob& job) {
-    PictureSize size = arguments.size;
-    size.scale *= publication_scale;
+// A resolution is for pixels alone.
+Page page_for(const FigureArguments& arguments, const std::string& format) {
+    Page page = arguments.page;
+    if (format == "png" || page.width == 0.0) return page;
+    page.dpi = 0.0;
+    return page;
+}
+
+// Puts what is drawn of a finished run where it belongs.
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const std::string& format, PictureJob& job,
+        const std::function<std::string(const Page& page, const Notes&)>& draw) {
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
-            [&](const Notes& notes) { return picture_of(figure, size, notes, format); });
+            [&](const Notes& notes) { return draw(page_for(arguments, format), notes); });
     job.commit();
     return told_of(trajectory);
+}
+
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
+        PictureJob& job) {
+    return put(arguments, trajectory, format, job, [&](const Page& page, const Notes& notes) {
+        const PictureSize size = size_of(page, arguments.size, figure, format);
+        job.check_size(size.width, size.height);
+        return picture_of(figure, size, notes, format);
+    });
+}
+
+int put_mechanism(const FigureArguments& arguments, const Session& session, const std::string& format,
+                  PictureJob& job) {
+    const Theme theme = arguments.style.dark ? dark_theme() : light_theme();
+    const Drawing world = mechanism_of(session, theme);
+    Color background = theme.background;
+    if (arguments.style.transparent) background.a = 0;
+    return put(arguments, session.trajectory(), format, job, [&](const Page& page, const Notes& notes) {
+        const PictureSize size = size_of(page, arguments.size, world, format);
+        job.check_size(size.width, size.height);
+        return picture_of(world, background, size, notes, format);
+    });
 }
 
 // The plots of the explorer after a journal and some commands more.
 int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
-        throw InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
+        throw arguments.mechanism
+            ? InputError("--view " + arguments.views[0], {}, "the mechanism is drawn alone", "leave --view out")
+            : InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
     std::vector<Command> steps;
     job.inputs().trust(trust_of(arguments.allow_files, {arguments.system, arguments.journal}));
@@ -53,8 +87,10 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
                                    arguments.overrides, source_of(job), {});
     job.add(arguments.out);
+    if (!arguments.at.empty()) steps.insert(steps.begin(), parse_command("seek " + arguments.at, "--at"));
     apply_all(session, steps);
     if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
+    if (arguments.mechanism) return put_mechanism(arguments, session, format, job);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
     return put(arguments, session.trajectory(), figure_of(session, style), format, job);
@@ -63,8 +99,12 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
 int draw(const FigureArguments& arguments, PictureJob& job) {
     const std::string format = format_for(arguments.out, arguments.format, ", or leave --format out: the name tells");
     if (format == "pdf") need_pdf_writer("--out " + arguments.out);
+    check(arguments.page, "--width-mm");
+    if (!arguments.at.empty() && !arguments.mechanism)
+        throw InputError("--at " + arguments.at, {}, "only a mechanism has an instant", "add --mechanism");
     if (format == "png") job.check_size(arguments.size.width, arguments.size.height);
-    if (!arguments.steps.empty() || !arguments.journal.empty()) return draw_session(arguments, format, job);
+    if (!arguments.steps.empty() || !arguments.journal.empty() || arguments.mechanism)
+        return draw_session(arguments, format, job);
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
@@ -78,6 +118,20 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     style.ordered = !arguments.views.empty();
     style.shape = double{1} * arguments.size.width / arguments.size.height;
     return put(arguments, trajectory, publication(trajectory, views, style), format, job);
+}
+
+// In the place of --size and --scale.
+void add_page_options(CLI::App& command, Page& page) {
+    const auto add = [&](const char* option, double& target, const char* type, const std::string& about) {
+        command
+            .add_option_function<std::string>(
+                option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
+            ->type_name(type);
+    };
+    add("--width-mm", page.width, "MM", "its width on paper, in place of --size: 85 is a column, 170 a page");
+    add("--height-mm", page.height, "MM", "with --width-mm (default: as the plots need)");
+    add("--font-pt", page.font, "PT", fmt::format("with --width-mm, of the text (default {:g})", default_font));
+    add("--dpi", page.dpi, "N", fmt::format("with --width-mm, of a PNG (default {:g})", default_dpi));
 }
 
 void take_columns(const std::string& text, int& columns) {
@@ -109,6 +163,10 @@ void add_figure(CLI::App& program, int& status, PictureJob& job) {
             "of panels (default: by their number)")
         ->type_name("N");
     command->add_flag("--transparent", arguments->style.transparent, "no background");
+    command->add_flag("--dark", arguments->style.dark, "light on dark, for a screen");
+    command->add_flag("--mechanism", arguments->mechanism, "the mechanism in place of plots");
+    command->add_option("--at", arguments->at, "of the mechanism: the instant, s (default: the start)")->type_name("T");
+    add_page_options(*command, arguments->page);
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status, &job] { status = draw(*arguments, job); });

@@ -11,19 +11,25 @@
 #include "figure/animation.hpp"
 #include "model/model.hpp"
 #include "paint/mechanism.hpp"
+#include "pictures/film.hpp"
+#include "pictures/find_program.hpp"
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/process_pool.hpp"
 #include "pictures/progress.hpp"
+#include "session/open_session.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
+
+namespace fs = std::filesystem;
 
 namespace {
 
 struct FramesArguments {
     std::string system, out;
-    std::vector<std::string> views, settings;
+    std::vector<std::string> views, settings, steps;
+    bool allow_files = false, progress = false;
     OptionOverrides overrides;
     StillSize size;
     double fps = 30.0, speed = 1.0;
@@ -73,17 +79,46 @@ class Painter {
     PictureSurface surface_;
 };
 
-// A folder that ffmpeg, a shell and a person can read.
+fs::path folder_of(const FramesArguments& arguments) {
+    return is_film(arguments.out) ? frames_folder(arguments.out) : fs::path(arguments.out);
+}
+
+// A folder that ffmpeg, a shell and a person can read, and the command that joins what is in it.
 void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept) {
-    const std::filesystem::path folder = std::filesystem::absolute(arguments.out);
+    const fs::path folder = fs::absolute(folder_of(arguments));
     const StillSize& size = arguments.size;
     print_clean(stdout, "{} frames of {}x{} in {}{}\n", count, size.width, size.height, folder.string(),
                 kept > 0 ? fmt::format(" ({} were there)", kept) : "");
-    // Players want even numbers of pixels.
-    const bool odd = size.width % 2 != 0 || size.height % 2 != 0;
-    print_clean(stdout, "ffmpeg -framerate {} -i {} {}-pix_fmt yuv420p {}.mp4\n", arguments.fps,
-                shell_word((folder / "frame_%05d.png").string()), odd ? "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' " : "",
-                shell_word(std::filesystem::path(arguments.system).stem().string()));
+    const std::string film = is_film(arguments.out) ? fs::absolute(arguments.out).string()
+                                                    : fs::path(arguments.system).stem().string() + ".mp4";
+    std::string line;
+    for (const std::string& word : join_words({folder, arguments.fps, size.width, size.height}, film))
+        line += (line.empty() ? "" : " ") + shell_word(word);
+    print_clean(stdout, "{}\n", line);
+}
+
+// The film in place of its frames; without ffmpeg these stay. Returns the exit status.
+int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
+    const fs::path folder = folder_of(arguments);
+    if (find_program("ffmpeg").empty()) {
+        print_clean(stderr, "achilles: ffmpeg is not installed: the frames of {} stay\n", arguments.out);
+        tell(arguments, count, 0);
+        return stopped_early;
+    }
+    if (arguments.progress) print_clean(stderr, "[joining {} frames\n", count);
+    try {
+        job.put_text(arguments.out,
+                     joined({folder, arguments.fps, arguments.size.width, arguments.size.height}, arguments.out));
+    } catch (const std::runtime_error& problem) {
+        print_clean(stderr, "achilles: {}\n", problem.what());
+        tell(arguments, count, 0);
+        return stopped_early;
+    }
+    job.commit();
+    remove_frames(folder, count);
+    print_clean(stdout, "{}: {} frames of {}x{}, {:g} a second\n", fs::absolute(arguments.out).string(), count,
+                arguments.size.width, arguments.size.height, arguments.fps);
+    return reached_end;
 }
 
 // Draws what is not there yet. Returns the exit status.
@@ -101,7 +136,7 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
     };
     CrewOutcome outcome;
     {
-        Progress progress(numbers.size(), "frames");
+        Progress progress(numbers.size(), "frames", arguments.progress);
         outcome = share_work(numbers.size(), arguments.jobs, begin, [&](std::size_t done) { progress.show(done); });
     }
     if (outcome.done < numbers.size()) {
@@ -111,23 +146,48 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
                     outcome.signal, numbers.size() - outcome.done, count);
         return stopped_early;
     }
-    tell(arguments, count, count - numbers.size());
+    if (!is_film(arguments.out)) tell(arguments, count, count - numbers.size());
     return reached_end;
+}
+
+// What is filmed: a run, and the plots beside it.
+struct Scenario {
+    Trajectory trajectory;
+    std::vector<ViewDescription> views;
+};
+
+Scenario plain(const FramesArguments& arguments, PictureJob& job) {
+    const SystemDescription description = job.inputs().system(arguments.system);
+    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const auto model = std::make_shared<const Model>(description);
+    std::vector<ViewDescription> views = views_for(description, arguments.views);
+    check_asked(*model, run, arguments.settings);
+    warn(description, run);
+    check_count({arguments.fps, arguments.speed, run.options.start_time, run.options.end_time});
+    return {simulate(model, run), std::move(views)};
+}
+
+// After some commands of the explorer: its plots. Its thread ends here: processes are made after it.
+Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
+    if (!arguments.views.empty())
+        throw InputError("--view " + arguments.views[0], {}, "the commands tell what is plotted",
+                         "leave --view out, or --do");
+    job.inputs().trust(trust_of(arguments.allow_files, {arguments.system}));
+    Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
+                                   arguments.overrides, source_of(job), {});
+    apply_all(session, job.inputs().steps(arguments.steps));
+    std::vector<ViewDescription> views;
+    for (const Plot& plot : session.plotted().list()) views.push_back(plot.view);
+    return {session.trajectory(), std::move(views)};
 }
 
 int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     job.check_size(arguments.size.width, arguments.size.height);
-    const SystemDescription description = job.inputs().system(arguments.system);
-    const Run run = asked_run(description, arguments.settings, arguments.overrides);
-    const auto model = std::make_shared<const Model>(description);
-    const std::vector<ViewDescription> views = views_for(description, arguments.views);
-    check_asked(*model, run, arguments.settings);
-    warn(description, run);
-    check_count({arguments.fps, arguments.speed, run.options.start_time, run.options.end_time});
-
-    const Trajectory trajectory = simulate(model, run);
+    const Scenario scenario = arguments.steps.empty() ? plain(arguments, job) : after_steps(arguments, job);
+    const Trajectory& trajectory = scenario.trajectory;
     const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
-    Animation animation(trajectory, views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
+    check_count(clock);
+    Animation animation(trajectory, scenario.views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
     const std::vector<Shown> shown{{arguments.system, &trajectory}};
     int status = reached_end;
     if (job.reproduces()) {
@@ -136,9 +196,11 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
                 return Painter(arguments.size).png(animation.at(clock.time(i)), notes);
             });
     } else {
-        const FrameFolder folder(arguments.out);
+        if (is_film(arguments.out)) job.add(arguments.out);
+        const FrameFolder folder(folder_of(arguments));
         status = draw_into(folder, arguments, clock, animation,
                            [&](const std::string& name) { return job.notes_of(name, shown); });
+        if (status == reached_end && is_film(arguments.out)) status = join(arguments, clock.count(), job);
     }
     return status == reached_end ? told_of(trajectory) : status;
 }
@@ -170,11 +232,16 @@ double within(const std::string& option, const std::string& text, double low, do
 void add_frames(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FramesArguments>();
     arguments->jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
-    CLI::App* command = program.add_subcommand("frames", "Numbered PNGs of the mechanism in motion beside its plots");
+    CLI::App* command =
+        program.add_subcommand("frames", "The mechanism in motion beside its plots: a film, or numbered PNGs");
     add_system_argument(*command, arguments->system);
-    command->add_option("--out", arguments->out, "the folder; frames of the same command that are in it stay")
+    command
+        ->add_option(
+            "--out", arguments->out,
+            "a film, which ffmpeg joins where it is installed; or the folder of the frames, where those of the "
+            "same command stay")
         ->required()
-        ->type_name("DIR");
+        ->type_name("F.mp4|F.gif|DIR");
     const auto add_number = [&](const char* option, double& target, double low, double high, const char* about) {
         command
             ->add_option_function<std::string>(
@@ -198,7 +265,10 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
             "--jobs", [arguments](const std::string& text) { arguments->jobs = jobs_from(text); },
             "processes that draw (default: as many as the machine has processors)")
         ->type_name("N");
+    add_step_option(*command, arguments->steps, arguments->allow_files);
+    command->add_flag("--dark", arguments->size.dark, "light on dark");
     command->add_flag("--overwrite", arguments->overwrite, "replace frames of other commands");
+    command->add_flag("--progress", arguments->progress, "lines of progress on standard error, for a program to read");
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status, &job] { status = draw_frames(*arguments, job); });

@@ -1,0 +1,127 @@
+// Films: what ffmpeg is told, where it is missing or fails, and how a process that draws is followed and stopped. Another
+// program of that name stands for ffmpeg: it writes its words down.
+#include "pictures/film.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "app/open.hpp"
+#include "app/program.hpp"
+#include "pictures/take_away.hpp"
+
+namespace achilles {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string short_film = "frames ball_on_sine --end 2 --fps 2.5 --size 320x200 --jobs 1 --out ";
+
+// A folder with an ffmpeg in it.
+struct Studio : test::Folder {
+    // `what` it does: with $last, the file that it is to make, and $said, where its words go.
+    explicit Studio(const std::string& what =
+                        "echo \"$@\" > $said; ls \"$(dirname \"$last\")\" | wc -l >> $said; echo film > \"$last\"") {
+        fs::create_directory(path() / "bin");
+        put("bin/ffmpeg", "#!/bin/sh\nsaid='" + (path() / "said").string() + "'\nfor last; do :; done\n" + what + "\n");
+        fs::permissions(path() / "bin/ffmpeg", fs::perms::owner_all);
+    }
+    std::string before() const { return "PATH=" + (path() / "bin").string() + ":$PATH "; }
+    test::Answer make(const std::string& arguments) const { return run(arguments, before()); }
+    std::string said() const { return test::content(path() / "said"); }
+};
+
+TEST(Film, is_joined_from_its_frames_which_go) {
+    const Studio studio;
+    const test::Answer answer = studio.make(short_film + "film.mp4");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    EXPECT_EQ(test::content(studio.path() / "film.mp4"), "film\n");
+    EXPECT_FALSE(fs::exists(studio.path() / "film.frames"));
+    EXPECT_NE(studio.said().find("-framerate 2.5 -i "), std::string::npos);
+    EXPECT_NE(studio.said().find("frame_%05d.png -pix_fmt yuv420p -y"), std::string::npos) << studio.said();
+    EXPECT_NE(studio.said().find("\n7\n"), std::string::npos) << "six frames and a log:\n" << studio.said();
+    ASSERT_EQ(studio.make(short_film + "film.gif").status, 0);
+    EXPECT_NE(studio.said().find("palettegen"), std::string::npos);
+}
+
+TEST(Film, without_ffmpeg_leaves_its_frames_and_the_command) {
+    const test::Folder folder;
+    // `timeout`, which the folder runs programs by, has to be found.
+    const test::Answer answer =
+        folder.run(short_film + "film.mp4 2>&1", "PATH=/usr/bin/none:$(dirname $(command -v timeout)) ");
+    if (fs::exists("/usr/bin/ffmpeg") || fs::exists("/bin/ffmpeg")) GTEST_SKIP() << "it stands beside timeout";
+    EXPECT_EQ(answer.status, 3);
+    EXPECT_FALSE(fs::exists(folder.path() / "film.mp4"));
+    EXPECT_TRUE(fs::exists(folder.path() / "film.frames/frame_00005.png"));
+    EXPECT_NE((answer.out + answer.err).find("ffmpeg is not installed"), std::string::npos);
+    EXPECT_NE((answer.out + answer.err).find("ffmpeg -framerate 2.5 -i "), std::string::npos);
+}
+
+// What was there stays, the frames too; they are not drawn again.
+TEST(Film, that_cannot_be_joined_changes_nothing) {
+    const Studio studio("echo no such codec >&2; exit 1");
+    studio.put("film.mp4", "another film");
+    const test::Answer answer = studio.make(short_film + "film.mp4");
+    EXPECT_EQ(answer.status, 3);
+    EXPECT_NE(answer.err.find("no such codec"), std::string::npos) << answer.err;
+    EXPECT_EQ(test::content(studio.path() / "film.mp4"), "another film");
+    EXPECT_TRUE(fs::exists(studio.path() / "film.frames/frame_00005.png"));
+    EXPECT_FALSE(fs::exists(studio.path() / "film.frames/joined.mp4"));
+}
+
+TEST(Film, goes_over_no_input_and_into_no_frames_of_another) {
+    const Studio studio;
+    studio.put("film.mp4", test::drop_text);
+    EXPECT_EQ(studio.make("frames ./film.mp4 --out film.mp4").status, 2);
+    EXPECT_EQ(test::content(studio.path() / "film.mp4"), test::drop_text);
+    ASSERT_EQ(studio.run("frames ball_on_sine --end 1 --fps 2 --size 320x200 --out other.frames").status, 0);
+    const test::Answer answer = studio.make(short_film + "other.mp4");
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_FALSE(fs::exists(studio.path() / "other.mp4"));
+}
+
+TEST(Film, shows_the_plots_that_commands_ask_for) {
+    const test::Folder folder;
+    const std::string words = "frames ball_on_sine --end 1 --fps 1 --size 320x200 --jobs 1 ";
+    ASSERT_EQ(folder.run(words + "--do 'grid 1 1' --do 'plot 1 x y' --out a").status, 0);
+    ASSERT_EQ(folder.run(words + "--out b").status, 0);
+    EXPECT_NE(test::content(folder.path() / "a/frame_00001.png"), test::content(folder.path() / "b/frame_00001.png"));
+    EXPECT_EQ(folder.run("reproduce a/frame_00001.png").status, 0);
+    EXPECT_EQ(folder.run(words + "--do 'grid 1 1' --view height --out c").status, 2);
+}
+
+// A session begins it beside itself, of the text that it runs, and can stop it.
+TEST(Film, of_a_session_is_followed_and_stopped) {
+    const test::Folder folder;
+    Session session = test::session("ball_on_sine");
+    session.apply(command::Text{session.document().text + "# not saved\n"});
+    session.apply(command::End{2000.0});
+    command::Export what{(folder.path() / "film.mp4").string(), false, 0};
+    what.pixels = 640;
+    EXPECT_THROW(begin_film(session, what), InputError) << "60000 frames";
+    what.fps = 1.0;
+    const auto film = begin_film(session, what);
+    for (int i = 0; i < 600 && film->progress().empty() && !film->update(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_NE(film->progress().find("/2001 frames"), std::string::npos) << film->progress() << film->said();
+    film->cancel();
+    EXPECT_TRUE(film->update());
+    EXPECT_TRUE(folder.files().empty()) << "a film that is given up leaves something";
+}
+
+TEST(Film, of_a_session_is_checked_before_it_is_begun) {
+    const test::Folder folder;
+    Session session = test::session("ball_on_sine");
+    const std::string file = (folder.path() / "film.mp4").string();
+    for (const char* line : {"plot 1", "mechanism", "width 85", "pixels 100", "fps 1e7"}) {
+        session.apply(parse_command("export " + file + " " + line));
+        EXPECT_NE(session.error(), "") << line;
+    }
+    folder.put("film.mp4", "there");
+    session.apply(parse_command("export " + file));
+    EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace achilles
