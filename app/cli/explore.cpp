@@ -22,7 +22,9 @@
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "panels/print.hpp"
+#include "pictures/film_job.hpp"
 #include "pictures/picture_ending.hpp"
+#include "pictures/thumbnails.hpp"
 #include "session/open_session.hpp"
 #include "surface/offscreen.hpp"
 #include "surface/window.hpp"
@@ -70,7 +72,8 @@ PanelState panel_state(bool in_window) {
     state.tours = known_tours();
     for (const ManualTopic& topic : manual_topics()) state.manual.push_back({topic.name, topic.title});
     state.manual_page = [](const std::string& topic) { return manual_page(topic); };
-    state.in_window = in_window;
+    state.in_window = state.reads_folders = in_window;
+    state.thumbnails = std::make_shared<Thumbnails>(find_system, !in_window);
     return state;
 }
 
@@ -92,9 +95,10 @@ class Clock {
 // One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
 class Explorer {
  public:
-    Explorer(Session& session, Window& window, const ExploreOptions& options)
+    Explorer(Session& session, Window& window, const ExploreOptions& options, std::unique_ptr<FilmJob>& film)
         : session_(session),
           window_(window),
+          film_(film),
           state_(panel_state(true)),
           scale_(options.scale),
           trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
@@ -106,6 +110,7 @@ class Explorer {
         }
         state_.recent = preferences_.recent();
         unsaved_ = left_unsaved();
+        state_.thumbnails->on_ready(Window::wake);
     }
 
     // What is done at the start, at a tour's pace: journals that the command line names, and what it says itself.
@@ -130,6 +135,7 @@ class Explorer {
         for (const Command& command : commands) take(command);
         take_answer();
         recover();
+        follow_film();
         keep_text();
         if (commands.empty() && !tour_.runs()) remember_looks();
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
@@ -142,7 +148,9 @@ class Explorer {
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
             session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
-            session_.under_way() != nullptr || derives_equations(state_) ? progress_seconds : 0.0);
+            session_.under_way() != nullptr || derives_equations(state_) || film_ || state_.thumbnails->is_busy()
+                ? progress_seconds
+                : 0.0);
     }
 
     // The window was closed: what is not saved was given up. Tells the record what is not told yet.
@@ -266,6 +274,26 @@ class Explorer {
         unsaved_.erase(unsaved_.begin());
     }
 
+    // A film that is drawn by another process: how far it is, and what became of it.
+    void follow_film() {
+        if (!film_) return state_.film.reset();
+        const bool is_given_up = state_.film && state_.film->is_given_up;
+        if (is_given_up) film_->cancel();
+        const bool has_ended = film_->update();
+        state_.film = FilmProgress{film_->film(), film_->progress(), film_->share(), false};
+        if (!has_ended) return;
+        const std::unique_ptr<FilmJob> film = std::move(film_);
+        state_.film.reset();
+        if (is_given_up)
+            session_.tell(film->film() + " is given up");
+        else if (film->is_made())
+            session_.tell(std::filesystem::absolute(film->film()).lexically_normal().string() + " is written");
+        else if (film->has_frames())
+            session_.tell(film->said());
+        else
+            session_.refuse(InputError(film->film(), {}, film->said()));
+    }
+
     // For the next window, once the hand rests. What a tour changes is not what the user wants to have.
     void remember_looks() {
         preferences_.keep(session_);
@@ -304,6 +332,7 @@ class Explorer {
 
     Session& session_;
     Window& window_;
+    std::unique_ptr<FilmJob>& film_;  // that is being drawn
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
@@ -332,11 +361,16 @@ int explore(const ExploreOptions& options) {
     library.find = find_system;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
+    std::unique_ptr<FilmJob> film;
+    library.film = [&film](std::unique_ptr<FilmJob> begun) {
+        if (film) throw InputError(begun->film(), {}, "another film is still being drawn", "wait for it, or stop it");
+        film = std::move(begun);
+    };
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
-    Explorer explorer(session, window, options);
+    Explorer explorer(session, window, options, film);
     session.set_patience(frame_patience);
     if (!journal.empty()) explorer.begin(journal);
     session.on_ready(Window::wake);

@@ -63,6 +63,7 @@ void show_recent(const Session& session, PanelState& state, Commands& commands) 
 void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
     if (menu_item("New", state)) request(session, state, command::New{}, commands);
     if (menu_item("Open\u2026", state)) ask_to_open(state);
+    if (menu_item("Gallery\u2026", state)) commands.emplace_back(command::Show{"gallery", true});
     if (menu_item("Save", state)) save_or_ask(session, state, commands);
     if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
     show_recent(session, state, commands);

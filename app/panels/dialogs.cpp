@@ -4,10 +4,11 @@
 #include <imgui_stdlib.h>
 
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 
 #include "panels/widgets.hpp"
+#include "pictures/film.hpp"
+#include "pictures/find_program.hpp"
 #include "pictures/picture_ending.hpp"
 #include "surface/imgui_version.hpp"
 
@@ -17,13 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr float dialog_width = 460.0F;
-
-// "~/a.toml" as a shell reads it.
-std::string expanded(const std::string& path) {
-    const char* home = std::getenv("HOME");
-    return home != nullptr && path.rfind("~/", 0) == 0 ? home + path.substr(1) : path;
-}
+constexpr float dialog_width = 560.0F;
 
 // A system file has an ending: "mine" is mine.toml.
 std::string as_system(const std::string& path) {
@@ -59,13 +54,26 @@ Verdict to_save(const Document& document, const std::string& path) {
     return {"There is a file of this name. Overwrite it?", true, true};
 }
 
-Verdict to_take_away(const std::string& path, int plot) {
-    const std::string ending = fs::path(path).extension().string();
-    const bool is_picture = !ending_of_picture(path).empty();
-    if (!path.empty() && plot > 0 && !is_picture) return {"end it in .svg, .png or .pdf", false, false};
-    if (!path.empty() && !is_picture && ending != ".json" && ending != ".csv" && ending != ".journal")
-        return {"end it in .svg, .png, .pdf, .json, .csv or .journal", false, false};
-    return to_save(Document(), path);
+Verdict to_take_away(const Session& session, const PanelState& state, const std::string& path) {
+    const TakeAwayForm& form = state.take_away;
+    const std::string ending = ending_of(path);
+    const bool is_picture = !ending_of_picture(path).empty(),
+               is_data = ending == "json" || ending == "csv" || ending == "journal";
+    const auto refuse = [](const std::string& why) { return Verdict{why, false, false}; };
+    if (!path.empty() && form.what == TakeAwayForm::What::film && !is_film(path))
+        return refuse("end it in .mp4 or .gif");
+    if (!path.empty() && form.what != TakeAwayForm::What::film && is_film(path))
+        return refuse("a film is one of the whole: choose it above");
+    if (!path.empty() && (form.plot > 0 || form.what == TakeAwayForm::What::mechanism) && !is_picture)
+        return refuse("end it in .svg, .png or .pdf");
+    if (!path.empty() && !is_picture && !is_film(path) && !is_data)
+        return refuse("end it in .svg, .png, .pdf, .json, .csv or .journal");
+    if (ending == "pdf" && find_program("rsvg-convert").empty())
+        return refuse("a PDF is written by rsvg-convert (librsvg2-bin), which is not installed");
+    const std::string note = is_data ? "" : take_away_note(session, state);
+    if (note.starts_with("! ")) return refuse(note.substr(2));
+    // A picture of the dialog knows no folder.
+    return state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
 }
 
 // "contact force" as a part of a file's name.
@@ -104,8 +112,8 @@ void dialog(const char* title, Content content) {
 bool button(const char* name, PanelState& state, bool enabled = true) {
     ImGui::BeginDisabled(!enabled);
     const bool pressed = ImGui::Button(name, {units(96.0F), 0.0F});
-    ImGui::EndDisabled();
     remember(state, std::string("dialog ") + name);
+    ImGui::EndDisabled();
     return pressed;
 }
 
@@ -123,14 +131,16 @@ void give_up(EditorState& editor) {
 
 bool is_escape() { return is_pressed(key::escape, false); }
 
-// The line to type a path in, what is to say about it, and two buttons. True when the path is chosen.
+const std::vector<std::string> systems_and_sessions{".toml", ".journal", ".svg", ".png", ".pdf"};
+const std::vector<std::string> taken_away{".svg", ".png", ".pdf", ".mp4", ".gif", ".json", ".csv", ".journal"};
+
+// The line to type a path in, its folder, what is to say about it, and two buttons. True when the path is chosen.
 template <class Judge>
-bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
+bool path_chosen(const char* action, const std::vector<std::string>& endings, PanelState& state, const Judge& judge) {
     EditorState& editor = state.editor;
-    if (ImGui::IsWindowAppearing() || editor.keeps_path) ImGui::SetKeyboardFocusHere();
-    ImGui::SetNextItemWidth(-1.0F);
-    const bool entered = ImGui::InputText("##path", &editor.path, ImGuiInputTextFlags_EnterReturnsTrue);
-    remember(state, "path");
+    const bool entered = path_line(state, ImGui::IsWindowAppearing() || editor.keeps_path);
+    const bool can_choose = std::string_view(action) == "Open";
+    const Browsed browsed = browse(state, endings, entered);
     const Verdict verdict = judge(expanded(editor.path));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
     ImGui::TextUnformatted(verdict.note.empty() ? " " : fitted(verdict.note, remaining().width).c_str());
@@ -138,22 +148,26 @@ bool path_chosen(const char* action, PanelState& state, const Judge& judge) {
     const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
     ImGui::SameLine();
     if (button("Cancel", state) || is_escape()) give_up(editor);
-    // Enter alone overwrites nothing.
-    const bool chosen = verdict.is_good && (pressed || (entered && !verdict.asks));
+    // Enter alone overwrites nothing, and what goes to a folder or a row only goes there.
+    const bool goes = entered && !verdict.asks && !browsed.has_taken;
+    const bool chosen = verdict.is_good && (pressed || goes || (can_choose && browsed.is_chosen));
     editor.keeps_path = entered && !chosen;  // Enter lets go of the line: hold it while it is wrong
     return chosen;
 }
 
 void open_dialog(PanelState& state, const Session& session, Commands& commands) {
-    if (!path_chosen("Open", state, to_open)) return;
+    if (!path_chosen("Open", systems_and_sessions, state, to_open)) return;
     close(state.editor);
-    request(session, state, command::Open{expanded(state.editor.path)}, commands);
+    const std::string path = expanded(state.editor.path);
+    // A journal and what a picture carries are replayed, as where they are dropped.
+    const bool replays = ending_of(path) == "journal" || !ending_of_picture(path).empty();
+    request(session, state, replays ? Command(command::Replay{path}) : Command(command::Open{path}), commands);
 }
 
 void save_dialog(PanelState& state, const Session& session, Commands& commands) {
     EditorState& editor = state.editor;
     const auto judge = [&](const std::string& path) { return to_save(session.document(), as_system(path)); };
-    if (!path_chosen("Save", state, judge)) return;
+    if (!path_chosen("Save", {".toml"}, state, judge)) return;
     const std::string file = as_system(expanded(editor.path));
     close(editor);
     hand_over_text(editor, commands);
@@ -167,12 +181,12 @@ void take_away_dialog(PanelState& state, const Session& session, Commands& comma
         if (button("Cancel", state) || is_escape()) give_up(state.editor);
         return;
     }
-    const int plot = state.editor.plot;
-    const auto judge = [plot](const std::string& path) { return to_take_away(path, plot); };
-    if (!path_chosen("Export", state, judge)) return;
+    show_take_away_form(session, state);
+    const auto judge = [&](const std::string& path) { return to_take_away(session, state, path); };
+    if (!path_chosen("Export", taken_away, state, judge)) return;
     const std::string file = expanded(state.editor.path);
     close(state.editor);
-    commands.emplace_back(command::Export{file, judge(file).asks, plot});
+    commands.emplace_back(take_away_command(state, file, judge(file).asks));
 }
 
 // Nothing keeps what waited any longer.
@@ -288,8 +302,9 @@ void ask_to_take_away(const Session& session, PanelState& state, const std::stri
         const std::string title = as_name(session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
         stem += "-" + (title.empty() ? fmt::format("plot_{}", plot) : title);
     }
-    state.editor.path = free_name(stem, ending);
-    state.editor.plot = plot;
+    state.take_away.plot = plot;
+    state.take_away.what = is_film(ending) ? TakeAwayForm::What::film : TakeAwayForm::What::plots;
+    state.editor.path = state.reads_folders ? free_name(stem, ending) : stem + ending;
     state.editor.asking = EditorState::Asking::take_away;
 }
 
@@ -319,6 +334,9 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     go_on_if_saved(session, editor, commands);
     take_keys(session, state, commands);
     using Asking = EditorState::Asking;
+    const bool wants_export = session.scene().shows("export");
+    if (wants_export && editor.asking == Asking::nothing) ask_to_take_away(session, state, ".svg");
+    const bool was_open = editor.asking == Asking::take_away;
     constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
                                                          {Asking::save, "Save the system"},
                                                          {Asking::unsaved, "Changes that are not saved"},
@@ -333,6 +351,8 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
     dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });
     dialog(titles[2].second, [&] { unsaved_dialog(state, session, commands); });
+    if (wants_export && was_open && editor.asking != Asking::take_away)
+        commands.emplace_back(command::Show{"export", false});
 }
 
 }  // namespace achilles

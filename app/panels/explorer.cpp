@@ -168,6 +168,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     state.width = double{ImGui::GetIO().DisplaySize.x}, state.height = double{ImGui::GetIO().DisplaySize.y};
     begin_change(state, commands);
     state.escape = escape_pressed();
+    begin_focus(state);
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
     // Of a slider that is shown no longer.
@@ -188,6 +189,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     show_manual(state);
     show_help(session, state, commands);
     show_palette(session, state, commands);
+    show_gallery(session, state, commands);
+    show_film(state);
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });
@@ -211,6 +214,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
     show_highlight(session.scene().highlight(), parts);
+    use_focus(state);
     use_keys(session, commands);
     use_view_keys(session, state, commands);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});

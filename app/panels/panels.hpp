@@ -13,6 +13,8 @@
 
 #include "figure/field.hpp"
 #include "paint/mechanism.hpp"
+#include "panels/browser.hpp"
+#include "panels/focus.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -34,7 +36,6 @@ struct EditorState {
     enum class Asking { nothing, open, save, unsaved, take_away };
     Asking asking = Asking::nothing;
     std::string path;                // typed in a dialog
-    int plot = 0;                    // that is taken away alone, from 1; 0: all of them
     bool keeps_path = false;         // what was entered was wrong: more letters go there
     std::optional<Command> waiting;  // to be done once the changes are saved or given up
     bool has_saved = false;          // the command to save has been given, what waits may follow
@@ -54,6 +55,23 @@ struct FileQuestion {
 struct RecoveryQuestion {
     std::string name, when;
     enum class Answer { none, recover, discard, later } answer = Answer::none;
+};
+
+// What is taken away, as the dialog has it; the path is the editor's.
+struct TakeAwayForm {
+    int plot = 0;  // from 1; 0: all of them
+    enum class What { plots, mechanism, film } what = What::plots;
+    double width = 0.0, height = 0.0, font = 8.0, dpi = 300.0;  // mm, pt; a width of 0: 1200 x 800 pixels
+    double fps = 30.0, speed = 0.0;                             // of a film; 0: as the player's
+    int pixels = 1280;                                          // its width
+    bool dark = false;
+};
+
+// A film that is being drawn beside the window, and what the user wants of it.
+struct FilmProgress {
+    std::string film, line;
+    double share = 0.0;
+    bool is_given_up = false;
 };
 
 // The menu of one plot: what is typed there.
@@ -145,6 +163,7 @@ struct ResultStrip {
 
 class EquationsView;
 class EnergyCourse;
+class Thumbnails;
 
 // What belongs to the view and not to the session, so is in no journal.
 struct PanelState {
@@ -160,10 +179,17 @@ struct PanelState {
     enum class OnTour { nothing, back, next, stop } tour_wants = OnTour::nothing;  // a button that was pressed
     int copies = 0;                    // the session's, that the clipboard has
     double width = 0.0, height = 0.0;  // of the surface, pixels: as the last frame found it
+    bool reads_folders = true;         // a picture shows no folder of anybody's
     bool in_window = false;            // a window may show how long the run took; a picture must not
     bool show_impacts = false;         // in the event list: each, not folded into one line
     std::set<std::size_t> unfolded;    // of folded impacts those that are listed all the same, by the first of them
     EditorState editor;
+    BrowserState browser;
+    bool browser_has_field = false;  // letters go to its path
+    TakeAwayForm take_away;
+    std::optional<FilmProgress> film;
+    std::shared_ptr<Thumbnails> thumbnails;  // of the gallery; null: it has none
+    Focus focus;
     std::optional<FileQuestion> file_question;  // asked until it is answered
     std::optional<RecoveryQuestion> recovery_question;
     TypedValue typed;
@@ -211,6 +237,21 @@ void show_palette(const Session& session, PanelState& state, Commands& commands)
 float caption_height(const Session& session, const PanelState& state, float width);
 void show_caption(const Session& session, PanelState& state, Commands& commands);
 void show_dialogs(const Session& session, PanelState& state, Commands& commands);
+// The field for a path, with the keys of a shell; true where Enter was pressed in it. Below it the folder: whether what was
+// entered or clicked went there, and whether it is a file that is meant.
+bool path_line(PanelState& state, bool focuses);
+struct Browsed {
+    bool has_taken = false, is_chosen = false;
+};
+Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool entered);
+// What is taken away and how large, above the path; below it what will be written. While the scene shows "export", too.
+void show_take_away_form(const Session& session, PanelState& state);
+std::string take_away_note(const Session& session, const PanelState& state);
+command::Export take_away_command(const PanelState& state, const std::string& file, bool overwrite);
+// A film on its way.
+void show_film(PanelState& state);
+// The systems in pictures (Ctrl+G), above everything else, while the scene shows "gallery".
+void show_gallery(const Session& session, PanelState& state, Commands& commands);
 void show_mechanism(const Session& session, PanelState& state, Commands& commands);
 // Under the mechanism: every Zeno point and release, with what is proved of its time.
 void show_results(const Session& session, PanelState& state, Commands& commands);

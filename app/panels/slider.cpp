@@ -181,6 +181,29 @@ bool dragged(Slider& slider, float width, PressedSlider& pressed) {
     return was_clicked(slider, pressed);
 }
 
+void begin_typing(const Slider& slider, TypedValue& typed);
+
+// Left and Right go a hundredth of the track, to a round number; with Shift a twentieth of that. Enter types, Delete puts
+// the file's value back.
+bool moved_by_keys(Slider& slider, PanelState& state) {
+    if (!owns_keys(state, slider.id)) return false;
+    const double before = slider.value;
+    const int steps = (is_pressed(key::right) ? 1 : 0) - (is_pressed(key::left) ? 1 : 0);
+    if (steps != 0) {
+        const bool is_fine = ImGui::GetIO().KeyShift;
+        const double step = 0.01 * (is_fine ? fine_gain : 1.0);
+        const double here = share_of(slider, slider.value * slider.factor);
+        const double share = std::clamp((std::isfinite(here) ? here : 0.0) + steps * step, 0.0, 1.0);
+        slider.value =
+            roundest(value_at(slider, share - 0.5 * step), value_at(slider, share + 0.5 * step)) / slider.factor;
+    }
+    if (is_pressed(key::remove, false) || is_pressed(key::backspace, false)) slider.value = slider.original;
+    if (is_pressed(key::enter, false)) begin_typing(slider, state.typed);
+    // Up and down lead away.
+    if (is_pressed(key::up) || is_pressed(key::down)) state.focus.is_owned = false;
+    return slider.value != before;
+}
+
 void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.id = slider.id;
     typed.text = fmt::format("{}", slider.factor == 1.0 ? slider.value : rounded(slider.value * slider.factor, 12));
@@ -303,7 +326,7 @@ bool moved(Slider& slider, PanelState& state) {
     bool changed = dragged(slider, track, state.pressed) || was_reset;
     remember(state, slider.id);
     tooltip(about);
-    changed = clicked(slider, state) || changed;
+    changed = moved_by_keys(slider, state) || clicked(slider, state) || changed;
     ImGui::SameLine(0.0F, 0.0F);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton(("##value of " + slider.id).c_str(),

@@ -43,6 +43,8 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
         const char *name, *ending, *about;
     };
     constexpr Kind kinds[] = {
+        {"Film as MP4\u2026", ".mp4",
+         "the mechanism in motion beside the plots; joined by ffmpeg, where it is installed"},
         {"Figure as SVG\u2026", ".svg", "the plots for print, with their origin: achilles reproduce makes them again"},
         {"Figure as PNG\u2026", ".png", "the same in pixels"},
         {"Run as JSON\u2026", ".json", "phases, events and certificates"},
@@ -96,7 +98,8 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     }
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
     const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_said > 1;
-    if (word_button("next", "go on at once (Enter)", state) || (keys && is_pressed(key::enter, false)))
+    if (word_button("next", "go on at once (Enter)", state) ||
+        (keys && !has_keys(state) && is_pressed(key::enter, false)))
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||

@@ -96,7 +96,7 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
                                 packed(text_color()));
     }
-    const bool space_pressed = !ImGui::GetIO().WantTextInput && is_pressed(' ', false);
+    const bool space_pressed = !ImGui::GetIO().WantTextInput && !has_keys(state) && is_pressed(' ', false);
     if (!pressed && !space_pressed) return;
     if (session.playing())
         commands.insert(commands.end(), {command::Pause{}, command::Seek{session.time()}});
@@ -139,6 +139,12 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
         commands.emplace_back(command::Speed{std::clamp(rounded, command::slowest, command::fastest)});
     }
     remember(state, "speed");
+    if (owns_keys(state, "speed")) {
+        const int steps = (is_pressed(key::right) ? 1 : 0) - (is_pressed(key::left) ? 1 : 0);
+        state.focus.is_owned = steps != 0;  // the other keys lead on
+        const double next = std::pow(10.0, 0.1 * std::round(10.0 * std::log10(session.scene().speed()) + steps));
+        if (steps != 0) commands.emplace_back(command::Speed{std::clamp(next, command::slowest, command::fastest)});
+    }
     tooltip("how fast the run is played; right click: as fast as it is");
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) commands.emplace_back(command::Speed{1.0});
     const std::string text = fmt::format("{:.3g}\u00d7", session.scene().speed());
@@ -161,8 +167,8 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
 }
 
 // Left and right step from event to event, Home and End go to the ends.
-void use_keys(const Session& session, Commands& commands) {
-    if (ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
+void use_keys(const Session& session, const PanelState& state, Commands& commands) {
+    if (has_keys(state) || ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
     if (is_pressed(key::left)) commands.emplace_back(command::Step{-1});
     if (is_pressed(key::right)) commands.emplace_back(command::Step{1});
     if (is_pressed(key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
@@ -236,7 +242,7 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
         ImGui::CalcTextSize(fmt::format("t = {:.3f} s", 8.0 + 10.0 * session.run().options.end_time).c_str()).x);
     speed_slider(session, state, commands);
     loop_box(session, state, commands);
-    use_keys(session, commands);
+    use_keys(session, state, commands);
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);

@@ -148,6 +148,7 @@ Rectangle remaining() {
 void remember(PanelState& state, const std::string& name) {
     const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
     state.places[name] = {low.x, low.y, size.x, size.y};
+    add_stop(state, name, state.places[name]);
 }
 
 bool dragged_to(double low, double high, float left, float width, double& value) {

@@ -46,8 +46,18 @@ bool menu_item(const char* name, PanelState& state, bool ticked = false, bool en
 void close_by_escape();
 // What is left to draw on in the current window.
 Rectangle remaining();
-// Where the last item is, under this name.
+// Where the last item is, under this name; what can be pressed there can have the keys.
 void remember(PanelState& state, const std::string& name);
+// Whether a control has the keys, and not the player.
+bool has_keys(const PanelState& state);
+// Whether it is this one, which then does itself what they say.
+bool owns_keys(PanelState& state, const std::string& name);
+// Of a frame: before its first control and behind its last.
+void begin_focus(PanelState& state);
+void use_focus(PanelState& state);
+void add_stop(PanelState& state, const std::string& name, const Rectangle& area);
+// Writes a path into the field of a dialog.
+void use_path(PanelState& state, const std::string& path);
 // The instant under the mouse, while the last item is dragged.
 bool dragged_to(double low, double high, float left, float width, double& value);
 // What is wrong with an input, as the command line says it, and how high that is; the colour behind it.

@@ -243,6 +243,43 @@ void stroke_rectangle(ImDrawList* list, const ImVec2& low, const ImVec2& high, u
 
 #endif
 
+unsigned item_id() { return GImGui->LastItemData.ID; }
+
+bool item_is_enabled() { return (GImGui->CurrentItemFlags & ImGuiItemFlags_Disabled) == 0; }
+
+unsigned window_of_item() { return GImGui->CurrentWindow->RootWindow->ID; }
+
+void scroll_to_item() {
+    ImGuiWindow* window = GImGui->CurrentWindow;
+    const ImRect& item = GImGui->LastItemData.Rect;
+    if (item.Min.y < window->InnerRect.Min.y || item.Max.y > window->InnerRect.Max.y) ImGui::SetScrollHereY(0.5F);
+}
+
+unsigned active_item() { return GImGui->ActiveId; }
+
+void let_go_of_item() { ImGui::ClearActiveID(); }
+
+void press_item(unsigned id, bool takes_letters) {
+    GImGui->NavNextActivateId = id;
+    GImGui->NavNextActivateFlags = takes_letters ? ImGuiActivateFlags_PreferInput : ImGuiActivateFlags_None;
+}
+
+unsigned front_dialog() {
+    const auto& open = GImGui->OpenPopupStack;
+    if (open.Size == 0) return 0;
+    const ImGuiWindow* front = open.back().Window;
+    return front != nullptr && (front->Flags & ImGuiWindowFlags_Modal) != 0 ? front->ID : 0;
+}
+
+void walk_menus_by_keys(bool walk) {
+    int& flags = ImGui::GetIO().ConfigFlags;
+    flags = walk ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
+#if IMGUI_VERSION_NUM < 18900
+    // Space alone presses there.
+    if (walk && GImGui->NavId != 0 && is_pressed(key::enter, false)) press_item(GImGui->NavId, false);
+#endif
+}
+
 bool begin_padded_child(const char* name, const ImVec2& size) {
 #if IMGUI_VERSION_NUM < 19000
     return ImGui::BeginChild(name, size, false, ImGuiWindowFlags_AlwaysUseWindowPadding);

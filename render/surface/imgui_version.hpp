@@ -77,6 +77,21 @@ bool begin_padded_child(const char* name, const ImVec2& size);
 // Whether a dialog stands before the current window. One that has opened in this frame does not keep the mouse from it yet, and
 // a tooltip that appears then ends the program.
 bool is_behind_dialog();
+// Of the last item: its number, 0 where it has none, whether it can be pressed, and the number of the window that it is in,
+// or that this is part of. And a scroll that brings it into view.
+unsigned item_id();
+bool item_is_enabled();
+unsigned window_of_item();
+void scroll_to_item();
+// The item that is held or typed in, 0: none; lets go of it.
+unsigned active_item();
+void let_go_of_item();
+// Presses an item in the next frame; a field for letters has them then.
+void press_item(unsigned id, bool takes_letters);
+// The dialog in front of everything that can be reached, the number of its window; 0: there is none, or a menu before it.
+unsigned front_dialog();
+// Whether ImGui's own keys walk through what is open: arrows, Enter. Once a frame.
+void walk_menus_by_keys(bool walk);
 
 // Of the text field that has the hand: how far it is scrolled sideways, in pixels, and the line of its cursor, from 1.
 // `text` is what the field shows.

@@ -233,6 +233,8 @@ const State states[] = {
      {"show accuracy", "set g 3", "eps 1e-3 1e-4 1e-5", "method dopri5", "memory 2e8"}},
     {"the help", "ball_on_sine", {"show help"}},
     {"all commands", "ball_on_sine", {"show palette"}},
+    {"taking away", "ball_on_sine", {"show export"}},
+    {"the gallery", "ball_on_sine", {"show gallery"}},
     {"a long usage", "ball_on_sine", {"find \"export\""}},
     {"no command", "ball_on_sine", {"find \"qqq\""}},
     {"systems to open", "ball_on_sine", {"find \"open \""}},

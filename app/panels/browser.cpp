@@ -1,0 +1,228 @@
+#include "panels/browser.hpp"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+
+#include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
+
+namespace achilles {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int shown_rows = 8;
+constexpr double reread_seconds = 1.0;
+
+std::string small(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+}  // namespace
+
+PathParts parts_of(const std::string& path) {
+    const std::size_t slash = path.rfind('/');
+    if (slash == std::string::npos) return {"", path};
+    return {path.substr(0, slash + 1), path.substr(slash + 1)};
+}
+
+std::string expanded(const std::string& path) {
+    const char* home = std::getenv("HOME");
+    return home != nullptr && path.rfind("~/", 0) == 0 ? home + path.substr(1) : path;
+}
+
+std::vector<FolderEntry> entries_of(const std::string& folder, const std::vector<std::string>& endings, bool hidden) {
+    std::vector<FolderEntry> entries;
+    std::error_code problem;
+    fs::directory_iterator at(folder.empty() ? "." : folder, fs::directory_options::skip_permission_denied, problem);
+    constexpr std::size_t most_visited = 20000;  // a frame waits for this
+    for (std::size_t n = 0; !problem && at != fs::directory_iterator() && n < most_visited;
+         at.increment(problem), ++n) {
+        if (entries.size() == most_entries) break;
+        const std::string name = at->path().filename().string();
+        std::error_code gone;
+        const bool is_folder = at->is_directory(gone);
+        const bool fits = is_folder || std::find(endings.begin(), endings.end(),
+                                                 small(at->path().extension().string())) != endings.end();
+        if (fits && (hidden || name[0] != '.')) entries.push_back({name, is_folder});
+    }
+    std::sort(entries.begin(), entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
+        return a.is_folder != b.is_folder ? a.is_folder : a.name < b.name;
+    });
+    return entries;
+}
+
+std::vector<FolderEntry> filtered(const std::vector<FolderEntry>& entries, std::string_view letters) {
+    const std::string wanted = small(std::string(letters));
+    std::vector<FolderEntry> first, others;
+    for (const FolderEntry& entry : entries) {
+        const std::size_t at = small(entry.name).find(wanted);
+        if (at != std::string::npos) (at == 0 ? first : others).push_back(entry);
+    }
+    first.insert(first.end(), others.begin(), others.end());
+    return first;
+}
+
+std::string with_entry(const std::string& path, const FolderEntry& entry) {
+    return parts_of(path).folder + entry.name + (entry.is_folder ? "/" : "");
+}
+
+std::string one_up(const std::string& folder) {
+    if (folder.empty() || folder == "/") return folder.empty() ? "../" : folder;
+    const std::string without = folder.substr(0, folder.size() - 1);
+    const PathParts parts = parts_of(without);
+    // Above the folder where the explorer was started.
+    if (parts.name == "..") return folder + "../";
+    return parts.name == "~" ? one_up(expanded("~/")) : parts.folder;
+}
+
+std::string completed(const std::string& path, const std::vector<FolderEntry>& entries) {
+    const PathParts parts = parts_of(path);
+    std::vector<FolderEntry> fitting;
+    for (const FolderEntry& entry : entries)
+        if (entry.name.starts_with(parts.name)) fitting.push_back(entry);
+    if (fitting.size() == 1) return with_entry(path, fitting[0]);
+    if (fitting.empty()) return path;
+    std::string common = fitting[0].name;
+    for (const FolderEntry& entry : fitting)
+        common.resize(static_cast<std::size_t>(
+            std::mismatch(common.begin(), common.end(), entry.name.begin(), entry.name.end()).first - common.begin()));
+    return parts.folder + common;
+}
+
+namespace {
+
+void use(BrowserState& browser, std::string line) {
+    browser.line = std::move(line);
+    browser.rewrites = browser.focuses = true;
+    browser.chosen = -1;
+}
+
+// Keys of the field: Tab completes; Backspace behind a slash goes up a folder. The text is ours by way of ImGui alone.
+int take_field_keys(ImGuiInputTextCallbackData* data) {
+    auto& browser = *static_cast<BrowserState*>(data->UserData);
+    const std::string text(data->Buf, static_cast<std::size_t>(data->BufTextLen));
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
+        const std::string more = completed(text, browser.all);
+        browser.tab = more == text;
+        if (more != text) use(browser, more);
+    }
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) {
+        browser.chosen = -1;
+        const std::string before = browser.folder + browser.letters;
+        if (before.ends_with('/') && text + "/" == before) use(browser, one_up(before));
+    }
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways && browser.rewrites) {
+        data->DeleteChars(0, data->BufTextLen);
+        data->InsertChars(0, browser.line.c_str());
+        data->CursorPos = data->SelectionStart = data->SelectionEnd = data->BufTextLen;
+        browser.rewrites = browser.focuses = false;
+    }
+    return 0;
+}
+
+// The rows are of what stands in the field; a folder is read again now and then: others may write there.
+void list(BrowserState& browser, const std::string& path, const std::vector<std::string>& endings) {
+    const PathParts parts = parts_of(path);
+    const bool is_hidden = parts.name.starts_with('.'), is_late = ImGui::GetTime() - browser.read_at > reread_seconds;
+    if (browser.read_at < 0.0 || is_late || browser.folder != parts.folder || browser.is_hidden != is_hidden ||
+        browser.endings != endings) {
+        browser.all = entries_of(expanded(parts.folder), endings, is_hidden);
+        browser.read_at = ImGui::GetTime();
+    }
+    browser.folder = parts.folder;
+    browser.letters = parts.name;
+    browser.endings = endings;
+    browser.is_hidden = is_hidden;
+    // A name that is there already, or that nobody typed, narrows nothing: what stands beside it is seen.
+    const bool is_whole = std::any_of(browser.all.begin(), browser.all.end(),
+                                      [&](const FolderEntry& entry) { return entry.name == parts.name; });
+    browser.rows = is_whole || path == browser.line ? browser.all : filtered(browser.all, parts.name);
+    browser.chosen = std::min(browser.chosen, static_cast<int>(browser.rows.size()) - 1);
+}
+
+void choose(BrowserState& browser) {
+    const int count = static_cast<int>(browser.rows.size()), before = browser.chosen;
+    if (count == 0) return;
+    if (is_pressed(key::down)) browser.chosen = std::min(browser.chosen + 1, count - 1);
+    if (is_pressed(key::up)) browser.chosen = std::max(browser.chosen - 1, -1);
+    if (is_pressed(key::page_down)) browser.chosen = std::min(browser.chosen + shown_rows, count - 1);
+    if (is_pressed(key::page_up)) browser.chosen = std::max(browser.chosen - shown_rows, 0);
+    browser.scrolls = browser.scrolls || browser.chosen != before;
+}
+
+// The row that was clicked; -1: none.
+int show_rows(BrowserState& browser, PanelState& state) {
+    int clicked = -1;
+    const float height = static_cast<float>(shown_rows) * ImGui::GetTextLineHeightWithSpacing() + units(8.0F);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    begin_padded_child("folder", {0.0F, height});
+    if (browser.rows.empty()) ImGui::TextDisabled("nothing here to choose");
+    for (int i = 0; i < static_cast<int>(browser.rows.size()); ++i) {
+        const FolderEntry& entry = browser.rows[static_cast<std::size_t>(i)];
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        ImGui::PushID(i);
+        if (ImGui::Selectable("##row", i == browser.chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = i;
+        ImGui::PopID();
+        if (ImGui::IsItemVisible()) {
+            remember(state, "file " + entry.name);
+            const std::string name = entry.name + (entry.is_folder ? "/" : "");
+            ImGui::GetWindowDrawList()->AddText(at, packed(entry.is_folder ? text_color() : faint_color()),
+                                                fitted(name, ImGui::GetContentRegionAvail().x).c_str());
+        }
+        if (i == browser.chosen && browser.scrolls) ImGui::SetScrollHereY(0.5F);
+    }
+    browser.scrolls = false;
+    ImGui::EndChild();
+    ImGui::PopStyleColor();
+    return clicked;
+}
+
+}  // namespace
+
+bool path_line(PanelState& state, bool focuses) {
+    BrowserState& browser = state.browser;
+    std::string& path = state.editor.path;
+    if (ImGui::IsWindowAppearing()) browser.line = path;  // what is proposed
+    if (focuses || browser.focuses) ImGui::SetKeyboardFocusHere();
+    // Where the field has not the hand, its text is ours; when it gets it, the cursor goes behind that.
+    if (browser.rewrites && !state.browser_has_field) path = browser.line;
+    browser.focuses = browser.tab = false;
+    ImGui::SetNextItemWidth(-1.0F);
+    constexpr ImGuiInputTextFlags flags = ImGuiInputTextFlags_EnterReturnsTrue |
+                                          ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackEdit |
+                                          ImGuiInputTextFlags_CallbackAlways;
+    const bool entered = ImGui::InputText("##path", &path, flags, take_field_keys, &browser);
+    state.browser_has_field = ImGui::IsItemActive();
+    remember(state, "path");
+    return entered;
+}
+
+Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool entered) {
+    BrowserState& browser = state.browser;
+    const std::string& path = state.editor.path;
+    if (!state.reads_folders) return {};
+    list(browser, path, endings);
+    choose(browser);
+    const int clicked = show_rows(browser, state), taken = clicked >= 0 ? clicked : entered ? browser.chosen : -1;
+    std::error_code ignored;
+    if (taken < 0) {
+        const bool is_folder =
+            entered && !path.empty() && !path.ends_with('/') && fs::is_directory(expanded(path), ignored);
+        if (is_folder) use(browser, path + "/");
+        return {is_folder, false};
+    }
+    const FolderEntry entry = browser.rows[static_cast<std::size_t>(taken)];
+    use(browser, with_entry(path, entry));
+    if (!state.browser_has_field) state.editor.path = browser.line;
+    return {true, !entry.is_folder && (entered || ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left))};
+}
+
+}  // namespace achilles

@@ -1,0 +1,265 @@
+// What is taken away, in which size, and what that comes to: the upper part of the dialog; and a film on its way.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "panels/print.hpp"
+#include "panels/widgets.hpp"
+#include "pictures/find_program.hpp"
+#include "pictures/picture_ending.hpp"
+#include "pictures/take_away.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+using What = TakeAwayForm::What;
+
+constexpr float names_width = 92.0F;
+
+void row(const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width));
+}
+
+// One of several, side by side; the chosen one is down.
+bool word(const std::string& name, bool is_down, PanelState& state, const std::string& about = {}) {
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(is_down ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
+    const bool pressed = ImGui::Button(name.c_str());
+    ImGui::PopStyleColor();
+    remember(state, "take " + name);
+    tooltip(about);
+    ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+    return pressed;
+}
+
+void number_field(const char* name, double& value, const char* unit, PanelState& state) {
+    ImGui::SetNextItemWidth(units(58.0F));
+    ImGui::InputDouble((std::string("##") + name).c_str(), &value, 0.0, 0.0, "%.4g");
+    remember(state, std::string("take field ") + name);
+    ImGui::SameLine(0.0F, units(5.0F));
+    ImGui::TextUnformatted(unit);
+    ImGui::SameLine(0.0F, units(14.0F));
+}
+
+std::string name_of(const Session& session, int plot) {
+    return fmt::format("plot {}: {}", plot, session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
+}
+
+// The path ends as what is chosen says.
+void end_in(PanelState& state, const std::string& ending) {
+    std::filesystem::path path(state.editor.path);
+    use_path(state, path.replace_extension("." + ending).string());
+}
+
+void choose_what(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    const int count = static_cast<int>(session.plotted().list().size());
+    form.plot = std::min(form.plot, count);
+    row("what");
+    ImGui::SetNextItemWidth(-1.0F);
+    const std::string now = form.what == What::film        ? "a film: the mechanism in motion beside the plots"
+                            : form.what == What::mechanism ? "the mechanism as it is now"
+                            : form.plot > 0                ? name_of(session, form.plot)
+                            : count == 1                   ? "the plot"
+                                                           : "all plots";
+    const bool open = ImGui::BeginCombo("##what", fitted(now, remaining().width - units(40.0F)).c_str());
+    remember(state, "take what");
+    if (!open) return;
+    const auto take = [&](const std::string& name, What what, int plot) {
+        const bool chosen = ImGui::Selectable(name.c_str(), form.what == what && form.plot == plot);
+        remember(state, "take " + name);
+        if (!chosen) return;
+        if ((what == What::film) != (form.what == What::film)) end_in(state, what == What::film ? "mp4" : "svg");
+        form.what = what;
+        form.plot = plot;
+    };
+    take("all plots", What::plots, 0);
+    for (int plot = 1; count > 1 && plot <= count; ++plot) take(name_of(session, plot), What::plots, plot);
+    if (!session.mechanism().is_empty()) take("the mechanism as it is now", What::mechanism, 0);
+    take("a film: the mechanism in motion beside the plots", What::film, 0);
+    close_by_escape();
+    ImGui::EndCombo();
+}
+
+void choose_kind(PanelState& state) {
+    const std::string ending = ending_of(state.editor.path);
+    row("kind");
+    if (state.take_away.what == What::film) {
+        const std::string by = find_program("ffmpeg").empty()
+                                   ? "ffmpeg, which would join the pictures, is not installed: they stay in a folder"
+                                   : "joined by ffmpeg";
+        for (const char* kind : {"mp4", "gif"})
+            if (word(kind, ending == kind, state, by)) end_in(state, kind);
+    } else {
+        for (const auto& [kind, about] :
+             {std::pair{"svg", "lines and text, for papers and for editing"},
+              std::pair{"pdf", "the same for LaTeX, by rsvg-convert of librsvg"}, std::pair{"png", "pixels"}})
+            if (word(kind, ending == kind, state, about)) end_in(state, kind);
+    }
+    ImGui::SameLine(0.0F, units(14.0F));
+    ImGui::Checkbox("dark", &state.take_away.dark);
+    remember(state, "take dark");
+    tooltip("light on dark, for a screen; paper is white");
+}
+
+void choose_page(PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("for");
+    const auto widths = column_widths();
+    const auto chosen =
+        std::find_if(widths.begin(), widths.end(), [&](const ColumnWidth& one) { return one.width == form.width; });
+    const std::string pixels = "a screen (1200 \u00d7 800 pixels)";
+    const std::string now = form.width == 0.0        ? pixels
+                            : chosen == widths.end() ? "another width"
+                                                     : std::string(chosen->name);
+    ImGui::SetNextItemWidth(-1.0F);
+    const bool open = ImGui::BeginCombo("##page", now.c_str());
+    remember(state, "take page");
+    if (open) {
+        if (ImGui::Selectable(pixels.c_str(), form.width == 0.0)) form.width = form.height = 0.0;
+        remember(state, "take screen");
+        for (const ColumnWidth& one : widths) {
+            const std::string name(one.name);
+            if (ImGui::Selectable(name.c_str(), form.width == one.width))
+                form.width = one.width, form.height = 0.0, form.font = one.font;
+            remember(state, "take " + name);
+        }
+        if (ImGui::Selectable("another width", chosen == widths.end() && form.width != 0.0)) form.width = 100.0;
+        remember(state, "take another width");
+        close_by_escape();
+        ImGui::EndCombo();
+    }
+    if (form.width == 0.0) return;
+    row("width");
+    number_field("width", form.width, "mm", state);
+    ImGui::TextUnformatted("height");
+    ImGui::SameLine(0.0F, units(5.0F));
+    number_field("height", form.height, form.height == 0.0 ? "fits" : "mm", state);
+    ImGui::TextUnformatted("text");
+    ImGui::SameLine(0.0F, units(5.0F));
+    number_field("font", form.font, "pt", state);
+    if (ending_of(state.editor.path) == "png") number_field("dpi", form.dpi, "dpi", state);
+    ImGui::NewLine();
+}
+
+void choose_film(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("width");
+    for (const int pixels : {640, 1280, 1920, 2560})
+        if (word(fmt::format("{}", pixels), form.pixels == pixels, state)) form.pixels = pixels;
+    ImGui::TextUnformatted("pixels");
+    row("time");
+    double speed = form.speed > 0.0 ? form.speed : session.scene().speed();
+    const double before = speed;
+    number_field("speed", speed, "\u00d7 its speed", state);
+    if (speed != before) form.speed = std::max(speed, 0.0);
+    number_field("fps", form.fps, "pictures a second", state);
+    ImGui::NewLine();
+}
+
+}  // namespace
+
+void use_path(PanelState& state, const std::string& path) {
+    state.editor.path = path;
+    state.browser.line = path;
+    state.browser.rewrites = true;
+}
+
+void show_take_away_form(const Session& session, PanelState& state) {
+    const std::string ending = ending_of(state.editor.path);
+    if (ending == "json" || ending == "csv" || ending == "journal") return;
+    choose_what(session, state);
+    choose_kind(state);
+    if (state.take_away.what == What::film)
+        choose_film(session, state);
+    else
+        choose_page(state);
+    const std::string note = take_away_note(session, state);
+    row("comes to");
+    const bool is_wrong = note.starts_with("! ");
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(is_wrong ? error_color() : text_color()));
+    ImGui::TextUnformatted(fitted(is_wrong ? note.substr(2) : note, remaining().width).c_str());
+    ImGui::PopStyleColor();
+    ImGui::Dummy({0.0F, units(4.0F)});
+}
+
+command::Export take_away_command(const PanelState& state, const std::string& file, bool overwrite) {
+    const TakeAwayForm& form = state.take_away;
+    command::Export what{file, overwrite, 0};
+    if (form.what == What::film) {
+        what.fps = form.fps == 30.0 ? 0.0 : form.fps;
+        what.speed = form.speed;
+        what.pixels = form.pixels == 1280 ? 0 : form.pixels;
+        what.dark = form.dark;
+        return what;
+    }
+    if (ending_of_picture(file).empty()) return what;
+    what.plot = form.plot;
+    what.mechanism = form.what == What::mechanism;
+    what.dark = form.dark;
+    if (!(form.width > 0.0)) return what;
+    what.width = form.width;
+    what.height = form.height;
+    what.font = form.font == default_font ? 0.0 : form.font;
+    if (ending_of(file) == "png") what.dpi = form.dpi == default_dpi ? 0.0 : form.dpi;
+    return what;
+}
+
+std::string take_away_note(const Session& session, const PanelState& state) {
+    const command::Export what = take_away_command(state, state.editor.path, false);
+    if (state.take_away.what == What::film) {
+        const FilmExtent extent = extent_of(session, what);
+        const double fps = what.fps > 0.0 ? what.fps : 30.0;
+        if (!(extent.frames <= most_film_frames) || !(fps > 0.0)) return "! more pictures than a film may have";
+        if (extent.width < 320 || extent.width > 3840) return "! a film is 320 to 3840 pixels wide";
+        return fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s{}", extent.width, extent.height, extent.frames,
+                           extent.frames / fps,
+                           find_program("ffmpeg").empty() ? "; no ffmpeg here: the pictures stay" : "");
+    }
+    const std::string format = ending_of_picture(state.editor.path);
+    const Page page{what.width, what.height, what.font, what.dpi};
+    if (page.width == 0.0) {
+        if (state.take_away.width != 0.0) return "! a width is above 0";
+        return format == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)
+                               : "1200 \u00d7 800 px";
+    }
+    try {
+        check(page, "");
+        const Plots& plots = session.plotted();
+        const double shape = what.mechanism  ? shape_of(session.limits())
+                             : what.plot > 0 ? shape_of(1, 1)
+                                             : shape_of(static_cast<int>(plots.list().size()), plots.columns());
+        on_page(page, format, 1.0, shape);
+        return fmt::format("{}, text of {:.3g} pt", told(page, format, shape),
+                           page.font > 0.0 ? page.font : default_font);
+    } catch (const InputError& problem) {
+        return "! " + problem.message;
+    }
+}
+
+void show_film(PanelState& state) {
+    if (!state.film) return;
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * all.x, all.y - units(44.0F)}, ImGuiCond_Always, {0.5F, 1.0F});
+    constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                                       ImGuiWindowFlags_NoNav;
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetColorU32(ImGuiCol_PopupBg));
+    ImGui::Begin("film", nullptr, flags);
+    const std::string name = std::filesystem::path(state.film->film).filename().string();
+    ImGui::TextUnformatted(fitted(name + "   " + state.film->line, units(420.0F)).c_str());
+    ImGui::ProgressBar(static_cast<float>(state.film->share), {units(330.0F), ImGui::GetFrameHeight()}, "");
+    ImGui::SameLine();
+    if (ImGui::Button("Stop", {units(80.0F), 0.0F})) state.film->is_given_up = true;
+    remember(state, "film Stop");
+    ImGui::End();
+    ImGui::PopStyleColor();
+}
+
+}  // namespace achilles

@@ -1,0 +1,93 @@
+#include "pictures/thumbnails.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "figure/body.hpp"
+#include "figure/compose.hpp"
+#include "figure/mechanism.hpp"
+#include "model/read_system.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Where the first bouncing has come to rest; else a third of the run.
+double telling_time(const Trajectory& trajectory) {
+    const auto zeno = std::find_if(trajectory.events.begin(), trajectory.events.end(),
+                                   [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    const double start = trajectory.run.options.start_time;
+    return zeno != trajectory.events.end() ? zeno->t : start + (trajectory.end_time - start) / 3.0;
+}
+
+Thumbnail drawn(const std::filesystem::path& system) {
+    const auto model = std::make_shared<const Model>(read_system(system));
+    Run run = model->default_run();
+    run.options.max_impacts = std::min(run.options.max_impacts, 2000);  // nobody waits for a small picture
+    const Trajectory trajectory = simulate(model, run);
+    const Mechanism mechanism(*model);
+    if (mechanism.is_empty()) return {};
+    const std::vector<Sample> samples = plot_samples(trajectory);
+    const Sample now = Sampler(trajectory).at(telling_time(trajectory));
+    // As much of the world as was met until then.
+    std::vector<Sample> past;
+    for (const Sample& sample : samples)
+        if (sample.t <= now.t || past.size() < 2) past.push_back(sample);
+    const Drawing seen = mechanism.limits(trajectory, past);
+    const Trail trail = trail_of(mechanism, trajectory, samples);
+    const auto in = [&](const Theme& theme) {
+        Drawing drawing = mechanism.draw(now.t, now.state, run.parameters, seen, theme, now.held);
+        add_trail(drawing.shapes, trail, samples, now.t, theme);
+        return drawing;
+    };
+    return {in(light_theme()), in(dark_theme())};
+}
+
+}  // namespace
+
+Thumbnail thumbnail_of(const std::filesystem::path& system) {
+    try {
+        return drawn(system);
+    } catch (const std::exception&) {
+        return {};
+    }
+}
+
+Thumbnails::Thumbnails(std::function<std::filesystem::path(const std::string&)> find, bool waits)
+    : find_(std::move(find)), waits_(waits) {}
+
+const Thumbnail* Thumbnails::find(const std::string& system) {
+    if (const auto found = made_.find(system); found != made_.end()) return &found->second;
+    const auto file = [&]() -> std::filesystem::path {
+        try {
+            return find_(system);
+        } catch (const std::exception&) {
+            return {};
+        }
+    };
+    if (waits_) return &made_.emplace(system, thumbnail_of(file())).first->second;
+    if (system != making_ && std::find(wanted_.begin(), wanted_.end(), system) == wanted_.end())
+        wanted_.push_back(system);
+    return nullptr;
+}
+
+void Thumbnails::update() {
+    if (!making_.empty()) {
+        const auto ready = worker_.take(0.0);
+        if (!ready) return;
+        made_.emplace(std::exchange(making_, {}), **ready);
+    }
+    if (wanted_.empty()) return;
+    making_ = wanted_.front();
+    wanted_.clear();  // who is still looked for is asked for again
+    std::filesystem::path file;
+    try {
+        file = find_(making_);
+    } catch (const std::exception&) {
+    }
+    worker_.start([file](const std::stop_token&) { return std::make_shared<Thumbnail>(thumbnail_of(file)); });
+}
+
+}  // namespace achilles

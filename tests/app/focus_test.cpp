@@ -1,0 +1,154 @@
+// Who has the keys: the player, or after Tab a control.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/hands.hpp"
+
+namespace achilles {
+namespace {
+
+Stop stop(const char* name, float x, float y, unsigned window = 1) { return {name, {x, y, 10.0F, 10.0F}, 1, window}; }
+
+TEST(Focus, an_arrow_goes_to_what_lies_there) {
+    const std::vector<Stop> stops{stop("here", 100, 100), stop("right", 150, 104), stop("far right", 400, 100),
+                                  stop("below", 90, 160), stop("elsewhere", 120, 100, 2)};
+    const auto name = [&](int at) { return at < 0 ? std::string() : stops[static_cast<std::size_t>(at)].name; };
+    EXPECT_EQ(name(neighbour(stops, stops[0], 1, 0)), "right");
+    EXPECT_EQ(name(neighbour(stops, stops[1], 1, 0)), "far right");
+    EXPECT_EQ(name(neighbour(stops, stops[0], 0, 1)), "below");
+    EXPECT_EQ(name(neighbour(stops, stops[3], 0, -1)), "here");
+    EXPECT_EQ(name(neighbour(stops, stops[0], -1, 0)), "");
+    EXPECT_EQ(name(neighbour(stops, stops[0], 0, -1)), "");
+}
+
+TEST(Focus, the_player_has_the_keys_until_Tab_and_again_after_Escape) {
+    test::Hands hands("ball_on_sine");
+    hands.press(' ');
+    EXPECT_TRUE(hands.session.playing());
+    hands.press(' ');
+    ASSERT_FALSE(hands.session.playing());
+    hands.press(key::home);
+    hands.press(key::right);
+    const double first = hands.session.time();
+    ASSERT_GT(first, 0.0);
+    hands.press(key::tab);
+    ASSERT_EQ(hands.state.focus.at, "menu File");
+    hands.press(key::right);
+    EXPECT_EQ(hands.state.focus.at, "menu Edit");
+    EXPECT_EQ(hands.session.time(), first) << "the arrow moved the time as well";
+    hands.press(key::escape);
+    EXPECT_EQ(hands.state.focus.at, "");
+    hands.press(key::right);
+    EXPECT_GT(hands.session.time(), first);
+    hands.press(' ');
+    EXPECT_TRUE(hands.session.playing());
+}
+
+TEST(Focus, the_mouse_gives_the_keys_back) {
+    test::Hands hands("ball_on_sine");
+    hands.press(key::tab);
+    ASSERT_NE(hands.state.focus.at, "");
+    hands.click("play");
+    EXPECT_EQ(hands.state.focus.at, "");
+    EXPECT_TRUE(hands.session.playing());
+}
+
+// Round once: every control of the window is met, each once, and Shift+Tab goes back.
+TEST(Focus, Tab_walks_everything_and_comes_back) {
+    test::Hands hands("ball_on_sine");
+    std::set<std::string> met;
+    hands.press(key::tab);
+    const std::string first = hands.state.focus.at;
+    while (met.insert(hands.state.focus.at).second) hands.press(key::tab);
+    EXPECT_EQ(hands.state.focus.at, first);
+    for (const char* name :
+         {"menu Help", "switch theme", "systems", "editor", "set g", "play", "pin", "loop", "show trail"})
+        EXPECT_TRUE(met.contains(name)) << name;
+    EXPECT_FALSE(met.contains("mechanism"));
+    hands.press(key::tab);
+    hands.hand.keys = {key::left_shift, key::tab};
+    hands.rest(2);
+    hands.hand.keys.clear();
+    hands.rest(2);
+    EXPECT_EQ(hands.state.focus.at, first);
+}
+
+void go_to(test::Hands& hands, const std::string& name) {
+    for (int i = 0; i < 100 && hands.state.focus.at != name; ++i) hands.press(key::tab);
+    ASSERT_EQ(hands.state.focus.at, name);
+}
+
+TEST(Focus, a_slider_goes_by_arrows_is_typed_and_put_back) {
+    test::Hands hands("ball_on_sine");
+    const double before = *hands.session.value("e");
+    go_to(hands, "set e");
+    hands.press(key::right);
+    const double moved = *hands.session.value("e");
+    EXPECT_GT(moved, before);
+    EXPECT_EQ(hands.state.focus.at, "set e");
+    hands.press(key::left);
+    hands.press(key::left);
+    EXPECT_LT(*hands.session.value("e"), before);
+    hands.press(key::remove);
+    EXPECT_EQ(*hands.session.value("e"), before);
+    hands.press(key::enter);
+    hands.rest(2);
+    hands.type("0.25");
+    hands.press(key::enter);
+    hands.rest(2);
+    EXPECT_EQ(*hands.session.value("e"), 0.25);
+    EXPECT_FALSE(hands.session.playing());
+}
+
+TEST(Focus, Enter_and_Space_press) {
+    test::Hands hands("ball_on_sine");
+    go_to(hands, "show trail");
+    ASSERT_TRUE(hands.session.scene().shows("trail"));
+    hands.press(' ');
+    EXPECT_FALSE(hands.session.scene().shows("trail"));
+    EXPECT_FALSE(hands.session.playing());
+    hands.press(key::enter);
+    EXPECT_TRUE(hands.session.scene().shows("trail"));
+    go_to(hands, "switch theme");
+    hands.press(key::enter);
+    EXPECT_TRUE(hands.session.theme().dark);
+}
+
+// A menu is walked by arrows; Escape closes it and nothing else.
+TEST(Focus, a_menu_goes_by_keys) {
+    test::Hands hands("ball_on_sine");
+    go_to(hands, "menu View");
+    hands.press(key::enter);
+    hands.rest(2);
+    for (const char* panel : {"controls", "plots", "events"}) ASSERT_TRUE(hands.session.scene().shows(panel));
+    hands.press(key::down);
+    hands.press(key::down);
+    hands.press(key::enter);
+    EXPECT_FALSE(hands.session.scene().shows("events")) << "the third line of the menu";
+    hands.press(key::enter);
+    hands.rest(2);
+    hands.press(key::escape);
+    EXPECT_EQ(hands.state.focus.at, "menu View");
+    hands.press(key::escape);
+    EXPECT_EQ(hands.state.focus.at, "");
+}
+
+// In a dialog Tab goes from the path to what follows it, and stays in front.
+TEST(Focus, stays_in_a_dialog) {
+    test::Hands hands("ball_on_sine");
+    hands.press_with_control('O');
+    hands.rest(2);
+    std::set<std::string> met;
+    for (int i = 0; i < 4; ++i) {
+        hands.press(key::tab);
+        met.insert(hands.state.focus.at);
+    }
+    EXPECT_EQ(met, (std::set<std::string>{"dialog Cancel", "path"}));
+    while (hands.state.focus.at != "dialog Cancel") hands.press(key::tab);
+    hands.press(key::enter);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::nothing);
+}
+
+}  // namespace
+}  // namespace achilles

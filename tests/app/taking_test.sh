@@ -1,0 +1,51 @@
+#!/bin/bash
+# Taking things away in a real window, by keys alone: the gallery, a control that has the keys, the dialog with its folder,
+# and a picture of the mechanism that is dropped again.
+#     taking_test.sh BUILD_FOLDER
+. "$(dirname "$0")/window.sh"
+
+recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
+mkdir "$folder/papers"
+
+open_window "" ball_on_sine --record "$folder/record"
+settle
+
+# Tab gives the keys to a control, Escape gives them back to the player.
+xdotool key Tab sleep 0.3 key Right sleep 0.3 key Right sleep 0.3 key Escape sleep 0.3 key Right
+recorded '^step 1$' "Escape does not give the keys back to the player"
+[ "$(grep -c '^step' "$folder/record")" -eq 1 ] || fail "arrows move the time while a control has the keys"
+
+# The gallery: to the right, Enter.
+xdotool key ctrl+g
+recorded '^show gallery$' "Ctrl+G shows no gallery"
+settle
+xdotool key Right sleep 0.3 key Return
+recorded '^open double_pendulum$' "the gallery opens nothing by keys"
+settle
+
+# By the menu's keys to the dialog; its path is completed and written to.
+xdotool key ctrl+shift+p sleep 0.5
+xdotool type --delay 20 "show export"
+xdotool sleep 0.2 key Return
+recorded '^show export$' "the palette does not show the dialog"
+settle
+xdotool key ctrl+a
+xdotool type --delay 20 "$folder/pap"
+xdotool sleep 0.3 key Tab sleep 0.5
+xdotool type --delay 20 "a.svg"
+xdotool sleep 0.3 key Return
+recorded "^export $folder/papers/a.svg$" "the dialog does not complete a folder and write into it: $(cat "$folder/record")"
+await test -s "$folder/papers/a.svg" || fail "nothing is written"
+recorded '^hide export$' "the dialog stays"
+
+# A mechanism on paper, dropped: its session is there again.
+"$build/achilles" figure impact_oscillator --mechanism --at 3 --width-mm 85 --out "$folder/mechanism.svg"
+timeout 30 "$build/x11_hand" drop "$window" "$folder/mechanism.svg" || fail "nobody takes a picture"
+recorded '^open impact_oscillator' "a mechanism that is dropped is not opened"
+recorded '^seek 3$' "a mechanism that is dropped does not lead to its instant"
+# And the dialog's own picture.
+timeout 30 "$build/x11_hand" drop "$window" "$folder/papers/a.svg" || fail "nobody takes a second picture"
+opened_twice() { [ "$(grep -c '^open double_pendulum' "$folder/record")" -eq 2 ]; }
+await opened_twice || fail "an exported figure does not lead back"
+settle
+close_window
