@@ -16,9 +16,9 @@ namespace achilles {
 
 namespace {
 
-// These ask where the mouse is.
-constexpr std::array<std::string_view, 8> wants_mouse{"mechanism", "timeline", "plane",     "plot ",
-                                                      "splitter ", "lens ",    "value of ", "expression "};
+// These ask where the mouse is; the rows of a folder are walked from the field above them.
+constexpr std::array<std::string_view, 9> wants_mouse{"mechanism", "timeline",  "plane",       "plot ", "splitter ",
+                                                      "lens ",     "value of ", "expression ", "file "};
 constexpr std::array<std::string_view, 4> takes_letters{"text", "path", "command", "take field "};
 
 template <std::size_t count>
