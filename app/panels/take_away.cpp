@@ -108,7 +108,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     // Below the others: beside them the words would have less room.
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
     if (word_button("back", "to the sentence before (Backspace)", state, has_before) ||
-        (keys && has_before && is_pressed(key::backspace, false)))
+        (keys && has_before && !has_keys(state) && is_pressed(key::backspace, false)))
         state.tour_wants = PanelState::OnTour::back;
     if (state.tour_said == 0) return;
     const std::string how_far = fmt::format("{}/{}", state.tour_said, state.tour_sentences);
