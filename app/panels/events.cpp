@@ -92,7 +92,7 @@ float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F
 float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
 
 // Its left end at x: pin the present run, and the comparison of the two ways to cut a bouncing.
-void show_comparing(const Session& session, float x, PanelState& state, Commands& commands) {
+void show_comparing(float x, PanelState& state, Commands& commands) {
     const float pin_width = button_width("unpin");
     ImGui::SameLine(x + pin_width + units(button_gap));
     if (ImGui::Button(both_ways)) {
@@ -134,7 +134,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
     remember(state, "copy events");
     tooltip("the chosen event, or all, as a table with every digit, for a spreadsheet (Ctrl+C)");
-    show_comparing(session, buttons, state, commands);
+    show_comparing(buttons, state, commands);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {

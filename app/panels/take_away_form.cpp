@@ -223,7 +223,7 @@ std::string take_away_note(const Session& session, const PanelState& state) {
                            find_program("ffmpeg").empty() ? "; no ffmpeg here: the pictures stay" : "");
     }
     const std::string format = ending_of_picture(state.editor.path);
-    const Page page{what.width, what.height, what.font, what.dpi};
+    const PaperSize page{what.width, what.height, what.font, what.dpi};
     if (page.width == 0.0) {
         if (state.take_away.width != 0.0) return "! a width is above 0";
         return format == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)

@@ -9,11 +9,12 @@
 #include <stdexcept>
 
 #include "figure/difference.hpp"
+#include "figure/stage.hpp"
 #include "journal/journal.hpp"
 #include "output/output.hpp"
 #include "paint/mechanism.hpp"
 #include "pictures/origin.hpp"
-#include "pictures/page.hpp"
+#include "pictures/paper_size.hpp"
 #include "pictures/pdf.hpp"
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
@@ -70,7 +71,7 @@ Words mechanism_words(const Session& session, const std::string& name) {
     return words;
 }
 
-Page page_of(const command::Export& what) { return {what.width, what.height, what.font, what.dpi}; }
+PaperSize page_of(const command::Export& what) { return {what.width, what.height, what.font, what.dpi}; }
 
 void add_page(Words& words, const command::Export& what) {
     for (const auto& [option, value] : {std::pair{"--width-mm", what.width}, std::pair{"--height-mm", what.height},
@@ -152,13 +153,13 @@ void name_runs(Figure& figure, const Session& session, const std::vector<const P
 
 }  // namespace
 
-PictureSize size_of(const Page& page, PictureSize in_pixels, const Figure& figure, const std::string& format) {
+PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Figure& figure, const std::string& format) {
     if (page.width > 0.0) return on_page(page, format, figure.text_size, shape_of(figure));
     in_pixels.scale *= publication_scale;
     return in_pixels;
 }
 
-PictureSize size_of(const Page& page, PictureSize in_pixels, const Drawing& world, const std::string& format) {
+PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing& world, const std::string& format) {
     if (page.width > 0.0) return on_page(page, format, world_text_size, shape_of(world));
     in_pixels.scale *= publication_scale;
     return in_pixels;
@@ -167,18 +168,17 @@ PictureSize size_of(const Page& page, PictureSize in_pixels, const Drawing& worl
 Drawing mechanism_of(const Session& session, const Theme& theme) {
     if (session.mechanism().is_empty())
         throw InputError({}, {}, "this system draws no mechanism", "[[drawing]] in its file makes one");
-    Drawing seen = session.limits();
-    if (const auto& look = session.scene().look()) {
-        const double height = look->width / shape_of(seen);
-        seen.x_low = look->x - 0.5 * look->width, seen.x_high = look->x + 0.5 * look->width;
-        seen.y_low = look->y - 0.5 * height, seen.y_high = look->y + 0.5 * height;
-    }
+    const Scene& scene = session.scene();
     const Sample& now = session.now();
-    Drawing world =
-        session.mechanism().draw(now.t, now.state, session.trajectory().run.parameters, seen, theme, now.held);
-    if (session.scene().shows("trail"))
-        add_trail(world.shapes, session.trail(), session.samples(), session.time(), theme);
-    return world;
+    Drawing seen = session.limits();
+    const double width = 1000.0, shape = shape_of(seen);  // of a picture as the camera is told
+    if (const auto look = scene.look()) {
+        seen.x_low = look->x - 0.5 * look->width, seen.x_high = look->x + 0.5 * look->width;
+        seen.y_low = look->y - 0.5 * look->width / shape, seen.y_high = look->y + 0.5 * look->width / shape;
+    } else {
+        seen = session.stage().camera().at(scene.camera(), now, {width, width / shape});
+    }
+    return session.stage().draw(now, seen, theme, {scene.shows("trail"), scene.shows("strobe")});
 }
 
 Figure figure_of(const Session& session, const PublicationStyle& style) {

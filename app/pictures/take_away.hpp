@@ -7,7 +7,7 @@
 
 #include "figure/publication.hpp"
 #include "pictures/film_job.hpp"
-#include "pictures/page.hpp"
+#include "pictures/paper_size.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -21,8 +21,8 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
 Drawing mechanism_of(const Session& session, const Theme& theme);
 
 // As large as the page says; without a width there as many pixels as `in_pixels`, its scale times publication_scale.
-PictureSize size_of(const Page& page, PictureSize in_pixels, const Figure& figure, const std::string& format);
-PictureSize size_of(const Page& page, PictureSize in_pixels, const Drawing& world, const std::string& format);
+PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Figure& figure, const std::string& format);
+PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing& world, const std::string& format);
 
 // Writes what the file's ending asks for: .svg, .png or .pdf the plots, one of them or the mechanism; .json or .csv the run; .journal the
 // session. Whole or not at all; over another file only with `overwrite`. Throws InputError.

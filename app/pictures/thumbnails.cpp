@@ -4,9 +4,8 @@
 #include <exception>
 #include <utility>
 
-#include "figure/body.hpp"
 #include "figure/compose.hpp"
-#include "figure/mechanism.hpp"
+#include "figure/stage.hpp"
 #include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 
@@ -36,12 +35,8 @@ Thumbnail drawn(const std::filesystem::path& system) {
     for (const Sample& sample : samples)
         if (sample.t <= now.t || past.size() < 2) past.push_back(sample);
     const Drawing seen = mechanism.limits(trajectory, past);
-    const Trail trail = trail_of(mechanism, trajectory, samples);
-    const auto in = [&](const Theme& theme) {
-        Drawing drawing = mechanism.draw(now.t, now.state, run.parameters, seen, theme, now.held);
-        add_trail(drawing.shapes, trail, samples, now.t, theme);
-        return drawing;
-    };
+    Stage stage(mechanism, trajectory, samples);
+    const auto in = [&](const Theme& theme) { return stage.draw(now, seen, theme, {}); };
     return {in(light_theme()), in(dark_theme())};
 }
 

@@ -283,7 +283,7 @@ struct Export {
     bool overwrite = false;                                   // whatever file may be there
     int plot = 0;                                             // this one alone; 0: all
     bool mechanism = false;                                   // as it is now, in place of the plots
-    double width = 0.0, height = 0.0, font = 0.0, dpi = 0.0;  // of a picture: mm, mm, pt; 0: see Page
+    double width = 0.0, height = 0.0, font = 0.0, dpi = 0.0;  // of a picture: mm, mm, pt; 0: see PaperSize
     double fps = 0.0, speed = 0.0;                            // of a film; 0: 30, and as the player's
     int pixels = 0;                                           // its width; 0: 1280
     bool dark = false;

@@ -191,6 +191,7 @@ Still Animation::at(double t) {
     seen.x_low -= edge, seen.x_high += edge, seen.y_low -= edge;
     still.world = stage_.draw(now, seen, theme, {});
     still.unit = stage_.unit();
+    still.faint = theme.faint;
     still.plane = plane_;
     for (Panel& panel : still.plane.panels) add_present(panel, *plane_view_, now);
     still.plots = figure_;
@@ -204,9 +205,9 @@ Still Animation::at(double t) {
     still.heading.emplace_back(
         TextRun{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
     // Left of the longest clock.
-    const float room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
-    still.heading.emplace_back(
-        TextRun{width - text - room, 0.5F * text, 1.0F, legend_text(now.phase), phase_color(theme, now.phase), text});
+    const float clock_room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
+    still.heading.emplace_back(TextRun{width - text - clock_room, 0.5F * text, 1.0F, legend_text(now.phase),
+                                       phase_color(theme, now.phase), text});
     return still;
 }
 

@@ -39,6 +39,7 @@ struct Still {
     StillAreas areas;
     double scale = 1.0;
     std::string unit;  // of lengths in the world
+    Color faint;       // of its scale bar
 };
 
 // The still as text, what moves with 9 significant digits: for tests.

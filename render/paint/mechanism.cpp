@@ -15,8 +15,6 @@ namespace achilles {
 
 namespace {
 
-constexpr double still_margin = 16.0;  // around the mechanism of a still
-
 double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -219,7 +217,7 @@ double paint_scale_bar(ImDrawList* list, const Point& corner, double most, doubl
     bar(x, y - thick, x + pixels, y);
     bar(x, y - tooth - thick, x + thick, y);
     bar(x + pixels - thick, y - tooth - thick, x + pixels, y);
-    const auto size = static_cast<float>(text_size * scale);
+    const auto size = static_cast<float>(world_text_size * scale);
     const std::string label = length_label(length, unit_name);
     const double gap = 6.0 * scale;
     paint_label(list, static_cast<float>(x + pixels + gap), static_cast<float>(y) - 0.85F * size, label, color, size);
@@ -233,7 +231,7 @@ void paint(const Still& still, ImDrawList* list) {
     if (still.plane.panels.empty()) {
         const Placement placement = paint(still.world, list, w, still.scale);
         paint_scale_bar(list, {w.x + room, double{w.y} + double{w.height} - room}, 0.2 * double{w.width},
-                        placement.unit, still.unit, light_theme().faint, still.scale);
+                        placement.unit, still.unit, still.faint, still.scale);
     } else {
         paint(still.plane, list, w, still.scale);
     }

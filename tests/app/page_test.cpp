@@ -1,5 +1,5 @@
 // Pictures measured in millimetres and points.
-#include "pictures/page.hpp"
+#include "pictures/paper_size.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,8 +28,9 @@ TEST(Page, is_as_large_as_it_says) {
     EXPECT_EQ(svg.width, 1200);
     EXPECT_NEAR(14.0 * svg.scale * 170.0 / 1200.0, 10.0 / 72.0 * 25.4, 1e-9);  // mm of 10 pt
     EXPECT_EQ(told({85.0, 0.0, 8.0, 300.0}, "png", 1.5), "85 \u00d7 56.67 mm, 1004 \u00d7 669 px at 300 dpi");
-    for (const Page& wrong : {Page{5.0, 0.0, 0.0, 0.0}, Page{85.0, 0.0, 100.0, 0.0}, Page{0.0, 0.0, 8.0, 0.0},
-                              Page{85.0, 0.0, 0.0, 5.0}, Page{85.0, 3.0, 0.0, 0.0}, Page{NAN, 0.0, 0.0, 0.0}})
+    for (const PaperSize& wrong :
+         {PaperSize{5.0, 0.0, 0.0, 0.0}, PaperSize{85.0, 0.0, 100.0, 0.0}, PaperSize{0.0, 0.0, 8.0, 0.0},
+          PaperSize{85.0, 0.0, 0.0, 5.0}, PaperSize{85.0, 3.0, 0.0, 0.0}, PaperSize{NAN, 0.0, 0.0, 0.0}})
         EXPECT_THROW(check(wrong, ""), InputError) << wrong.width;
     EXPECT_THROW(on_page({1200.0, 0.0, 8.0, 1200.0}, "png", 14.0, 1.5), InputError);
 }

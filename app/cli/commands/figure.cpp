@@ -28,14 +28,14 @@ struct FigureArguments {
     OptionOverrides overrides;
     PublicationStyle style;
     PictureSize size;
-    Page page;
+    PaperSize page;
     bool mechanism = false;
     std::string at;  // "": the start
 };
 
 // A resolution is for pixels alone.
-Page page_for(const FigureArguments& arguments, const std::string& format) {
-    Page page = arguments.page;
+PaperSize page_for(const FigureArguments& arguments, const std::string& format) {
+    PaperSize page = arguments.page;
     if (format == "png" || page.width == 0.0) return page;
     page.dpi = 0.0;
     return page;
@@ -43,7 +43,7 @@ Page page_for(const FigureArguments& arguments, const std::string& format) {
 
 // Puts what is drawn of a finished run where it belongs.
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const std::string& format, PictureJob& job,
-        const std::function<std::string(const Page& page, const Notes&)>& draw) {
+        const std::function<std::string(const PaperSize& page, const Notes&)>& draw) {
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
             [&](const Notes& notes) { return draw(page_for(arguments, format), notes); });
     job.commit();
@@ -52,7 +52,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const st
 
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
         PictureJob& job) {
-    return put(arguments, trajectory, format, job, [&](const Page& page, const Notes& notes) {
+    return put(arguments, trajectory, format, job, [&](const PaperSize& page, const Notes& notes) {
         const PictureSize size = size_of(page, arguments.size, figure, format);
         job.check_size(size.width, size.height);
         return picture_of(figure, size, notes, format);
@@ -65,7 +65,7 @@ int put_mechanism(const FigureArguments& arguments, const Session& session, cons
     const Drawing world = mechanism_of(session, theme);
     Color background = theme.background;
     if (arguments.style.transparent) background.a = 0;
-    return put(arguments, session.trajectory(), format, job, [&](const Page& page, const Notes& notes) {
+    return put(arguments, session.trajectory(), format, job, [&](const PaperSize& page, const Notes& notes) {
         const PictureSize size = size_of(page, arguments.size, world, format);
         job.check_size(size.width, size.height);
         return picture_of(world, background, size, notes, format);
@@ -121,7 +121,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
 }
 
 // In the place of --size and --scale.
-void add_page_options(CLI::App& command, Page& page) {
+void add_page_options(CLI::App& command, PaperSize& page) {
     const auto add = [&](const char* option, double& target, const char* type, const std::string& about) {
         command
             .add_option_function<std::string>(

@@ -36,7 +36,7 @@ void put(std::string& bytes, const Vector& x) {
 }
 
 // Everything a run computes but the time it took, bit for bit.
-std::string bytes_of(const Attempt& attempt) {
+std::string content_of(const Attempt& attempt) {
     if (const auto* error = std::get_if<InputError>(&attempt)) return error->what();
     const auto& trajectory = std::get<Trajectory>(attempt);
     std::string bytes = trajectory.outcome.message;
@@ -65,7 +65,7 @@ TEST(ManyRuns, GiveTheSameBytesOnOneTwoAndEightThreads) {
     std::vector<std::string> alone;
     for (const auto& run : runs) {
         try {
-            alone.push_back(bytes_of(simulate(model, run)));
+            alone.push_back(content_of(simulate(model, run)));
         } catch (const InputError& error) {
             alone.push_back(error.what());
         }
@@ -80,7 +80,7 @@ TEST(ManyRuns, GiveTheSameBytesOnOneTwoAndEightThreads) {
             [&](std::size_t, const Attempt& attempt) {
                 const std::lock_guard lock(mutex);
                 seen.insert(std::this_thread::get_id());
-                return bytes_of(attempt);
+                return content_of(attempt);
             },
             threads);
         ASSERT_EQ(together.size(), alone.size());

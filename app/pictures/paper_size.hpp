@@ -10,7 +10,7 @@
 namespace achilles {
 
 // What is 0 follows from the rest; a width of 0: the picture is measured in pixels, as ever.
-struct Page {
+struct PaperSize {
     double width = 0.0, height = 0.0;  // mm
     double font = 0.0;                 // pt, of the text of axes; default_font
     double dpi = 0.0;                  // pixels an inch, of a PNG; default_dpi
@@ -20,15 +20,15 @@ constexpr double least_width = 20.0, most_width = 1200.0;  // mm; A0 lies within
 constexpr double least_font = 3.0, most_font = 72.0, least_dpi = 50.0, most_dpi = 1200.0;
 
 // Throws InputError, about `what`, for a number that no page has.
-void check(const Page& page, const std::string& what);
+void check(const PaperSize& page, const std::string& what);
 
 // The size in pixels of such a picture as "png", "svg" or "pdf"; its scale makes a text of `text_size` pixels as large as the
 // page's font. `shape`, width over height, makes a height where the page has none. What is drawn once for all sizes (SVG,
 // PDF) counts 1200 pixels for 170 mm. Throws InputError for more pixels than a PNG may have.
-PictureSize on_page(const Page& page, const std::string& format, double text_size, double shape);
+PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape);
 
 // "85 × 57 mm, 1004 × 669 px at 300 dpi".
-std::string told(const Page& page, const std::string& format, double shape);
+std::string told(const PaperSize& page, const std::string& format, double shape);
 
 // The shape of a figure whose plots are two thirds as high as wide, and of a mechanism.
 double shape_of(const Figure& figure);

@@ -1,4 +1,4 @@
-#include "pictures/page.hpp"
+#include "pictures/paper_size.hpp"
 
 #include <fmt/format.h>
 
@@ -24,12 +24,12 @@ void need(bool is_good, const std::string& what, const char* name, double value,
                      fmt::format("it may be {} to {} {}", low, high, unit));
 }
 
-double pixels_per_mm(const Page& page, const std::string& format) {
+double pixels_per_mm(const PaperSize& page, const std::string& format) {
     return format == "png" ? (page.dpi > 0.0 ? page.dpi : default_dpi) / inch : 1.0 / page_mm(1);
 }
 
 // No picture is a strip.
-double height_of(const Page& page, double shape) {
+double height_of(const PaperSize& page, double shape) {
     return page.height > 0.0 ? page.height : page.width / std::clamp(shape, 0.7, 3.0);
 }
 
@@ -39,7 +39,7 @@ double shape_of_grid(std::size_t rows, int columns) {
 
 }  // namespace
 
-void check(const Page& page, const std::string& what) {
+void check(const PaperSize& page, const std::string& what) {
     const auto within = [](double x, double low, double high) { return x == 0.0 || (x >= low && x <= high); };
     need(within(page.width, least_width, most_width), what, "width", page.width, least_width, most_width, "mm");
     need(within(page.height, least_width, most_width), what, "height", page.height, least_width, most_width, "mm");
@@ -49,7 +49,7 @@ void check(const Page& page, const std::string& what) {
         throw InputError(what, {}, "a height, a font and a resolution belong to a width in mm");
 }
 
-PictureSize on_page(const Page& page, const std::string& format, double text_size, double shape) {
+PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape) {
     const double per_mm = pixels_per_mm(page, format), height = height_of(page, shape);
     const double longest = std::max(page.width, height) * per_mm;
     if (longest > most_pixels)
@@ -63,7 +63,7 @@ PictureSize on_page(const Page& page, const std::string& format, double text_siz
     return size;
 }
 
-std::string told(const Page& page, const std::string& format, double shape) {
+std::string told(const PaperSize& page, const std::string& format, double shape) {
     const PictureSize size = on_page(page, format, 1.0, shape);
     const std::string mm = fmt::format("{:.4g} \u00d7 {:.4g} mm", page.width, height_of(page, shape));
     if (format != "png") return mm;
