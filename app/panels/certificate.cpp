@@ -74,11 +74,8 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
     return close;
 }
 
-std::vector<std::string> certificate_lines(const Event& event, const SystemDescription& description) {
+std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
-    const NormUnits unit = norm_units(description);
-    const auto position = [&](double bound) { return bound_text(bound) + unit.position; };
-    const auto velocity = [&](double bound) { return bound_text(bound) + unit.velocity; };
     std::vector<std::string> lines;
     if (is_plastic_landing(event)) {
         lines.emplace_back("it stays there without a bounce");
@@ -86,13 +83,13 @@ std::vector<std::string> certificate_lines(const Event& event, const SystemDescr
         return lines;
     }
     lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
-    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", position(c.position_bound),
-                                velocity(c.velocity_bound)));
+    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
+                                bound_text(c.velocity_bound)));
     if (c.uniform_position)
-        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {}", position(*c.uniform_position)));
+        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {}", bound_text(*c.uniform_position)));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {}, v {}", position(*c.shadowing_position),
-                                    velocity(*c.shadowing_velocity)));
+        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {}, v {}", bound_text(*c.shadowing_position),
+                                    bound_text(*c.shadowing_velocity)));
     lines.push_back(fmt::format("gap'' from {:.6g} to {:.6g}", -c.a_max, -c.a_min));
     if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
@@ -117,29 +114,36 @@ void lens_button(const Session& session, PanelState& state, Commands& commands) 
 
 }  // namespace
 
+// "; q in rad, v in rad/s": of what stands below.
+std::string units_told(const SystemDescription& description) {
+    const NormUnits unit = norm_units(description);
+    return unit.position.empty() ? "" : fmt::format("; q in{}, v in{}", unit.position, unit.velocity);
+}
+
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
     const bool is_plastic = is_plastic_landing(event);
     const std::string contacts = contacts_told(session.trajectory(), event);
-    const bool close = show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
-                                                   contacts.empty() ? "" : " of ", contacts, index + 1,
-                                                   is_plastic              ? "plastic"
-                                                   : certificate.certified ? "certified"
-                                                                           : "not certified"),
-                                       fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
-                                                   to_text(certificate.reinitialization)),
-                                       state);
+    const bool close =
+        show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
+                                    contacts.empty() ? "" : " of ", contacts, index + 1,
+                                    is_plastic              ? "plastic"
+                                    : certificate.certified ? "certified"
+                                                            : "not certified"),
+                        fmt::format("{} conditions, {} restart{}", to_text(certificate.conditions),
+                                    to_text(certificate.reinitialization), units_told(session.description())),
+                        state);
     if (close) commands.emplace_back(command::Select{0});
     if (!is_plastic) lens_button(session, state, commands);
-    show_certificate(event, session.description());
+    show_certificate(event);
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";
     if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }
 
-void show_certificate(const Event& event, const SystemDescription& description) {
-    const std::vector<std::string> lines = certificate_lines(event, description);
+void show_certificate(const Event& event) {
+    const std::vector<std::string> lines = certificate_lines(event);
     float half = 0.44F * ImGui::GetContentRegionAvail().x;
     for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));
     half = std::floor(half);

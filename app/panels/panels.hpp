@@ -286,8 +286,8 @@ void show_lower_tabs(const Session& session, PanelState& state, Commands& comman
 bool derives_equations(const PanelState& state);
 // What is proved at a Zeno event: the facts, line by line, and every inequality with both sides and the one that
 // decided.
-std::vector<std::string> certificate_lines(const Event& event, const SystemDescription& description);
-void show_certificate(const Event& event, const SystemDescription& description);
+std::vector<std::string> certificate_lines(const Event& event);
+void show_certificate(const Event& event);
 // The cards beside the list, each about the event with this index: its certificate or the Zeno lens; what an impact
 // cost and why the bouncing was not cut there; why the contact ended. And how the pinned runs and the present one
 // differ, and how wide that wants to be. The first line of a card; true if the user closes it.

@@ -13,6 +13,8 @@ namespace achilles {
 
 namespace {
 
+constexpr double thumbnail_shape = 2.3;  // width over height, as wide as a card may be: the ground goes on to its sides
+
 // Where the first bouncing has come to rest; else a third of the run.
 double telling_time(const Trajectory& trajectory) {
     const auto zeno = std::find_if(trajectory.events.begin(), trajectory.events.end(),
@@ -34,7 +36,7 @@ Thumbnail drawn(const std::filesystem::path& system) {
     std::vector<Sample> past;
     for (const Sample& sample : samples)
         if (sample.t <= now.t || past.size() < 2) past.push_back(sample);
-    const Drawing seen = mechanism.limits(trajectory, past);
+    const Drawing seen = widened(mechanism.limits(trajectory, past), thumbnail_shape, 1.0);
     Stage stage(mechanism, trajectory, samples);
     const auto in = [&](const Theme& theme) { return stage.draw(now, seen, theme, {}); };
     return {in(light_theme()), in(dark_theme())};

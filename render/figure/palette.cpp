@@ -127,7 +127,7 @@ Color run_color(const Theme& theme, int place) {
 }
 
 Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above) {
-    Stroke wide{run_color(theme, place), 3.8 + 0.7 * static_cast<double>(above), stroke.dash};
+    Stroke wide{run_color(theme, place), 2.9 + 0.6 * static_cast<double>(above), stroke.dash};
     // Its ends are round: as much as they cover is left free.
     for (std::size_t i = 1; i < wide.dash.size(); i += 2) wide.dash[i] += 0.8 * wide.width;
     return wide;

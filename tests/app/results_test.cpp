@@ -88,7 +88,7 @@ TEST(Results, call_a_landing_so_and_offer_no_lens) {
         hands.click("result " + std::to_string(rest + 1));
         hands.rest(2);
         EXPECT_EQ(hands.state.places.contains("open lens"), !is_plastic);
-        const std::string first = certificate_lines(events[rest], hands.session.description()).front();
+        const std::string first = certificate_lines(events[rest]).front();
         EXPECT_EQ(first == "it stays there without a bounce", is_plastic) << first;
     }
 }
