@@ -128,7 +128,6 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
 PairConditions::PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second,
                                ContactSet held, const Ground&)
     : dof_(static_cast<std::size_t>(model.dof())),
-      pair_{first, second},
       held_(held),
       autonomous_(model.equations().autonomous),
       layout_(model.layout()),

@@ -64,7 +64,6 @@ class PairConditions {
     std::optional<Certificate::Others> others_stay(const std::vector<Interval>& box);
 
     std::size_t dof_;
-    std::array<std::size_t, 2> pair_;
     ContactSet held_;
     bool autonomous_;
     Layout layout_;

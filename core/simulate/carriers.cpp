@@ -166,11 +166,10 @@ bool Execution::carry(const Closed& closed, const Carriers& carriers) {
             start = presses ? EventStart{} : EventStart{{}, 1};
         } else if (certainly_positive(normal.hddot)) {
             start = {{0.0, 0.0}, 2};
-        } else if (certainly_negative(normal.hddot)) {
-            return false;
-        } else if (certainly_positive(normal.jerk)) {
+        } else if (!certainly_negative(normal.hddot) && certainly_positive(normal.jerk)) {
             start = {{0.0, 0.0}, 3};
-        } else if (!certainly_negative(normal.jerk) && stays_closed(contact, held)) {
+        } else if (!certainly_negative(normal.hddot) && !certainly_negative(normal.jerk) &&
+                   stays_closed(contact, held)) {
             touching = touching.with(contact);
         } else {
             return false;

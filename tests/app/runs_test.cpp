@@ -144,7 +144,7 @@ TEST(Runs, lie_under_the_present_one_and_wider) {
     const std::vector<Curve>& curves = session.drawn(0).curves;
     ASSERT_EQ(curves.size(), 6U);
     for (std::size_t i = 0; i + 2 < curves.size(); ++i)
-        EXPECT_GT(curves[i].stroke.width, curves[i + 2].stroke.width + 0.6) << i;
+        EXPECT_GT(curves[i].stroke.width, curves[i + 2].stroke.width + 0.4) << i;
     for (const int run : {0, 1}) {
         EXPECT_EQ(curves[2 * static_cast<std::size_t>(run)].stroke.color, run_color(session.theme(), run + 1));
         EXPECT_FALSE(curves[2 * static_cast<std::size_t>(run)].stroke.dash.empty()) << "a dash tells the hybrid phase";
