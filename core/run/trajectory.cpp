@@ -48,7 +48,7 @@ double bytes_of(const Trajectory& trajectory) {
     const std::size_t event = sizeof(Event) + 3 * (n * sizeof(double) + 2 * sizeof(void*));
     return static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
                                trajectory.pieces.size() * sizeof(Piece) + trajectory.events.size() * event +
-                               trajectory.phases.size() * sizeof(Phase));
+                               trajectory.phases.size() * sizeof(Phase) + trajectory.passages.size() * sizeof(Passage));
 }
 
 State scale_of(const Trajectory& trajectory) {
@@ -63,6 +63,15 @@ State scale_of(const Trajectory& trajectory) {
     }
     take(trajectory.end.q, trajectory.end.v);
     return scale;
+}
+
+std::vector<Passage> sequence_of(const Trajectory& trajectory) {
+    if (trajectory.events.empty()) return trajectory.passages;
+    std::vector<Passage> sequence;
+    sequence.reserve(trajectory.events.size());
+    for (const Event& event : trajectory.events)
+        sequence.push_back({event.kind, event.contacts, event.t, event.impact_speed});
+    return sequence;
 }
 
 double without_noise(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }

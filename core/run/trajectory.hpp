@@ -141,6 +141,15 @@ struct Event {
 // bounded but the integration before it.
 bool is_plastic_landing(const Event& event);
 
+// What is kept of an event where of a run the end alone is: no states, no certificate.
+struct Passage {
+    Event::Kind kind = Event::Kind::impact;
+    ContactSet contacts;
+    double t = 0.0;
+    double impact_speed = 0.0;  // impact: |hdot| before
+    friend bool operator==(const Passage&, const Passage&) = default;
+};
+
 struct Outcome {
     enum class Kind {
         end_time,
@@ -173,6 +182,8 @@ struct Trajectory {
     Run run;
     std::vector<Phase> phases;
     std::vector<Event> events;  // in time
+    // Of a run of which the end alone was kept, in place of its events; else empty. Of either: sequence_of().
+    std::vector<Passage> passages;
     std::vector<Piece> pieces;  // in time
     std::vector<double> coefficients;
     double end_time = 0.0;
@@ -199,6 +210,8 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
 
 // How many bytes what is kept of a run takes.
 double bytes_of(const Trajectory& trajectory);
+// The events of a run, whatever was kept of it.
+std::vector<Passage> sequence_of(const Trajectory& trajectory);
 
 // The largest |q| and |v|, coordinate by coordinate, at the start, the events and the end: what is much smaller is noise.
 State scale_of(const Trajectory& trajectory);

@@ -41,13 +41,22 @@ void simulate_ends(const std::shared_ptr<const Model>& model, std::size_t count,
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
     const auto work = [&](int) {
         try {
-            SideBySide(model, count, next, run_of, take).work();
+            SideBySide(model).work({count, next, run_of, take});
         } catch (...) {
             next = count;
             throw;
         }
     };
     arena.execute([&] { tbb::parallel_for(0, arena.max_concurrency(), work, tbb::simple_partitioner()); });
+}
+
+EndSimulator::EndSimulator(const std::shared_ptr<const Model>& model) : runs_(std::make_unique<SideBySide>(model)) {}
+EndSimulator::~EndSimulator() = default;
+
+void EndSimulator::simulate(std::size_t count, const std::function<Run(std::size_t)>& run_of,
+                            const std::function<void(std::size_t, Attempt&&)>& take) {
+    std::atomic<std::size_t> next = 0;
+    runs_->work({count, next, run_of, take});
 }
 
 }  // namespace achilles

@@ -32,7 +32,7 @@ void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0,
                    Keep keep = Keep::everything);
 
-// The same with Keep::end, and eight runs at a time in one vector of the processor, as far as their motion is plain:
+// The same with Keep::end, the sequences of events included, and eight runs at a time in one vector of the processor, as far as their motion is plain:
 // for ensembles and maps, of which the ends are wanted. Steps are of lower order than simulate() takes, so an end
 // agrees with that of simulate() within the tolerance, not to the last bit; but no more than there does it depend on
 // the other runs, the threads or the processor. What remains undecided so is simulated alone. Runs by dopri5, and
@@ -40,6 +40,21 @@ void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
 void simulate_ends(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
                    const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0);
+
+class SideBySide;
+
+// simulate_ends() on the thread that asks, for one share of many runs after the other: what is compiled for the first
+// serves the others. One per thread; of no further use once run_of or take has thrown.
+class EndSimulator {
+ public:
+    explicit EndSimulator(const std::shared_ptr<const Model>& model);
+    ~EndSimulator();
+    void simulate(std::size_t count, const std::function<Run(std::size_t)>& run_of,
+                  const std::function<void(std::size_t, Attempt&&)>& take);
+
+ private:
+    std::unique_ptr<SideBySide> runs_;
+};
 
 // simulate_many() for a list of runs, each reduced to what is wanted of it: results[i] = summarize(i, attempt of
 // runs[i]).

@@ -20,6 +20,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     largest_ = 0.0;
     if (keep_ == Keep::end) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
+        trajectory_.passages.reserve(32);
         return;
     }
     // A usual run grows no further than this.
@@ -140,7 +141,10 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     ++trajectory_.phases.back().impacts;
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
-    if (keep_ == Keep::end) return;
+    if (keep_ == Keep::end) {
+        trajectory_.passages.push_back({Event::Kind::impact, contacts, before.t, speed});
+        return;
+    }
     make_room(trajectory_.events, 1, trajectory_.run.options.memory);
     Event& event = trajectory_.events.emplace_back();
     event.kind = Event::Kind::impact;
@@ -164,7 +168,10 @@ void Recorder::after_impact(ContactSet opened, ContactSet held) {
 }
 
 void Recorder::event(Event event) {
-    if (keep_ == Keep::end) return;
+    if (keep_ == Keep::end) {
+        trajectory_.passages.push_back({event.kind, event.contacts, event.t, 0.0});
+        return;
+    }
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
     if (event.kind == Event::Kind::zeno) event.impacts = trajectory_.phases.back().impacts;

@@ -20,27 +20,22 @@ SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model
       execution(model, run, surfaces, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
       stepper(*model, run, surfaces) {}
 
-SideBySide::SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
-                       const std::function<Run(std::size_t)>& run_of,
-                       const std::function<void(std::size_t, Attempt&&)>& take)
+SideBySide::SideBySide(const std::shared_ptr<const Model>& model)
     : step_(static_cast<std::size_t>(model->dof())),
       end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
       has_lanes_(model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
-                 !model->motion(ContactSet::of(0)).series.is_partial()),
-      count_(count),
-      next_(next),
-      run_of_(run_of),
-      take_(take) {
+                 !model->motion(ContactSet::of(0)).series.is_partial()) {
     result_.starts.resize(1);
 }
 
-void SideBySide::work() {
+void SideBySide::work(const Share& share) {
     const Ground ground;
+    share_ = &share;
     while (true) {
         while (flying_.size() + staying_.size() < most_under_way) {
-            const std::size_t index = next_.fetch_add(1);
-            if (index >= count_) break;
+            const std::size_t index = share.next.fetch_add(1);
+            if (index >= share.count) break;
             begin(index);
         }
         if (flying_.empty() && staying_.empty()) return;
@@ -50,17 +45,17 @@ void SideBySide::work() {
 }
 
 void SideBySide::begin(std::size_t index) {
-    Run run = run_of_(index);
+    Run run = share_->run_of(index);
     std::optional<InputError> refusal;
     try {
         model_->check(run);
     } catch (const InputError& error) {
         refusal = error;
     }
-    if (refusal) return take_(index, std::move(*refusal));
+    if (refusal) return share_->take(index, std::move(*refusal));
     raise_to_least(run.options);
     if (!has_lanes_ || run.options.method != Method::taylor)
-        return take_(index, simulate(model_, run, nullptr, Keep::end));
+        return share_->take(index, simulate(model_, run, nullptr, Keep::end));
     go_on(member_for(index, run), false);
 }
 
@@ -113,7 +108,7 @@ void SideBySide::finish(Member& member) {
     // The longer steps of a run alone may know enough.
     if (trajectory.outcome.kind == Outcome::Kind::undecided)
         trajectory = simulate(model_, member.execution.run(), nullptr, Keep::end);
-    take_(member.index, std::move(trajectory));
+    share_->take(member.index, std::move(trajectory));
     spare_.push_back(&member);
 }
 

@@ -16,12 +16,17 @@ namespace achilles {
 // the run's own stepper.
 class SideBySide {
  public:
-    // For 0 <= i < count, as next.fetch_add(1) gives them: take(i, what run_of(i) came to).
-    SideBySide(const std::shared_ptr<const Model>& model, std::size_t count, std::atomic<std::size_t>& next,
-               const std::function<Run(std::size_t)>& run_of, const std::function<void(std::size_t, Attempt&&)>& take);
+    explicit SideBySide(const std::shared_ptr<const Model>& model);
 
-    // Until no run is left, here or to be begun.
-    void work();
+    // For 0 <= i < count, as next.fetch_add(1) gives them: take(i, what run_of(i) came to).
+    struct Share {
+        std::size_t count;
+        std::atomic<std::size_t>& next;
+        const std::function<Run(std::size_t)>& run_of;
+        const std::function<void(std::size_t, Attempt&&)>& take;
+    };
+    // Until no run is left, here or to be begun. What run_of or take throws leaves this of no further use.
+    void work(const Share& share);
 
  private:
     struct Member {
@@ -58,12 +63,9 @@ class SideBySide {
     State end_;
     StepResult result_;
     Line members_;  // of the step that is made: a lane each
-    const std::shared_ptr<const Model>& model_;
-    bool has_lanes_;  // the model can be stepped in lanes
-    std::size_t count_;
-    std::atomic<std::size_t>& next_;
-    const std::function<Run(std::size_t)>& run_of_;
-    const std::function<void(std::size_t, Attempt&&)>& take_;
+    std::shared_ptr<const Model> model_;
+    bool has_lanes_;                // the model can be stepped in lanes
+    const Share* share_ = nullptr;  // while it works
     std::vector<std::unique_ptr<Member>> all_;
     Line flying_, staying_, spare_;
     std::size_t sets_ = 0;

@@ -16,8 +16,8 @@ struct Watch {
     std::atomic<long> impacts{0};   // so far
 };
 
-// What a trajectory keeps of its run: everything, or the end alone (state, time, outcome, phases, counts and the least
-// gap) without events, dense output and energy. The motion is the same.
+// What a trajectory keeps of its run: everything, or the end alone (state, time, outcome, phases, counts, the least gap at
+// step ends, and the sequence of events without their states) without dense output and energy. The motion is the same.
 enum class Keep { everything, end };
 
 // Runs. Never throws for what happens on the way: that is the trajectory's outcome. Throws InputError if the run cannot

@@ -142,6 +142,11 @@ TEST(ManyRuns, EndTheSameWhenOnlyTheEndIsKept) {
         return trajectory == nullptr ? std::size_t{0} : trajectory->events.size() + trajectory->coefficients.size();
     };
     for (const std::size_t numbers : simulate_many(model, runs, kept, 1, Keep::end)) EXPECT_EQ(numbers, 0u);
+    const auto sequence = [](std::size_t, const Attempt& attempt) {
+        const auto* trajectory = std::get_if<Trajectory>(&attempt);
+        return trajectory == nullptr ? std::vector<Passage>() : sequence_of(*trajectory);
+    };
+    EXPECT_EQ(simulate_many(model, runs, sequence, 1, Keep::end), simulate_many(model, runs, sequence, 1));
 }
 
 TEST(ManyRuns, AreCancelledByAnException) {
