@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <utility>
 
 #include "expression/functions.hpp"
@@ -301,6 +302,8 @@ class Parser {
         for (const Function& function : functions)
             if (function.name == full) return call(function.name, function.operation, begin);
         if (full == "pi" && peek() != '(') return graph_.pi();
+        const auto list = scope_.listed.find(full);
+        if (list != scope_.listed.end() && peek() == '(') return list->second(number_in_list(full));
         const auto found = scope_.allowed.find(full);
         if (found != scope_.allowed.end() || full == "pi") {
             if (peek() == '(') throw ParseError(begin, in_quotes(full) + " is not a function; write '*' for a product");
@@ -309,6 +312,23 @@ class Parser {
         const auto reason = scope_.forbidden.find(full);
         if (reason != scope_.forbidden.end()) throw ParseError(begin, reason->second, full);
         fail_at_unknown(begin, bare, full);
+    }
+
+    // "(2)"
+    int number_in_list(std::string_view word) {
+        const std::size_t open = at_;
+        take('(');
+        const std::size_t begin = at_;
+        int number = 0;
+        const auto [end, problem] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), number);
+        if (problem == std::errc()) at_ += static_cast<std::size_t>(end - (text_.data() + at_));
+        skip_space();
+        const bool is_whole = peek() == ')' || at_end();
+        if (problem != std::errc() || number < 1 || !is_whole)
+            throw ParseError(
+                begin, std::string(word) + "(k) needs a whole number from 1 on, as in " + std::string(word) + "(1)");
+        close(open);
+        return number;
     }
 
     Expression call(std::string_view word, Operation function, std::size_t begin) {
@@ -330,6 +350,7 @@ class Parser {
                 bare, corner->instead);
         std::vector<std::string> known;
         for (const Function& function : functions) known.emplace_back(function.name);
+        for (const auto& [word, element] : scope_.listed) known.push_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
             const std::string habit = instead_of_name(bare, [](std::string_view) { return false; });
             throw ParseError(

@@ -2,6 +2,7 @@
 //   + - * / ^ (right-associative, above unary minus), parentheses, functions, pi, decimal numbers, names, x' for rates.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,8 @@ struct Scope {
     std::map<std::string, Expression, std::less<>> allowed;
     std::map<std::string, std::string, std::less<>> forbidden;
     std::map<std::string, Expression, std::less<>> units{};  // what may follow a value, as in 30 deg: a factor
+    // What stands in a list, each by a whole number from 1 on in parentheses, as in zeno_time(2).
+    std::map<std::string, std::function<Expression(int)>, std::less<>> listed{};
 };
 
 // What is wrong, and where: `offset` counts bytes from the start of the text.

@@ -142,6 +142,18 @@ Program Model::compile_view(std::span<const Text> texts) const {
     return Program(outputs, layout_.slots());
 }
 
+Model::MeasureProgram Model::compile_measures(std::span<const Text> texts) const {
+    Graph graph(*graph_);
+    MeasureProgram result;
+    const Scope scope = measure_scope(description_, layout_, graph, equations_, result.quantities);
+    std::vector<Expression> outputs;
+    for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
+    Slots slots = layout_.slots();
+    slots.count += static_cast<std::uint32_t>(result.quantities.size());
+    result.program = Program(outputs, slots);
+    return result;
+}
+
 Program Model::compile_drawing(std::span<const Text> texts, const std::string& own) const {
     Graph graph(*graph_);
     Scope scope = drawing_scope(description_, layout_, graph);

@@ -23,6 +23,7 @@
 #include "model/edges.hpp"
 #include "model/motion.hpp"
 #include "model/pair.hpp"
+#include "model/scopes.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
 #include "run/trajectory.hpp"
@@ -127,6 +128,12 @@ class Model {
     // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
     // energy (view) or over coordinates, t and parameters, plus a curve's own parameter (drawing). Throw InputError.
     Program compile_view(std::span<const Text> texts) const;
+    // A program over the same and quantities of the run, input i behind the layout's being quantities[i].
+    struct MeasureProgram {
+        Program program;
+        std::vector<RunQuantity> quantities;
+    };
+    MeasureProgram compile_measures(std::span<const Text> texts) const;
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 
  private:

@@ -218,6 +218,32 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     return scope;
 }
 
+std::string_view to_text(RunQuantity::Kind kind) {
+    constexpr std::array<std::string_view, 8> names{"zeno_time",   "impact_time", "impact_speed", "release_time",
+                                                    "zeno_points", "impacts",     "releases",     "least_gap"};
+    return names[static_cast<std::size_t>(kind)];
+}
+
+Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
+                    std::vector<RunQuantity>& quantities) {
+    Scope scope = view_scope(system, layout, graph, equations);
+    const auto input = [&quantities, &layout, &graph](RunQuantity quantity) {
+        const auto known = std::find(quantities.begin(), quantities.end(), quantity);
+        const auto place = static_cast<std::uint32_t>(known - quantities.begin());
+        if (known == quantities.end()) quantities.push_back(quantity);
+        return graph.symbol(layout.count() + place);
+    };
+    using Kind = RunQuantity::Kind;
+    for (const Kind kind : {Kind::zeno_time, Kind::impact_time, Kind::impact_speed, Kind::release_time,
+                            Kind::zeno_points, Kind::impacts, Kind::releases, Kind::least_gap})
+        scope.allowed.emplace(to_text(kind), input({kind}));  // a name of the system's own goes before
+    for (const Kind kind : {Kind::zeno_time, Kind::impact_time, Kind::impact_speed, Kind::release_time})
+        scope.listed.emplace(to_text(kind), [input, kind](int k) { return input({kind, k}); });
+    for (const char* word : {"held", "outcome"})
+        scope.forbidden.emplace(word, fmt::format("'{}' is a text: it stands alone", word));
+    return scope;
+}
+
 Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     return position_scope(system, layout, graph, "drawing", "it depends on coordinates and time alone");
 }

@@ -30,7 +30,30 @@ Scope restitution_scope(const SystemDescription& system, const Layout& layout, G
 Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters; a drawn curve's own is for the caller to add.
 Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+// What of a whole run may stand in an expression, besides what a view shows of an instant: the k-th of its events, or the
+// last; how many there were; the least gap.
+struct RunQuantity {
+    enum class Kind {
+        zeno_time,
+        impact_time,
+        impact_speed,
+        release_time,
+        zeno_points,
+        impacts,
+        releases,
+        least_gap,
+    };
+    Kind kind;
+    int k = 0;  // of an event, from 1; 0: the last one
+    friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
+};
+std::string_view to_text(RunQuantity::Kind kind);
 // t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy: with values from the equations.
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
+
+// The same, and quantities of the run: input i behind the layout's is quantities[i]. They are noted as they are met, so that
+// both outlive the scope.
+Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
+                    std::vector<RunQuantity>& quantities);
 
 }  // namespace achilles

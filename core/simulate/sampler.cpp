@@ -85,6 +85,19 @@ Sample Sampler::at(double t) {
     return sample;
 }
 
+Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
+    Sample sample;
+    sample.t = t;
+    sample.phase = piece.held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained;
+    sample.contact = !piece.held.empty();
+    sample.held = piece.held;
+    sample.carriers = piece.carriers;
+    sample.state = state(piece, t);
+    sample.work = with_work ? work(piece, t) : 0.0;
+    sample.loss = piece.loss;
+    return sample;
+}
+
 std::vector<Sample> Sampler::all(int between) { return of_every(1, between); }
 
 std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {

@@ -31,6 +31,8 @@ class Sampler {
     explicit Sampler(const Trajectory& trajectory);
     ~Sampler();
     Sample at(double t);
+    // The state inside one of its pieces, which j does not tell of, without the work where that is not wanted.
+    Sample in(const Piece& piece, double t, bool with_work = true) const;
     // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each
     // step.
     std::vector<Sample> all(int between = 0);

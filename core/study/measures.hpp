@@ -1,0 +1,70 @@
+// What is asked of each of many runs: expressions, and the words `held` and `outcome`, over its end or over a section.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "simulate/contact_forces.hpp"
+#include "simulate/many.hpp"
+#include "study/section.hpp"
+#include "study/sweep.hpp"
+
+namespace achilles {
+
+// The prints of a sweep, compiled. An expression may have what a view may (t, coordinates, rates, parameters, gaps, lambda,
+// energy, power, work, loss), zeno_time(k), impact_time(k), impact_speed(k) and release_time(k) with k from 1 on (without
+// (k): of the last one), zeno_points, impacts, releases, and least_gap. What does not exist is not a number.
+class RunMeasures {
+ public:
+    // Throws InputError with the place in the expression.
+    RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep);
+
+    struct Column {
+        enum class Kind { number, held, outcome };
+        Kind kind;
+        std::string name;  // as typed
+        std::string unit;  // "" where it is not known
+    };
+    const std::vector<Column>& columns() const { return columns_; }
+    // Of the columns, those with numbers.
+    std::size_t numbers() const { return measures_.program.output_count(); }
+    // Whether the ends of runs and their sequences of events do not tell: for sections, the least gap, and what work and
+    // impacts have done where only whole trajectories know it.
+    bool needs_everything() const { return needs_everything_; }
+    bool needs_least_gap() const { return needs_least_gap_; }
+
+ private:
+    friend class Measuring;
+    std::shared_ptr<const Model> model_;
+    std::vector<Column> columns_;
+    Model::MeasureProgram measures_;
+    std::optional<Program> zero_;  // the expression of a section
+    bool needs_everything_ = false, needs_least_gap_ = false, zero_has_work_ = false;
+};
+
+// Takes the measures of runs, one after the other. One per thread; refers to the measures.
+class Measuring {
+ public:
+    explicit Measuring(const RunMeasures& measures);
+
+    // The numbers of a run at its end: so many as there are, appended.
+    void at_end(const Trajectory& trajectory, std::vector<double>& numbers);
+    // The same at moments of it; what its events are, counts and times, is as it was until then.
+    std::vector<Moment> moments(const Trajectory& trajectory, const Section& section);
+    void at(const Trajectory& trajectory, const Moment& moment, std::vector<double>& numbers);
+
+ private:
+    void begin(const Trajectory& trajectory);
+    void measure(const Sample& sample, std::span<const Passage> passed, std::vector<double>& numbers);
+    const RunMeasures* measures_;
+    Evaluator<double> numbers_;
+    std::optional<Evaluator<double>> zero_;
+    std::optional<ContactForces> forces_;
+    std::vector<double> parameters_;  // of both
+    std::vector<Passage> sequence_;   // of the run at whose moments it is asked
+    double least_gap_ = 0.0;
+};
+
+}  // namespace achilles

@@ -1,0 +1,29 @@
+// Sections of a run: its events of a kind, or the times at which an expression passes zero upwards.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "simulate/sampler.hpp"
+#include "study/sweep.hpp"
+
+namespace achilles {
+
+// A moment of a run at which it is asked.
+struct Moment {
+    Sample sample;           // after the event
+    std::size_t events = 0;  // so many have happened by then, this one included
+    ContactSet contacts;     // of an event: that land, come to rest or leave
+};
+
+// The events of this kind, not before `after`.
+std::vector<Moment> events_of(const Trajectory& trajectory, const Section& section);
+
+// The times at which a function of a moment of the run passes zero upwards, found on the dense output to 1e-12 of them. A
+// jump at an event over zero is no passage, nor is a touch, nor what rounding makes of a value that stays zero. Between the
+// instants that are looked at, eight a step and more where the function bends towards zero, two passages may hide. The work
+// that forces have done takes long to find: the function is told it where it asks for it.
+std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section,
+                             const std::function<double(const Sample&)>& value, bool asks_for_work);
+
+}  // namespace achilles

@@ -1,0 +1,124 @@
+#include "study/table.hpp"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "number/ground.hpp"
+
+namespace achilles {
+
+RunEnd RunEnd::from(std::uint8_t code) {
+    RunEnd end;
+    end.code_ = std::min<std::uint8_t>(code, 1 + static_cast<std::uint8_t>(Outcome::Kind::cancelled));
+    return end;
+}
+
+std::string_view RunEnd::text() const {
+    return code_ == 0 ? "cannot start" : to_text(static_cast<Outcome::Kind>(code_ - 1));
+}
+
+struct SweepTable::Worker {
+    explicit Worker(const SweepTable& table) : measuring(table.measures_), runs(table.model_) {}
+    Measuring measuring;
+    EndSimulator runs;
+};
+
+struct SweepTable::Workers {
+    tbb::enumerable_thread_specific<std::unique_ptr<Worker>> of_threads;
+};
+
+SweepTable::SweepTable(std::shared_ptr<const Model> model, Sweep sweep)
+    : model_(std::move(model)),
+      sweep_(std::move(sweep)),
+      points_(sweep_, model_->description()),
+      measures_(model_, sweep_),
+      workers_(std::make_unique<Workers>()) {}
+
+SweepTable::~SweepTable() = default;
+
+Rows SweepTable::rows(std::uint64_t first, std::uint64_t count) const {
+    const Ground ground;
+    std::unique_ptr<Worker>& worker = workers_->of_threads.local();
+    if (!worker) worker = std::make_unique<Worker>(*this);
+    try {
+        return measures_.needs_everything() ? one_by_one(*worker, first, count) : ends(*worker, first, count);
+    } catch (...) {
+        worker.reset();  // it stands in the middle of its work
+        throw;
+    }
+}
+
+// Eight at a time. They come to an end in any order, and are put in their places.
+Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count) const {
+    const std::size_t n = count, width = measures_.numbers();
+    Rows rows;
+    rows.points.resize(n);
+    rows.numbers.assign(n * width, std::numeric_limits<double>::quiet_NaN());
+    rows.held.resize(n);
+    rows.ends.resize(n);
+    std::vector<double> numbers;
+    const auto take = [&](std::size_t i, Attempt&& attempt) {
+        rows.points[i] = first + i;
+        const auto* trajectory = std::get_if<Trajectory>(&attempt);
+        if (trajectory == nullptr) return;
+        numbers.clear();
+        worker.measuring.at_end(*trajectory, numbers);
+        std::copy(numbers.begin(), numbers.end(), rows.numbers.begin() + static_cast<std::ptrdiff_t>(i * width));
+        rows.held[i] = trajectory->end_held;
+        rows.ends[i] = RunEnd(trajectory->outcome.kind);
+    };
+    worker.runs.simulate(
+        n, [&](std::size_t i) { return points_.run(first + i); }, take);
+    return rows;
+}
+
+void SweepTable::add_nothing(std::uint64_t point, RunEnd end, Rows& rows) const {
+    rows.points.push_back(point);
+    rows.numbers.insert(rows.numbers.end(), measures_.numbers(), std::numeric_limits<double>::quiet_NaN());
+    rows.held.emplace_back();
+    rows.ends.push_back(end);
+    if (!is_section()) return;
+    rows.times.push_back(std::numeric_limits<double>::quiet_NaN());
+    rows.contacts.emplace_back();
+}
+
+void SweepTable::add_sections(Measuring& measuring, const Trajectory& trajectory, std::uint64_t point,
+                              Rows& rows) const {
+    const RunEnd end(trajectory.outcome.kind);
+    const std::vector<Moment> moments = measuring.moments(trajectory, *sweep_.at);
+    if (moments.empty()) return add_nothing(point, end, rows);
+    for (const Moment& moment : moments) {
+        rows.points.push_back(point);
+        measuring.at(trajectory, moment, rows.numbers);
+        rows.held.push_back(moment.sample.held);
+        rows.ends.push_back(end);
+        rows.times.push_back(moment.sample.t);
+        rows.contacts.push_back(moment.contacts);
+    }
+}
+
+Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count) const {
+    Rows rows;
+    for (std::uint64_t point = first; point < first + count; ++point) {
+        std::optional<Trajectory> trajectory;
+        try {
+            trajectory = simulate(model_, points_.run(point));
+        } catch (const InputError&) {
+            add_nothing(point, RunEnd(), rows);
+            continue;
+        }
+        if (is_section()) {
+            add_sections(worker.measuring, *trajectory, point, rows);
+            continue;
+        }
+        rows.points.push_back(point);
+        worker.measuring.at_end(*trajectory, rows.numbers);
+        rows.held.push_back(trajectory->end_held);
+        rows.ends.emplace_back(trajectory->outcome.kind);
+    }
+    return rows;
+}
+
+}  // namespace achilles

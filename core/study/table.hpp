@@ -1,0 +1,71 @@
+// A sweep as a table: which columns it has, and the rows of some of its points.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "study/measures.hpp"
+
+namespace achilles {
+
+// How the run of a point ended: the kind of an Outcome, or a start that it cannot have.
+class RunEnd {
+ public:
+    RunEnd() = default;  // cannot start
+    explicit RunEnd(Outcome::Kind kind) : code_(static_cast<std::uint8_t>(1 + static_cast<int>(kind))) {}
+    static RunEnd from(std::uint8_t code);
+    std::uint8_t code() const { return code_; }
+    std::string_view text() const;  // "end time", ..., "cannot start"
+    friend bool operator==(const RunEnd&, const RunEnd&) = default;
+
+ private:
+    std::uint8_t code_ = 0;
+};
+
+// Rows of points that follow one another: one each, or of a section as many as it has moments, and one with nothing in it
+// where it has none. Column by column.
+struct Rows {
+    std::vector<std::uint64_t> points;
+    std::vector<double> numbers;  // the measures, row by row
+    std::vector<ContactSet> held;
+    std::vector<RunEnd> ends;
+    std::vector<double> times;         // of a section; no number in a row without a moment
+    std::vector<ContactSet> contacts;  // of a section, the event's
+    std::size_t count() const { return points.size(); }
+    friend bool operator==(const Rows&, const Rows&) = default;
+};
+
+class SweepTable {
+ public:
+    // Throws InputError where an expression means nothing.
+    SweepTable(std::shared_ptr<const Model> model, Sweep sweep);
+    SweepTable(const SweepTable&) = delete;
+    SweepTable& operator=(const SweepTable&) = delete;
+    ~SweepTable();
+
+    const Model& model() const { return *model_; }
+    const Sweep& sweep() const { return sweep_; }
+    const RunMeasures& measures() const { return measures_; }
+    bool is_section() const { return sweep_.at.has_value(); }
+
+    // The rows of points first, ..., first + count - 1: the same whatever others are asked for, before or at once on other
+    // threads.
+    Rows rows(std::uint64_t first, std::uint64_t count) const;
+
+ private:
+    struct Worker;  // what one thread keeps from one question to the next
+    struct Workers;
+    Rows ends(Worker& worker, std::uint64_t first, std::uint64_t count) const;
+    Rows one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count) const;
+    void add_sections(Measuring& measuring, const Trajectory& trajectory, std::uint64_t point, Rows& rows) const;
+    void add_nothing(std::uint64_t point, RunEnd end, Rows& rows) const;
+
+    std::shared_ptr<const Model> model_;
+    Sweep sweep_;
+    SweepPoints points_;
+    RunMeasures measures_;
+    std::unique_ptr<Workers> workers_;
+};
+
+}  // namespace achilles
