@@ -29,8 +29,11 @@ Progress::Progress(std::size_t count, std::string things, bool lines)
     show(0);
 }
 
-Progress::~Progress() {
+Progress::~Progress() { end(); }
+
+void Progress::end() {
     if (on_terminal_) std::fputs("\r\x1b[K", stderr);
+    on_terminal_ = false;
 }
 
 void Progress::show(std::size_t done) {

@@ -19,6 +19,8 @@ class Progress {
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
     void show(std::size_t done);
+    // Takes the line away, before something else is told.
+    void end();
 
  private:
     std::size_t count_;

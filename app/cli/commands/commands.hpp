@@ -21,6 +21,7 @@ void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
+void add_sweep(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new

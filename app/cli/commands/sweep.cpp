@@ -1,0 +1,197 @@
+// sweep: many runs as a table.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <system_error>
+
+#include "cli/assets.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/commands/common.hpp"
+#include "cli/sweep_output.hpp"
+#include "cli/terminal.hpp"
+#include "model/read_system.hpp"
+#include "output/output.hpp"
+#include "pictures/progress.hpp"
+
+namespace achilles {
+
+namespace {
+
+struct SweepArguments {
+    std::string system;
+    AskedSweep asked;
+    SweepOutputAsked output;
+    std::vector<std::string> settings;
+    OptionOverrides overrides;
+    int threads = 0;
+};
+
+std::atomic<bool> asked_to_stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+// The chunks under way are finished. Who asks twice does not wait for them.
+void stop_when_asked() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { asked_to_stop = true; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+}
+
+int threads_from(const std::string& text) {
+    constexpr int most = 1024;
+    const double count = number_from("--threads", text);
+    if (!(count >= 1 && count <= most && count == std::floor(count)))
+        throw InputError("--threads " + text, {}, fmt::format("a whole number from 1 to {} is expected", most));
+    return static_cast<int>(count);
+}
+
+// What is told once of all runs: ends of the axes that no run of the file's ranges has.
+void warn_of(const SystemDescription& description, const Sweep& sweep) {
+    warn(description, sweep.base);
+    for (const SweepAxis& axis : sweep.axes) {
+        Run file = default_run(description);
+        for (const double end : {axis.low, axis.high}) {
+            double* const place = find_value(description, file, axis.name);
+            if (place == nullptr) continue;
+            *place = end;
+            for (const std::string& outside : outside_ranges(description, file))
+                if (outside.starts_with(axis.name + " =")) print_clean(stderr, "achilles: warning: {}\n", outside);
+        }
+    }
+}
+
+// Runs that are points with another outcome than the end time: so many, and the first.
+class Failures {
+ public:
+    void note(const Rows& rows) {
+        const std::scoped_lock lock(mutex_);
+        for (std::size_t i = 0; i < rows.count(); ++i) {
+            const bool is_next_row = i > 0 && rows.points[i] == rows.points[i - 1];
+            if (is_next_row || rows.ends[i] == RunEnd(Outcome::Kind::end_time)) continue;
+            Kind& kind = kinds_[rows.ends[i].code()];
+            ++kind.count;
+            kind.first = std::min(kind.first, rows.points[i]);
+        }
+    }
+
+    void tell(const SweepTable& table) const {
+        const SweepPoints points(table.sweep(), table.model().description());
+        for (const auto& [code, kind] : kinds_) {
+            std::string where, why;
+            for (std::size_t axis = 0; axis < table.sweep().axes.size(); ++axis)
+                where += fmt::format("{}{} = {}", axis == 0 ? "" : ", ", table.sweep().axes[axis].name,
+                                     table.sweep().value(axis, kind.first));
+            try {
+                table.model().check(points.run(kind.first));
+            } catch (const InputError& error) {
+                why = ": " + error.message;
+            }
+            const std::string_view outcome = RunEnd::from(code).text();
+            print_clean(stderr, "achilles: warning: {} of the runs: {}; the first has {}{}\n", kind.count, outcome,
+                        where, why);
+        }
+    }
+
+ private:
+    struct Kind {
+        std::uint64_t count = 0, first = most_points;
+    };
+    std::mutex mutex_;
+    std::map<std::uint8_t, Kind> kinds_;
+};
+
+int run(const SweepArguments& arguments) {
+    const auto path = find_system(arguments.system);
+    const SystemDescription description = read_system(path);
+    const Run base = asked_run(description, arguments.settings, arguments.overrides);
+    const Sweep sweep = make_sweep(arguments.asked, base, description);
+    const SweepTable table(std::make_shared<const Model>(description), sweep);
+    warn_of(description, sweep);
+    SweepOutput output(table, arguments.output, path, arguments.system);
+    stop_when_asked();
+    const std::uint64_t points = sweep.count();
+    Progress progress(points - output.done(), "runs");
+    const std::uint64_t before = output.done();
+    Failures failures;
+    const auto task = [&](Chunk chunk) {
+        const Rows rows = table.rows(chunk.first, chunk.count);
+        failures.note(rows);
+        return output.bytes(rows);
+    };
+    const auto write = [&](Chunk chunk, const std::string& bytes) {
+        output.append(chunk, bytes);
+        progress.show(chunk.first + chunk.count - before);
+    };
+    try {
+        if (do_chunks(before, points, arguments.threads, task, write, asked_to_stop)) {
+            output.finish();
+            progress.end();
+            failures.tell(table);
+            return reached_end;
+        }
+    } catch (const std::system_error& problem) {
+        print_clean(stderr, "achilles: the file cannot be written: {}\n", problem.what());
+    }
+    progress.end();
+    const std::string how = output.how_to_go_on();
+    print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
+    return stopped_early;
+}
+
+void add_texts(CLI::App& command, const char* flag, std::vector<std::string>& texts, const char* type,
+               const char* about) {
+    command.add_option(flag, texts, about)
+        ->type_name(type)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program, int& status) {
+    const auto arguments = std::make_shared<SweepArguments>();
+    CLI::App* command = program.add_subcommand("sweep",
+                                               "Many runs as a table, CSV or HDF5: over values of parameters, "
+                                               "starts and options");
+    add_system_argument(*command, arguments->system);
+    AskedSweep& asked = arguments->asked;
+    add_texts(*command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
+              "what varies: a parameter, x or x' of the start, or an option that is a number (end), over COUNT values "
+              "from LOW to HIGH, or log:LOW:HIGH:COUNT; given again, the first is the slowest");
+    add_texts(*command, "--print", asked.prints, "WHAT",
+              "what is asked of a run: an expression over its end, with zeno_time(k), impact_time(k), impact_speed(k), "
+              "release_time(k), zeno_points, impacts, releases, least_gap; or held, or outcome; may be given again");
+    const auto text_option = [&](const char* flag, std::optional<std::string>& place, const char* type,
+                                 const char* about) {
+        command
+            ->add_option_function<std::string>(
+                flag, [&place](const std::string& text) { place = text; }, about)
+            ->type_name(type);
+    };
+    text_option("--at", asked.at, "impact|zeno|release|EXPRESSION",
+                "a row at every such event, or where the expression passes zero upwards, in place of the end");
+    text_option("--after", asked.after, "T", "of --at: not before this time");
+    text_option("--random", asked.random, "N", "so many points at random, of --over NAME=LOW:HIGH without COUNT");
+    text_option("--seed", asked.seed, "S", "another S, other points (default 1)");
+    SweepOutputAsked& output = arguments->output;
+    command->add_option("--csv", output.csv, "where to write the table; without a file, to standard output")
+        ->type_name("F");
+    command->add_option("--hdf5", output.hdf5, "the same as HDF5: /axes/NAME, /values/WHAT")->type_name("F");
+    command->add_flag("--units", output.units, "a second line of --csv has the units of the columns");
+    command->add_flag("--resume", output.resume, "go on with the same sweep where it was interrupted");
+    command
+        ->add_option_function<std::string>(
+            "--threads", [arguments](const std::string& text) { arguments->threads = threads_from(text); },
+            "so many at once (default: one for every core); the files are the same")
+        ->type_name("N");
+    add_run_options(*command, arguments->settings, arguments->overrides);
+    command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace achilles

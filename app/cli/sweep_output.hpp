@@ -1,0 +1,57 @@
+// Where the table of a sweep goes.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "cli/write_files.hpp"
+#include "output/sweep_files.hpp"
+#include "output/sweep_log.hpp"
+
+namespace achilles {
+
+struct SweepOutputAsked {
+    std::string csv, hdf5;  // files; csv: or -, standard output
+    bool units = false, resume = false;
+};
+
+// Files that are there when the sweep is done. Until then it is kept in a log, F.part of the first file F, which is gone on with
+// where it ends. A table for standard output or a device alone is written as it is made, and kept nowhere.
+class SweepOutput {
+ public:
+    // Looks whether the files can be written; nothing is computed before. Throws InputError.
+    SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const std::filesystem::path& system_file,
+                const std::string& system_name);
+    ~SweepOutput();
+    SweepOutput(const SweepOutput&) = delete;
+    SweepOutput& operator=(const SweepOutput&) = delete;
+
+    // So many points are there already.
+    std::uint64_t done() const { return log_ ? log_->done() : printed_; }
+    // What is kept of rows. Asked of several threads at once.
+    std::string bytes(const Rows& rows) const;
+    // Takes them, in the order of the points. Throws std::system_error.
+    void append(Chunk chunk, const std::string& bytes);
+    // Makes the files. Throws std::system_error; the log stays then.
+    void finish();
+    // For a message: ": --resume goes on with F.part", or nothing.
+    std::string how_to_go_on();
+
+ private:
+    SweepKey key() const;
+    std::string name_of_csv() const;
+    void write_csv(const std::string& file) const;
+    void make(const std::string& path, const std::function<void(const std::string& file)>& write) const;
+
+    const SweepTable& table_;
+    std::string csv_, hdf5_, log_path_;
+    bool units_;
+    SweepOrigin origin_;
+    OutputFiles files_;  // whether they can be written
+    std::unique_ptr<SweepLog> log_;
+    int stream_ = -1;  // where there is no log
+    std::uint64_t printed_ = 0;
+};
+
+}  // namespace achilles
