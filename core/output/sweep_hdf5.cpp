@@ -69,6 +69,7 @@ class Library {
     const std::string& fault() const { return fault_; }
 
 #define ACHILLES_HDF5_FUNCTION(name) decltype(&::name) name = address<decltype(&::name)>(#name)
+    ACHILLES_HDF5_FUNCTION(H5dont_atexit);
     ACHILLES_HDF5_FUNCTION(H5open);
     ACHILLES_HDF5_FUNCTION(H5Eset_auto2);
     ACHILLES_HDF5_FUNCTION(H5Fcreate);
@@ -106,6 +107,8 @@ class Library {
  private:
     Library() {
         if (!fault_.empty()) return;
+        // At the end of the program it would close files once more, and crashes where one could not be written.
+        H5dont_atexit();
         H5open();
         H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what is wrong is told once, by us
     }

@@ -297,6 +297,20 @@ TEST_F(SweepHdf5, HoldsSectionsByRows) {
     for (const std::size_t column : {0, 1, 3}) EXPECT_TRUE(holds(numbers(column))) << names_[column];
 }
 
+// The log has room, the file has not.
+TEST_F(SweepHdf5, IsMadeOfTheLogWhereItCouldNotBeWritten) {
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:30 --print x --hdf5 ";
+    if (folder_.run(sweep + "whole.h5").status == 2) GTEST_SKIP() << "there is no HDF5";
+    const Answer full = folder_.run(sweep + "a.h5", "trap '' XFSZ; ulimit -f 6;");
+    EXPECT_EQ(full.status, 3);
+    EXPECT_EQ(full.err,
+              "achilles: the file cannot be written: a.h5: File too large\nachilles: the sweep stopped early, at "
+              "30 of 30 runs: the same command with --resume goes on from a.h5.part\n");
+    EXPECT_EQ(folder_.files().size(), 2u) << "the whole one, and the log";
+    EXPECT_EQ(folder_.run(sweep + "a.h5 --resume").status, 0);
+    EXPECT_EQ(content(folder_.path() / "a.h5"), content(folder_.path() / "whole.h5"));
+}
+
 TEST_F(SweepHdf5, HasNoPathThroughAnother) {
     const Answer answer = folder_.run("sweep ball_on_sine --over x=-1:1:5 --print y --print y/2 --hdf5 b.h5");
     EXPECT_EQ(answer.status, 2);
