@@ -127,17 +127,21 @@ void SweepOutput::write_csv(const std::string& path) const {
     if (!is_standard && ::close(file) != 0) fail(path, errno);
 }
 
-// Under another name first, which is always the same: one that was left behind is overwritten. On disk before it has its own.
+// Under another name first, which is always the same: one that was left behind is overwritten. On disk before it has its own,
+// with the mode of what it replaces.
 void SweepOutput::make(const std::string& path, const std::function<void(const std::string&)>& write) const {
     if (is_stream(path)) return write(path);
     const fs::path target = fs::weakly_canonical(path);
-    const std::string file = target.string() + ".new";
+    const std::string file = target.string() + ".part.new";
     try {
         write(file);
         const int written = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
         const int problem = written < 0 || ::fsync(written) != 0 ? errno : 0;
         if (written >= 0) ::close(written);
         if (problem != 0 && problem != EINVAL) fail(path, problem);
+        std::error_code ignored;
+        const fs::file_status there = fs::status(target, ignored);
+        if (fs::exists(there)) fs::permissions(file, there.permissions(), ignored);
         fs::rename(file, target);
     } catch (const std::system_error&) {
         ::unlink(file.c_str());

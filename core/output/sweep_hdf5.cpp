@@ -296,10 +296,8 @@ class Writer {
  public:
     Writer(hid_t file, const SweepTable& table, const Extent& extent) : file_(file), table_(table), extent_(extent) {
         is_grid_ = !table.is_section() && !table.sweep().random;
-        if (is_grid_)
-            for (const SweepAxis& axis : table.sweep().axes) shape_.push_back(axis.count);
-        else
-            shape_.push_back(extent.rows);
+        for (const SweepAxis& axis : table.sweep().axes) shape_.push_back(axis.count);
+        if (!is_grid_) shape_ = {extent.rows};
     }
 
     void write(const EachRows& each_rows) {

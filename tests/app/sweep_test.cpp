@@ -57,6 +57,19 @@ TEST(SweepCommand, WritesATable) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"table.csv"});
 }
 
+TEST(SweepCommand, ReplacesAFileWithItsModeAndLeavesOthersAlone) {
+    namespace fs = std::filesystem;
+    const Folder folder;
+    folder.put("a.csv", "old\n");
+    folder.put("a.csv.new", "mine\n");
+    fs::permissions(folder.path() / "a.csv", fs::perms(0640));
+    EXPECT_EQ(folder.run("sweep ball_on_sine --over x=0:1:3 --print x --end 1 --csv a.csv").status, 0);
+    EXPECT_TRUE(content(folder.path() / "a.csv").starts_with("x,x,outcome\n0,"));
+    EXPECT_EQ(fs::status(folder.path() / "a.csv").permissions(), fs::perms(0640));
+    EXPECT_EQ(content(folder.path() / "a.csv.new"), "mine\n");
+    EXPECT_EQ(folder.files().size(), 2u);
+}
+
 TEST(SweepCommand, LeavesEmptyWhatThereIsNot) {
     const Folder folder;
     const Answer answer =
