@@ -82,12 +82,13 @@ namespace {
 template <class Element>
 void put(std::string& bytes, const std::vector<Element>& list) {
     static_assert(std::is_trivially_copyable_v<Element>);
-    bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(Element));
+    if (!list.empty()) bytes.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof(Element));
 }
 
 template <class Element>
 void take(std::string_view& bytes, std::vector<Element>& list, std::size_t count) {
     if (bytes.size() < count * sizeof(Element)) throw std::runtime_error("its rows are cut short");
+    if (count == 0) return;
     list.resize(count);
     std::memcpy(list.data(), bytes.data(), count * sizeof(Element));
     bytes.remove_prefix(count * sizeof(Element));

@@ -94,7 +94,8 @@ TEST(SweepTable, IsTheSameInAnyChunks) {
         Rows parts;
         const auto append = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
         const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
-            return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+            return a.size() == b.size() &&
+                   (a.empty() || 0 == std::memcmp(a.data(), b.data(), a.size() * sizeof(double)));
         };
         for (std::uint64_t first = 0; first < table.sweep().count(); first += 4) {
             const Rows rows = table.rows(first, std::min<std::uint64_t>(4, table.sweep().count() - first));
