@@ -171,9 +171,9 @@ TEST(SweepSections, AreTheEventsOfARun) {
 TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
     // x = x'(0) t in flight: it passes pi/7 once, by a known time; sin(4*t) so often; a gap never, as it only touches zero; and y'
     // jumps at impacts, which is no passage.
-    const auto times = [](const std::string& zero) {
+    const auto times = [](const std::string& zero, const std::string& after = "") {
         const SweepTable table =
-            table_of("ball_on_floor", "--over \"x'=0.5:1:2\" --end 2 --print t --at \"" + zero + "\"");
+            table_of("ball_on_floor", "--over \"x'=0.5:1:2\" --end 2 --print t --at \"" + zero + "\"" + after);
         return table.rows(0, 1).times;
     };
     const std::vector<double> once = times("x - pi/7");
@@ -183,6 +183,7 @@ TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
     ASSERT_EQ(waves.size(), 12u) << "not at the start, where it begins with zero";
     for (std::size_t k = 0; k < waves.size(); ++k)
         EXPECT_NEAR(waves[k], static_cast<double>(k + 1) * std::numbers::pi / 20.0, 1e-12);
+    EXPECT_EQ(times("sin(40*t)", " --after 1"), std::vector<double>(waves.begin() + 6, waves.end()));
     for (const char* never : {"gap", "y'", "pi/7 - x", "-1", "gap'"}) {
         const std::vector<double> none = times(never);
         ASSERT_EQ(none.size(), 1u) << never;
