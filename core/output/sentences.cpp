@@ -101,7 +101,8 @@ std::string Sentences::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
     const std::string names = is_of_several_ ? joined_names(*trajectory_.model, event.contacts, " and ") : "";
     const bool is_one = event.contacts.count() == 1;
-    const std::string begins = names.empty() ? "contact begins" : names + (is_one ? " is held" : " are held");
+    std::string begins = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
+    if (begins.empty()) begins = names.empty() ? "contact begins" : names + (is_one ? " is held" : " are held");
     // Its impact has told what is lost.
     if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
     const Pile pile = pile_of(trajectory_, index);
@@ -119,9 +120,17 @@ std::string Sentences::zeno(std::size_t index) const {
     return text;
 }
 
+std::string Sentences::own_words(ContactSet contact, std::string ConstraintDescription::*words) const {
+    std::size_t which = 0;
+    while (!contact.contains(which)) ++which;
+    return trajectory_.model->description().constraints[which].*words;
+}
+
 std::string Sentences::release(const Event& event) const {
-    if (!is_of_several_) return "contact ends: the contact force falls to zero";
     const bool is_one = event.contacts.count() == 1;
+    if (const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : ""; !ends.empty())
+        return ends + ": its contact force falls to zero";
+    if (!is_of_several_) return "contact ends: the contact force falls to zero";
     return joined_names(*trajectory_.model, event.contacts, " and ") +
            (is_one ? " lets go: its force falls to zero" : " let go: their forces fall to zero");
 }

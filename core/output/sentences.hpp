@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "run/trajectory.hpp"
+#include "system/description.hpp"
 
 namespace achilles {
 
@@ -34,6 +35,8 @@ class Sentences {
     std::string release(const Event& event) const;
     std::string state(ContactSet held) const;
     std::string lost(double energy) const;
+    // Of one contact, what the file says of it; may be empty.
+    std::string own_words(ContactSet contact, std::string ConstraintDescription::*words) const;
 
     const Trajectory& trajectory_;
     bool is_of_several_ = false;

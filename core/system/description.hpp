@@ -109,6 +109,7 @@ std::vector<Text> texts_of(const DrawingDescription& drawing);
 struct ConstraintDescription {
     std::string name;  // "contact" where the file gives none, which may have one constraint then
     Text gap, restitution;
+    std::string begins{}, ends{};  // what a person says where contact begins and ends: "knee locks"; may be empty
     std::vector<DrawingDescription> drawings;  // of what is touched, as written
     Location at;
 };

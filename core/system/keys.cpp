@@ -47,6 +47,8 @@ std::span<const FileTable> file_tables() {
           {"gap", "expression, needed",
            "h(q, t): the system is free where it is positive, an impact is where it closes"},
           {"restitution", "expression, needed", "e, of the parameters, from 0 (plastic) to 1 (elastic)"},
+          {"begins", "text", "what is said where contact begins, as in \"knee locks\""},
+          {"ends", "text", "and where it ends, as in \"knee opens\""},
           {"drawing", "tables", "[[constraint.drawing]]: what is touched, drawn as any [[drawing]]"}}},
         {"[[view]]",
          {{"name", "text, needed", "what --view calls it"},

@@ -208,6 +208,8 @@ void read_constraints(Reading& reading, const Fields& root) {
         if (!is_named) reading.names.complete = false;  // nor are those of its gap and its force
         mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
         mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
+        mistakes.attempt([&] { constraint.begins = fields.string_or("begins", ""); });
+        mistakes.attempt([&] { constraint.ends = fields.string_or("ends", ""); });
     }
 }
 

@@ -146,6 +146,15 @@ TEST(Sentences, TellLandingsAndEarlyEnds) {
     EXPECT_TRUE(holds(Sentences(elastic).end(), "the run ends early: too many impacts")) << Sentences(elastic).end();
 }
 
+TEST(Sentences, HaveTheWordsOfTheFile) {
+    const Trajectory trajectory = run_of("double_pendulum");
+    const Sentences sentences(trajectory);
+    std::size_t zeno = 0;
+    while (trajectory.events[zeno].kind != Event::Kind::zeno) ++zeno;
+    EXPECT_EQ(sentences.of(zeno).find("knee locks: 10 impacts since "), 0U) << sentences.of(zeno);
+    EXPECT_EQ(sentences.of(zeno + 1), "knee opens: its contact force falls to zero");
+}
+
 TEST(Sentences, BoundsAreRoundedUp) {
     EXPECT_EQ(rounded_up(3.51e-7), "3.6e-7");
     EXPECT_EQ(rounded_up(1.0e-3), "0.001");
