@@ -1,6 +1,7 @@
-// A function over a part of a plane, sampled on a grid: its zero line, and where it is not negative.
+// A function over a part of a plane, sampled on a grid: its lines of equal value, and where it is not negative.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -13,17 +14,23 @@ using PlaneFunction = std::function<double(const Point&)>;
 
 class Field {
  public:
-    // Samples over the limits.
-    Field(const Drawing& limits, const PlaneFunction& value);
+    // Samples over the limits: at the corners of so many cells across and upwards.
+    Field(const Drawing& limits, const PlaneFunction& value, int columns = 160, int rows = 120);
+
+    // The least of several over the same part, of which there is one at least.
+    static Field least(std::span<const Field> fields);
 
     // By marching squares: segments, separated by NaN points.
-    std::vector<Point> zero_line() const;
+    std::vector<Point> level_line(double level) const;
+    std::vector<Point> zero_line() const { return level_line(0.0); }
     // Convex polygons that fill the part where the function is zero or above; none covers another.
     std::vector<std::vector<Point>> not_negative() const;
     double largest() const;  // size of a value
+    // Where its values lie, all of them but the highest and the lowest where these are far from the others; low > high where
+    // there are none.
+    std::array<double, 2> range() const;
 
  private:
-    static constexpr int columns = 160, rows = 120;
     struct Corner {
         Point at;
         double value;
@@ -31,10 +38,12 @@ class Field {
     Corner corner(int column, int row) const;
 
     Drawing limits_;
+    int columns_, rows_;
     std::vector<double> values_;  // row by row
 };
 
 // The border of where none of several functions is negative: the zero line of each, less where another is negative.
+std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> functions);
 std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions);
 
 }  // namespace achilles
