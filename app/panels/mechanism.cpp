@@ -312,11 +312,12 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
     const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
     const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
     const bool has_sides = Sides(session.trajectory(), session.samples()).exist();
-    for (const char* what : {"plane", "sides", "force", "velocity", "strobe", "trail"}) {
-        // Of the plane nothing else is switched, and where nothing is drawn not even that; of the sides the trail is.
+    for (const char* what : {"plane", "contours", "sides", "force", "velocity", "strobe", "trail"}) {
+        // Of the plane its contours are switched, and where nothing is drawn the plane is not; of the sides the trail is.
         const std::string_view word = what;
         const bool is_plane = word == "plane";
-        if (is_plane ? session.mechanism().is_empty() : plane) continue;
+        if (is_plane ? session.mechanism().is_empty() : plane != (word == "contours")) continue;
+        if (word == "contours" && !has_contours(state.plane)) continue;
         if (word == "sides" ? !has_sides : sides && word != "trail" && !is_plane) continue;
         const bool shown = session.scene().shows(what);
         const ImVec2 size = ImGui::CalcTextSize(what);
@@ -327,9 +328,10 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
         ImGui::PopID();
         remember(state, std::string("show ") + what);
         const bool lit = ImGui::IsItemHovered();
-        tooltip(is_plane && shown ? "back to the mechanism"
-                : is_plane        ? "the configuration plane: two coordinates, where the gap is open, and the run"
-                : word == "sides" ? (shown ? "back to the drawing" : "from two sides: x and z, y and z")
+        tooltip(is_plane && shown    ? "back to the mechanism"
+                : is_plane           ? "the configuration plane: two quantities, where the gap is open, and the run"
+                : word == "contours" ? (shown ? "hide the contours of the energy" : "contours of the energy")
+                : word == "sides"    ? (shown ? "back to the drawing" : "from two sides: x and z, y and z")
                 : word == "strobe" && !shown ? "show the poses at the events"
                                              : std::string(shown ? "hide the " : "show the ") + what);
         ImDrawList* list = ImGui::GetWindowDrawList();

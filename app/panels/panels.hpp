@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "figure/field.hpp"
+#include "figure/plane.hpp"
 #include "paint/mechanism.hpp"
 #include "panels/browser.hpp"
 #include "panels/focus.hpp"
@@ -134,23 +134,28 @@ struct HeldMechanism {
     double fastest = 0.0, strongest = 0.0;  // what the arrows are measured by
 };
 
-// The configuration plane: which two coordinates, and the picture until another run takes its place.
+// The configuration plane, and the picture until another run takes its place.
 struct PlaneView {
-    std::size_t pair = 0;
     bool is_held = false;  // the start, by the hand
     Point offset;          // from the hand to it, pixels
-    std::shared_ptr<const PreparedView> view;
+    PlaneTexts texts;
+    std::shared_ptr<const Plane> plane;  // of these
     std::shared_ptr<const Model> model;  // of that
-    std::size_t view_pair = 0;
     std::shared_ptr<const Panel> panel;
     std::optional<Run> run;  // of that
     double end = 0.0;
     bool dark = false;
-    Framing framing, framed;           // as it is to be; as it was made
-    std::shared_ptr<const Field> gap;  // the least of all
-    std::vector<Point> border;         // where one is zero, and none negative
-    std::vector<double> gap_key;       // what these depend on
-    const PreparedView* gap_of = nullptr;
+    Framing framing, framed;  // as it is to be; as it was made
+    std::vector<Point> event_places;
+    std::vector<ImpactArrow> arrows;
+    Point arrows_in;  // a plot so wide and high, pixels
+    Plane::Surfaces surfaces;
+    std::vector<Plane::Level> levels;
+    std::vector<double> surfaces_key, levels_key;  // what these depend on; empty: nothing is known yet
+    // In its menu.
+    std::string x, y;          // as they are typed
+    bool was_entered = false;  // what was typed is being shown: if that is refused the menu stays
+    bool is_wrong = false;     // it was refused
 };
 
 // Where a hand has moved the strip of results.
@@ -267,8 +272,9 @@ float state_height(const Session& session, float panel_width);
 std::string time_text(const Trajectory& trajectory, std::size_t event);
 // What that stands for.
 std::string precision_text();
-// In place of the mechanism, of any system: two coordinates, where the gap is open, the run, and its start to drag. With one
+// In place of the mechanism, of any system: two quantities, where the gap is open, the run, and its start to drag. With one
 // coordinate its phase plane.
+bool has_contours(const PlaneView& plane);
 void show_plane(const Session& session, const Rectangle& area, PanelState& state, Commands& commands);
 void show_timeline(const Session& session, PanelState& state, Commands& commands);
 float timeline_height();

@@ -1,13 +1,12 @@
-// In place of the mechanism, of any system: the plane of two coordinates, shaded where the gap is open, the run in it,
-// and the start to drag. A system of one coordinate has its phase plane.
+// In place of the mechanism, of any system: the plane of two quantities, shaded where the gap is open, the run in it,
+// and where they are coordinates or rates the start to drag.
 #include <algorithm>
 #include <cmath>
 
 #include "figure/axes.hpp"
 #include "figure/boundary.hpp"
-#include "figure/field.hpp"
-#include "figure/label.hpp"
-#include "paint/label.hpp"
+#include "figure/values.hpp"
+#include "panels/plane.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
@@ -15,39 +14,20 @@ namespace achilles {
 
 namespace {
 
-// What an axis shows: a coordinate, or its rate.
-struct PlaneAxis {
-    std::string name;
-    Eigen::Index coordinate = 0;
-    bool is_rate = false;
-    double& of(State& state) const { return (is_rate ? state.v : state.q)[coordinate]; }
-};
-using Axes = std::pair<PlaneAxis, PlaneAxis>;
-
-std::vector<Axes> all_axes(const Session& session) {
-    const auto& coordinates = session.description().coordinates;
-    const auto axis = [&](std::size_t i, bool is_rate) {
-        return PlaneAxis{coordinates[i].name + (is_rate ? "'" : ""), static_cast<Eigen::Index>(i), is_rate};
-    };
-    std::vector<Axes> all;
-    for (std::size_t i = 0; i < coordinates.size(); ++i)
-        for (std::size_t j = i + 1; j < coordinates.size(); ++j) all.emplace_back(axis(i, false), axis(j, false));
-    if (all.empty()) all.emplace_back(axis(0, false), axis(0, true));
-    return all;
+void choose(const Session& session, PlaneView& plane) {
+    const auto& chosen = session.scene().plane();
+    const PlaneTexts texts = chosen ? PlaneTexts{chosen->x, chosen->y} : planes_of(session.description()).front();
+    if (plane.plane && plane.model == session.model() && plane.texts == texts) return;
+    plane.plane = std::make_shared<const Plane>(*session.model(), texts);
+    plane.model = session.model();
+    plane.texts = texts;
+    plane.framing = {};
+    plane.panel.reset();
 }
 
 // The run's picture in the plane, made anew where something of it has changed.
-const Panel& panel_of(const Session& session, const Axes& axes, PlaneView& plane) {
+const Panel& panel_of(const Session& session, PlaneView& plane) {
     const Trajectory& trajectory = session.trajectory();
-    if (plane.model != session.model() || plane.view_pair != plane.pair || !plane.view) {
-        ViewDescription view;
-        view.x.text = axes.first.name;
-        view.y.push_back({axes.second.name, {}});
-        plane.view = std::make_shared<const PreparedView>(*session.model(), view);
-        plane.model = session.model();
-        plane.view_pair = plane.pair;
-        plane.panel.reset();
-    }
     const bool is_same = plane.panel && plane.run == trajectory.run && plane.end == trajectory.end_time &&
                          plane.dark == session.theme().dark && plane.framed == plane.framing;
     if (is_same) return *plane.panel;
@@ -56,135 +36,111 @@ const Panel& panel_of(const Session& session, const Axes& axes, PlaneView& plane
     plane.dark = session.theme().dark;
     plane.framed = plane.framing;
     plane.panel = std::make_shared<const Panel>(
-        compose(trajectory, session.samples(), *plane.view, session.theme(), plane.framing));
+        compose(trajectory, session.samples(), plane.plane->view(), session.theme(), plane.framing));
+    plane.event_places.clear();
+    plane.arrows_in = {};
+    plane.surfaces_key.clear();
+    plane.levels_key.clear();
     return *plane.panel;
 }
 
 // Where the hand moves the start, the other coordinates are those of the start; else the present ones.
 State slice_of(const Session& session, const PlaneView& plane) {
-    return plane.is_held ? State{session.run().q, session.run().v} : session.now().state;
+    if (!plane.is_held) return session.now().state;
+    return {session.run().q, session.run().v, session.run().options.start_time};
 }
 
-// The least gap over the part of the plane that is seen, in the units that are shown, and the border of what is open.
-const Field& gap_of(const Session& session, const Panel& panel, const Axes& axes, PlaneView& plane) {
-    State state = slice_of(session, plane);
-    std::vector<double> key{panel.x.low, panel.x.high, panel.y.low, panel.y.high};
-    const double t = plane.is_held ? session.run().options.start_time : session.now().t;
-    const Model& model = *session.model();
-    if (has_moving_gap(model)) key.push_back(t);
-    const auto& parameters = session.run().parameters;
-    key.insert(key.end(), parameters.begin(), parameters.end());
-    for (Eigen::Index i = 0; i < state.q.size(); ++i)
-        if (i != axes.first.coordinate && i != axes.second.coordinate) key.push_back(state.q[i]);
-    if (plane.gap && plane.gap_key == key && plane.gap_of == plane.view.get()) return *plane.gap;
-    const auto& quantities = plane.view->quantities();
+// The part of the plane that is seen.
+Drawing seen(const Panel& panel) {
     Drawing limits;
     limits.x_low = panel.x.low, limits.x_high = panel.x.high;
     limits.y_low = panel.y.low, limits.y_high = panel.y.high;
-    plane.gap_key = key;
-    plane.gap_of = plane.view.get();
-    std::vector<PlaneFunction> gaps;
-    for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
-        auto gap = model.evaluator(model.gap(contact), parameters);
-        gap.input(model.layout().t()) = t;
-        gaps.emplace_back([&state, &axes, &quantities, gap](const Point& p) mutable {
-            axes.first.of(state) = p.x / quantities[0].factor;
-            axes.second.of(state) = p.y / quantities[1].factor;
-            for (Eigen::Index i = 0; i < state.q.size(); ++i) gap.input(static_cast<std::size_t>(i)) = state.q[i];
-            gap.run();
-            return gap.output(0);
-        });
+    return limits;
+}
+
+// Lines and shade as they are at the present: made anew where what they depend on has changed.
+void update_lines(const Session& session, const Panel& panel, PlaneView& plane) {
+    const State state = slice_of(session, plane);
+    const auto& parameters = session.run().parameters;
+    const Drawing limits = seen(panel);
+    const auto changes = [&](std::vector<double>& key, std::vector<double> now) {
+        now.insert(now.end(), parameters.begin(), parameters.end());
+        now.insert(now.end(), {limits.x_low, limits.x_high, limits.y_low, limits.y_high});
+        if (key == now) return false;
+        key = std::move(now);
+        return true;
+    };
+    std::vector<double> of_surfaces = plane.plane->surfaces_key(state);
+    const bool by_run = !plane.plane->is_of_states();  // of two functions of two coordinates, seen where the run goes
+    if (by_run && has_moving_gap(*session.model())) of_surfaces.push_back(state.t);
+    if (changes(plane.surfaces_key, std::move(of_surfaces))) {
+        plane.surfaces = plane.plane->surfaces(parameters, state, limits);
+        if (by_run && plane.surfaces.lines.empty())
+            plane.surfaces.lines.push_back(
+                {0, boundary(session.trajectory(), session.samples(), plane.plane->view(), panel, state.t)});
     }
-    plane.border = border(limits, gaps);
-    plane.gap = std::make_shared<const Field>(limits, [&](const Point& p) {
-        double least = gaps.front()(p);
-        for (std::size_t i = 1; i < gaps.size(); ++i) least = std::min(least, gaps[i](p));
-        return least;
-    });
-    return *plane.gap;
+    if (!session.scene().shows("contours"))
+        plane.levels.clear(), plane.levels_key.clear();
+    else if (changes(plane.levels_key, plane.plane->levels_key(state)))
+        plane.levels = plane.plane->levels(parameters, state, limits);
 }
 
 ImVec2 pixel(const Point& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
 
 // Lightly, over everything: what lies under it stays what it is.
-void shade(const Field& gap, const PanelMap& map, ImU32 color) {
+void shade(const std::vector<std::vector<Point>>& parts, const PanelMap& map, ImU32 color) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImDrawListFlags flags = list->Flags;
     list->Flags &= ~ImDrawListFlags_AntiAliasedFill;  // its soft edges would show where parts meet
-    for (const std::vector<Point>& part : gap.not_negative()) {
+    for (const std::vector<Point>& part : parts) {
         for (const Point& corner : part) list->PathLineTo(pixel(map(corner)));
         list->PathFillConvex(color);
     }
     list->Flags = flags;
 }
 
-// The line above the axes: what they are, to be pressed for the next two, and what the shade means.
-void show_heading(const Session& session, const std::vector<Axes>& all, const Rectangle& row, PanelState& state) {
-    PlaneView& plane = state.plane;
-    const Axes& axes = all[plane.pair];
-    const float size = ImGui::GetFontSize();
-    const std::string names = typeset_name(axes.first.name) + ", " + typeset_name(axes.second.name),
-                      next = all.size() > 1 ? "  (next)" : "";
-    const std::string title = fitted(names, row.width - label_width(next, size)) + next;
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const float width = label_width(title, size);
-    ImGui::SetCursorScreenPos({row.x, row.y});
-    const bool pressed = ImGui::InvisibleButton("axes", {width, row.height}) && all.size() > 1;
-    remember(state, "plane axes");
-    if (all.size() > 1 || title != names)
-        tooltip((title == names + next ? "" : names + "\n") +
-                (all.size() > 1 ? "a click: the next two coordinates" : ""));
-    const bool lit = all.size() > 1 && ImGui::IsItemHovered();
-    paint_label(list, row.x, row.y, title, lit ? text_color() : faint_color(), size);
-    if (pressed) {
-        plane.pair = (plane.pair + 1) % all.size();
-        plane.framing = {};
-    }
-    const std::string meaning =
-        session.description().coordinates.size() > 2 ? "h \u2265 0, the others as now" : "h \u2265 0";
-    const float left = row.x + row.width - label_width(meaning, size), box = units(11.0F);
-    if (left - 2.0F * box < row.x + width) return;
-    const float y = std::floor(row.y + 0.5F * (ImGui::GetTextLineHeight() - box));
-    list->AddRectFilled({left - box - units(6.0F), y}, {left - units(6.0F), y + box},
-                        packed(session.theme().accent, 0.25F));
-    paint_label(list, left, row.y, meaning, faint_color(), size);
-}
-
 // The event whose marker is under the mouse, by its number; of a run with very many, no impact.
-std::optional<int> event_at(const Session& session, const Axes& axes, const PanelMap& map, const PlaneView& plane) {
+std::optional<int> event_at(const Session& session, const PanelMap& map, PlaneView& plane) {
     constexpr std::size_t most = 20000;
     const auto& events = session.trajectory().events;
-    const auto& quantities = plane.view->quantities();
-    NearestEvent nearest(ImGui::GetIO().MousePos, units(marker_reach));
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        if (events.size() > most && events[i].kind == Event::Kind::impact) continue;
-        State state = sample_at(session.trajectory(), events[i]).state;
-        nearest.ask(static_cast<int>(i) + 1, events[i].kind, map.x(axes.first.of(state) * quantities[0].factor),
-                    map.y(axes.second.of(state) * quantities[1].factor));
+    const bool is_asked_of_all = events.size() <= most;
+    if (plane.event_places.size() != events.size()) {
+        Values values(plane.plane->view(), session.trajectory());
+        plane.event_places.resize(events.size());
+        for (std::size_t i = 0; i < events.size(); ++i) {
+            if (!is_asked_of_all && events[i].kind == Event::Kind::impact) continue;
+            values.set(sample_at(session.trajectory(), events[i]));
+            plane.event_places[i] = {values[0], values[1]};
+        }
     }
+    NearestEvent nearest(ImGui::GetIO().MousePos, units(marker_reach));
+    for (std::size_t i = 0; i < events.size(); ++i)
+        if (is_asked_of_all || events[i].kind != Event::Kind::impact)
+            nearest.ask(static_cast<int>(i) + 1, events[i].kind, map.x(plane.event_places[i].x),
+                        map.y(plane.event_places[i].y));
     return nearest.found();
 }
 
 // As in a plot: a click on a marker selects that event.
-void use_events(const Session& session, const Axes& axes, const PanelMap& map, const PlaneView& plane,
-                Commands& commands) {
+void use_events(const Session& session, const PanelMap& map, PlaneView& plane, Commands& commands) {
     if (ImGui::IsItemHovered() && !ImGui::IsAnyMouseDown())
-        if (const auto event = event_at(session, axes, map, plane)) name_event(session, *event);
+        if (const auto event = event_at(session, map, plane)) name_event(session, *event);
     if (!ImGui::IsItemActivated()) return;
-    if (const auto event = event_at(session, axes, map, plane)) commands.emplace_back(command::Select{*event});
+    if (const auto event = event_at(session, map, plane)) commands.emplace_back(command::Select{*event});
 }
 
 // The start under the hand: what it holds stays there, and the axes stand still until it lets go.
-void use_mouse(const Session& session, const Axes& axes, const Panel& panel, const PanelMap& map, const Point& start,
-               PanelState& state, Commands& commands) {
+void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, const Point& start, PanelState& state,
+               Commands& commands) {
     PlaneView& plane = state.plane;
     const ImVec2 mouse = ImGui::GetIO().MousePos, delta = ImGui::GetIO().MouseDelta;
-    const bool is_near = std::hypot(start.x - double{mouse.x}, start.y - double{mouse.y}) <= double{units(9.0F)};
+    const bool is_near = plane.plane->is_of_states() &&
+                         std::hypot(start.x - double{mouse.x}, start.y - double{mouse.y}) <= double{units(9.0F)};
     if (ImGui::IsItemHovered() && (is_near || plane.is_held)) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(start), units(11.0F), packed(text_color(), 0.5F), 32, units(1.5F));
         tooltip("drag: where the run starts");
     }
-    if (!is_near && !plane.is_held) use_events(session, axes, map, plane, commands);
+    if (!is_near && !plane.is_held) use_events(session, map, plane, commands);
     if (ImGui::IsItemActivated() && is_near) {
         plane.is_held = true;
         plane.offset = {start.x - mouse.x, start.y - mouse.y};
@@ -199,52 +155,83 @@ void use_mouse(const Session& session, const Axes& axes, const Panel& panel, con
     const double start_time = session.run().options.start_time;
     if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});
     const Point to = map.data({mouse.x + plane.offset.x, mouse.y + plane.offset.y});
-    const auto& quantities = plane.view->quantities();
+    const PlaneAxis &x = plane.plane->x(), &y = plane.plane->y();
     State wanted{session.run().q, session.run().v};
-    axes.first.of(wanted) = to.x / quantities[0].factor;
-    axes.second.of(wanted) = to.y / quantities[1].factor;
+    x.of(wanted) = to.x / x.factor;
+    y.of(wanted) = to.y / y.factor;
     wanted.q = start_towards(session, wanted.q);
-    commands.emplace_back(
-        command::Start{{{axes.first.name, axes.first.of(wanted)}, {axes.second.name, axes.second.of(wanted)}}});
+    commands.emplace_back(command::Start{{{x.text, x.of(wanted)}, {y.text, y.of(wanted)}}});
+}
+
+}  // namespace
+
+bool has_contours(const PlaneView& plane) { return plane.plane && plane.plane->is_of_states(); }
+
+namespace {
+
+// The run over the lines, and the arrows of its impacts.
+Rectangle paint_lines(const Session& session, const Rectangle& area, Panel panel, PlaneView& plane) {
+    const Theme& theme = session.theme();
+    std::vector<Curve> lines;
+    for (const Plane::Level& level : plane.levels) {
+        Color faint = theme.faint;
+        faint.a = 140;
+        lines.push_back({"", {faint, 1.0, {}}, level.points});
+    }
+    for (const Plane::Surface& surface : plane.surfaces.lines)
+        lines.push_back({"", {theme.surface, 2.0, {}}, surface.points});
+    panel.curves.insert(panel.curves.begin(), lines.begin(), lines.end());
+    return paint(panel, screen_style(theme), ImGui::GetWindowDrawList(), area, units(1.0F));
+}
+
+void update_arrows(const Session& session, const Panel& panel, const Rectangle& plot, PlaneView& plane) {
+    if (plane.arrows_in.x == double{plot.width} && plane.arrows_in.y == double{plot.height}) return;
+    plane.arrows_in = {plot.width, plot.height};
+    constexpr double least = 7.0;
+    plane.arrows = impact_arrows(session.trajectory(), plane.plane->view(), panel, plot.width, plot.height,
+                                 least * double{units(1.0F)});
+}
+
+// Where a sample is in the plane: a circle each for the start and the present.
+Point place_of(const Session& session, const PanelMap& map, const PlaneView& plane, const Sample& sample) {
+    if (plane.plane->is_of_states()) return map(plane.plane->at(sample.state));
+    const std::vector<double> values = values_at(session.trajectory(), sample, plane.plane->view());
+    return map({values[0], values[1]});
 }
 
 }  // namespace
 
 void show_plane(const Session& session, const Rectangle& area, PanelState& state, Commands& commands) {
-    const std::vector<Axes> all = all_axes(session);
     PlaneView& plane = state.plane;
-    if (plane.pair >= all.size()) plane.pair = 0;
+    choose(session, plane);
     const float edge = units(12.0F), line = ImGui::GetTextLineHeight() + units(4.0F);
-    show_heading(session, all, {area.x + edge, area.y, area.width - 2.0F * edge, line}, state);
-    const Axes& axes = all[plane.pair];
+    const Panel& panel = panel_of(session, plane);
+    update_lines(session, panel, plane);
+    show_plane_heading(session, {area.x + edge, area.y, area.width - 2.0F * edge, line}, state, commands);
     const Rectangle inner{area.x + edge, area.y + line, area.width - 2.0F * edge, area.height - line};
     if (inner.width < units(80.0F) || inner.height < units(60.0F)) return;
-    Panel panel = panel_of(session, axes, plane);
-    const Field& gap = gap_of(session, panel, axes, plane);
-    Stroke line_of_border;
-    line_of_border.color = session.theme().surface;
-    line_of_border.width = 2.0;
-    panel.curves.insert(panel.curves.begin(), Curve{"", line_of_border, plane.border});
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const Rectangle plot = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
+    const Rectangle plot = paint_lines(session, inner, panel, plane);
     if (plot.width < 2.0F || plot.height < 2.0F) return;
     const PanelMap map(panel, plot);
+    ImDrawList* list = ImGui::GetWindowDrawList();
     list->PushClipRect({plot.x, plot.y}, {plot.x + plot.width, plot.y + plot.height}, true);
-    shade(gap, map, packed(session.theme().accent, session.theme().dark ? 0.16F : 0.09F));
-    const auto& quantities = plane.view->quantities();
-    const auto place = [&](State of) {
-        return map({axes.first.of(of) * quantities[0].factor, axes.second.of(of) * quantities[1].factor});
-    };
-    const Point start = place({session.run().q, session.run().v}), now = place(session.now().state);
-    list->AddCircleFilled(pixel(start), units(6.0F), packed(session.theme().background), 24);
-    list->AddCircle(pixel(start), units(6.0F), packed(session.theme().accent), 24, units(2.0F));
-    list->AddCircleFilled(pixel(now), units(5.0F), packed(session.theme().background), 20);
+    const Theme& theme = session.theme();
+    shade(plane.surfaces.open, map, packed(theme.accent, theme.dark ? 0.16F : 0.09F));
+    update_arrows(session, panel, plot, plane);
+    paint_impacts(session, map, plane);
+    Sample first = session.at(session.run().options.start_time);
+    if (plane.plane->is_of_states()) first.state = {session.run().q, session.run().v};  // while another run is made
+    const Point start = place_of(session, map, plane, first), now = place_of(session, map, plane, session.now());
+    name_plane_lines(session, panel, map, plot, plane, {start, now});
+    list->AddCircleFilled(pixel(start), units(6.0F), packed(theme.background), 24);
+    list->AddCircle(pixel(start), units(6.0F), packed(theme.accent), 24, units(2.0F));
+    list->AddCircleFilled(pixel(now), units(5.0F), packed(theme.background), 20);
     list->AddCircleFilled(pixel(now), units(3.5F), packed(text_color()), 20);
     ImGui::SetCursorScreenPos({plot.x, plot.y});
     ImGui::InvisibleButton("plane", {plot.width, plot.height});
     remember(state, "plane");
     state.places["start"] = {static_cast<float>(start.x), static_cast<float>(start.y), 0.0F, 0.0F};
-    use_mouse(session, axes, panel, map, start, state, commands);
+    use_mouse(session, panel, map, start, state, commands);
     list->PopClipRect();
 }
 

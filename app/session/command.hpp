@@ -95,20 +95,30 @@ struct Save {
                                       Field(&Save::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> shown_things{
-    "accuracy", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery", "help",
-    "lens",     "palette",  "plane",  "plots",  "runs",      "sides",  "strobe", "trail", "velocity"};
+    "accuracy", "contours", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery",
+    "help",     "lens",     "palette",  "plane",  "plots",  "runs",      "sides",  "strobe", "trail", "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
                        // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
                        // events); the section accuracy of the controls; in place of the mechanism the configuration
-                       // plane, or of a system in space two sides; help: the card of keys and words; runs: the table
-                       // of the pinned ones beside the events; the gallery; the dialog of export
+        // plane, with contours of the energy, or of a system in space two sides; help: the card of keys and words; runs: the table
+        // of the pinned ones beside the events; the gallery; the dialog of export
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
         Field(&Show::what,
               {.one_of = &shown_things, .known = "these can be shown: {}", .complaint = "there is no '{}' to show{}"}),
         Field(&Show::on, {.yes = "show", .no = "hide", .is_name = true}));
+};
+
+struct DefaultPlane {  // the first two coordinates, or the only one and its rate
+    static constexpr auto said = Said("plane default", alone, Change::view);
+};
+struct ShowPlane {
+    std::string x, y;  // expressions, as in a view: in place of the mechanism
+    static constexpr auto said =
+        Said("plane", "write: plane X Y, expressions with spaces in double quotes, or: plane default", Change::view,
+             &ShowPlane::x, &ShowPlane::y);
 };
 
 struct Find {
@@ -340,14 +350,14 @@ struct Replay {
 // In the order in which they are listed.
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
-                 command::Select, command::New, command::Text, command::Save, command::Show, command::Find,
-                 command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
-                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Camera,
-                 command::Speed, command::Loop, command::Step, command::Undo, command::Redo, command::Pin,
-                 command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
-                 command::Lens, command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset,
-                 command::Done, command::Export, command::Copy, command::Wait, command::Say, command::Highlight,
-                 command::Replay>;
+                 command::Select, command::New, command::Text, command::Save, command::Show, command::DefaultPlane,
+                 command::ShowPlane, command::Find, command::Grid, command::PlotView, command::Zoom, command::Fit,
+                 command::Range, command::AxisScale, command::ShowCurve, command::Link, command::Start,
+                 command::LookAll, command::Look, command::Camera, command::Speed, command::Loop, command::Step,
+                 command::Undo, command::Redo, command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned,
+                 command::Recall, command::PlotDifference, command::Lens, command::UseTheme, command::Enlarge,
+                 command::Present, command::Size, command::Reset, command::Done, command::Export, command::Copy,
+                 command::Wait, command::Say, command::Highlight, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -40,6 +40,17 @@ void Scene::forget_place() {
     look_.reset();
     if (camera_ == CameraMode::fixed) camera_ = CameraMode::fit;
     lens_.reset();
+    plane_.reset();
+}
+
+void Scene::perform(const command::DefaultPlane&) {
+    plane_.reset();
+    shown_.insert("plane");
+}
+
+void Scene::perform(const command::ShowPlane& command) {
+    plane_ = command;
+    shown_.insert("plane");
 }
 
 void Scene::perform(const command::Show& command) {
@@ -115,8 +126,10 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.look_) steps.emplace_back(*scene.look_);
     if (scene.camera() != (scene.look_ ? CameraMode::fixed : CameraMode::fit))
         steps.emplace_back(command::Camera{std::string(to_text(scene.camera()))});
+    Scene before;
+    if (scene.plane()) before.perform(*scene.plane()), steps.emplace_back(*scene.plane());
     for (const std::string& thing : command::shown_things)
-        if (thing != "export" && scene.shows(thing) != Scene().shows(thing))
+        if (thing != "export" && scene.shows(thing) != before.shows(thing))
             steps.emplace_back(command::Show{thing, scene.shows(thing)});
     if (!scene.finds().empty()) steps.emplace_back(command::Find{scene.finds()});
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
@@ -140,6 +153,7 @@ std::string to_text(const Scene& scene) {
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
+    if (const auto& plane = scene.plane()) text += fmt::format("plane {} | {}\n", plane->x, plane->y);
     for (const std::string& panel : command::sized_panels)
         if (const double share = scene.share(panel); share > 0.0) text += fmt::format("size {} {:.9g}\n", panel, share);
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());

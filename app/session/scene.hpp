@@ -23,6 +23,8 @@ class Scene {
     bool shows(const std::string& what) const { return shown_.contains(what); }
     double speed() const { return speed_; }  // seconds of the run in one of the player's
     bool loops() const { return loops_; }
+    // What the configuration plane shows; nothing: what it has by default.
+    const std::optional<command::ShowPlane>& plane() const { return plane_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
     const std::string& finds() const { return finds_; }      // letters that the palette opens with
@@ -44,6 +46,8 @@ class Scene {
     void perform(const command::LookAll& command);
     void perform(const command::Camera& command);
     void perform(const command::Show& command);
+    void perform(const command::DefaultPlane& command);
+    void perform(const command::ShowPlane& command);  // of a system that has what it names
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
@@ -56,6 +60,8 @@ class Scene {
 
     // Another system: another world, but the same taste.
     void forget_place();
+    // Another text, which has not what the plane names.
+    void forget_plane() { plane_.reset(); }
 
  private:
     CameraMode camera_ = CameraMode::fit;
@@ -64,6 +70,7 @@ class Scene {
     std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
     double speed_ = 1.0;
     bool loops_ = false;
+    std::optional<command::ShowPlane> plane_;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
     std::string caption_, highlight_, finds_;

@@ -10,6 +10,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "figure/plane.hpp"
 #include "figure/stage.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
@@ -175,11 +176,32 @@ void Session::read_document() {
     }
 }
 
+// The plane must be one of the system.
+void Session::perform(const command::ShowPlane& command) {
+    try {
+        const Plane plane(*system_->model, {command.x, command.y});
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(command::ShowPlane::said.usage));
+    }
+    scene_.perform(command);
+}
+
+// Unless another system has not what it names.
+void Session::keep_plane() {
+    if (!scene_.plane()) return;
+    try {
+        const Plane plane(*system_->model, {scene_.plane()->x, scene_.plane()->y});
+    } catch (const InputError&) {
+        scene_.forget_plane();
+    }
+}
+
 // Shows the start of the system until its run is there. The run must be one that can start.
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
     await_pin();
     system_ = system;
     plots_ = plots;
+    keep_plane();
     simulated_.reset();
     rerun(run);
     if (simulated_ != nullptr) return;

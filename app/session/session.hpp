@@ -177,6 +177,7 @@ class Session {
     void perform(const command::Pause& command);
     void perform(const command::Select& command);
     void perform(const command::Lens& command);
+    void perform(const command::ShowPlane& command);
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
@@ -219,6 +220,7 @@ class Session {
     void let_go();
     void begin_document(Document document);
     void read_document();
+    void keep_plane();
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);

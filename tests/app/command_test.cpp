@@ -46,6 +46,8 @@ const std::vector<Command> one_of_each{
     command::Start{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
     command::Look{-1.5, 1e-7, 3.0},
     command::LookAll{},
+    command::DefaultPlane{},
+    command::ShowPlane{"gap", "sin(y) + 1"},
     command::Camera{"zeno"},
     command::Speed{0.001},
     command::Loop{true},
@@ -193,7 +195,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 57u) << list;
+    EXPECT_EQ(all.size(), 58u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.
