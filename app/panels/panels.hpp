@@ -311,6 +311,8 @@ void show_runs(const Session& session, PanelState& state, Commands& commands);
 // Where that panel is not seen: their names in the head of a plot, up to `right`. Returns where they begin.
 float name_runs(const Session& session, const Rectangle& row, float right);
 void show_status(const Session& session, const PanelState& state);
+// "about 12 s left" of a run that has come so far, from 0 to 1, in so many seconds; empty: too early to tell.
+std::string time_left(double seconds, double share);
 
 // Letters were typed that are no command yet: frames must go on until they are.
 bool is_typing(const PanelState& state);

@@ -86,6 +86,18 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
     ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
 }
 
+// One that is pinned when it is there, of which nothing is known yet.
+void show_waiting(int place, const Session& session, PanelState& state, Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
+    float right = at.x + width;
+    if (word("\u00d7", "unpin " + std::to_string(place), "do not pin this run", right, at.y, state))
+        commands.emplace_back(command::Unpin{place});
+    paint_sign(at, run_color(session.theme(), place), false);
+    cell({at.x + units(sign_width), at.y}, "still under way", right - at.x - units(sign_width), faint_color());
+    ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
+}
+
 }  // namespace
 
 float name_runs(const Session& session, const Rectangle& row, float right) {
@@ -113,7 +125,8 @@ float name_runs(const Session& session, const Rectangle& row, float right) {
 }
 
 void show_runs(const Session& session, PanelState& state, Commands& commands) {
-    if (session.pinned().empty()) return;
+    const std::vector<int> waiting = session.pins_under_way();
+    if (session.pinned().empty() && waiting.empty()) return;
     show_heading(session, state, commands);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
@@ -123,6 +136,7 @@ void show_runs(const Session& session, PanelState& state, Commands& commands) {
          text_color());
     ImGui::Dummy({width, ImGui::GetTextLineHeight()});
     for (const PinnedRun& run : session.pinned()) show_run(run, session, state, commands);
+    for (const int place : waiting) show_waiting(place, session, state, commands);
     ImGui::Dummy({1.0F, 0.0F});  // what stands last must have been laid out
 }
 

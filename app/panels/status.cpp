@@ -57,7 +57,8 @@ void show_legend(const Session& session) {
 
 // A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
 // the run before it.
-void show_progress(const Run& run, const Watch& watch) {
+void show_progress(const Session& session, const PanelState& state, const Watch& watch) {
+    const Run& run = session.run();
     const double time = watch.time, impacts = static_cast<double>(watch.impacts);
     const double share =
         std::clamp(std::max((time - run.options.start_time) / (run.options.end_time - run.options.start_time),
@@ -68,15 +69,26 @@ void show_progress(const Run& run, const Watch& watch) {
     const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
     ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)}, accent);
     ImGui::PushStyleColor(ImGuiCol_Text, accent);
-    ImGui::TextUnformatted(
-        fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts", time, run.options.end_time, impacts)
-            .c_str());
+    const std::string left = state.in_window ? time_left(session.seconds_under_way(), share) : "";
+    ImGui::TextUnformatted(fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts{}{}", time,
+                                       run.options.end_time, impacts, left.empty() ? "" : "   \u00b7   ", left)
+                               .c_str());
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, units(24.0F));
     ImGui::TextDisabled("the run before this one is shown until then");
 }
 
 }  // namespace
+
+std::string time_left(double seconds, double share) {
+    if (!(seconds >= 0.5) || !(share > 1e-3)) return {};  // too early to tell
+    const double left = seconds * (1.0 - share) / share;
+    if (left < 1.5) return "about 1 s left";
+    if (left < 90.0) return fmt::format("about {:.0f} s left", left < 20.0 ? left : 10.0 * std::round(left / 10.0));
+    if (left < 90.0 * 60.0) return fmt::format("about {:.0f} min left", left / 60.0);
+    if (left < 36.0 * 3600.0) return fmt::format("about {:.0f} h left", left / 3600.0);
+    return "more than a day left";
+}
 
 void show_status(const Session& session, const PanelState& state) {
     const Trajectory& trajectory = session.trajectory();
@@ -85,7 +97,7 @@ void show_status(const Session& session, const PanelState& state) {
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
                                         ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
-    if (const Watch* watch = session.under_way()) return show_progress(session.run(), *watch);
+    if (const Watch* watch = session.under_way()) return show_progress(session, state, *watch);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
             fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));

@@ -59,7 +59,10 @@ Session::Session(const std::string& name, const SystemDescription& first, const 
 }
 
 void Session::apply(const Command& command) {
-    if (!patience_) receive(patience_);
+    if (!patience_) {
+        receive_pins(patience_);
+        receive(patience_);
+    }
     const Moment before = moment();
     const std::string noticed = std::exchange(notice_, {});
     warnings_.clear();
@@ -81,7 +84,10 @@ void Session::apply(const Command& command) {
 void Session::restore(Moment back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
-    if (!same_system(back.system->model->description(), description())) pinned_ = std::move(back.pinned);
+    if (!same_system(back.system->model->description(), description())) {
+        let_pins_go();
+        pinned_ = std::move(back.pinned);
+    }
     if (back.system != system_) return change_system(back.system, back.plots, back.run);
     plots_ = back.plots;
     rerun(back.run);
@@ -198,7 +204,7 @@ void Session::keep_plane() {
 
 // Shows the start of the system until its run is there. The run must be one that can start.
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
-    await_pin();
+    put_aside_pin();
     system_ = system;
     plots_ = plots;
     keep_plane();
@@ -281,22 +287,27 @@ void Session::perform(const command::UseOption& command) {
 // The same model with another run: nothing is read or derived again.
 void Session::rerun(const Run& run) {
     system_->model->check(run);
-    await_pin();
+    put_aside_pin();
     asked_ = run;
     const auto watch = std::make_shared<Watch>();
     watch_ = watch;
-    worker_.start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
+    began_ = std::chrono::steady_clock::now();
+    worker_->start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
         return std::make_shared<Simulated>(system, run, plots, theme, watch.get());
     });
     receive(patience_);
 }
 
+double Session::seconds_under_way() const {
+    return watch_ == nullptr ? 0.0 : std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+}
+
 void Session::receive(Patience patience) {
     if (watch_ == nullptr) return;
     std::optional<std::shared_ptr<Simulated>> motion;
     try {
-        motion = worker_.take(patience);
+        motion = worker_->take(patience);
     } catch (const std::bad_alloc&) {  // where there is no run to go on with, there is no session
         if (simulated_ == nullptr) throw;
         watch_.reset();
@@ -307,7 +318,7 @@ void Session::receive(Patience patience) {
     simulated_ = *motion;
     watch_.reset();
     try {
-        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt));
+        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), simulated_);
     } catch (const InputError& problem) {
         error_ = problem.what();
     }

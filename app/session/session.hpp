@@ -1,6 +1,7 @@
 // The state of the explorer: one system, one run of it, and where its player stands. apply() is the only door.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -69,11 +70,16 @@ class Session {
 
     void set_patience(Patience patience) { patience_ = patience; }
     // Called on another thread when update() would take something in.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
-    // Takes in the run that was under way, if it is ready.
-    void update() { receive(0.0); }
+    void on_ready(const std::function<void()>& ready);
+    // Takes in the runs that were under way, if they are ready.
+    void update() {
+        receive_pins(0.0);
+        receive(0.0);
+    }
     // How far the run is that was asked for last; null if it is the one that is shown.
     const Watch* under_way() const { return watch_.get(); }
+    // s, for how long that has been made; by the clock.
+    double seconds_under_way() const;
 
     // The text that is edited; without problems it is the system that runs.
     const Document& document() const { return document_; }
@@ -92,6 +98,8 @@ class Session {
     const std::vector<PinnedRun>& pinned() const { return pinned_; }
     // One that is at this place; null where there is none.
     const PinnedRun* pinned_at(int place) const;
+    // Places of runs that are pinned when they are there: nothing is said of them until then.
+    std::vector<int> pins_under_way() const;
     // Where it is at the present time, or at its end.
     Sample now_of(const PinnedRun& run) const { return run.sampler->at(std::min(time_, run.trajectory->end_time)); }
     // How the present run differs from the pinned ones; empty: not at all.
@@ -215,8 +223,12 @@ class Session {
     Moment moment() const { return {document_, system_, plots_, asked_, pinned_}; }
     void restore(Moment back);
     void compose_pinned();
-    void pin(int place);
-    void await_pin();
+    void pin(int place, const std::shared_ptr<Simulated>& run);
+    bool waits_at(int place) const;
+    void put_aside_pin();
+    void let_pins_go();
+    void stop_pin(std::size_t i);
+    void receive_pins(Patience patience);
     void let_go();
     void begin_document(Document document);
     void read_document();
@@ -239,8 +251,9 @@ class Session {
     Run asked_;
     std::shared_ptr<Simulated>
         simulated_;  // of this system; of another run than the one asked for while that is under way
-    std::shared_ptr<const Watch> watch_;  // of the run under way
-    std::optional<Command> placed_;       // what placed the present meanwhile
+    std::shared_ptr<const Watch> watch_;           // of the run under way
+    std::chrono::steady_clock::time_point began_;  // that run
+    std::optional<Command> placed_;                // what placed the present meanwhile
     Sample now_;
     double time_ = 0.0;
     bool playing_ = false;
@@ -255,7 +268,17 @@ class Session {
     RunTable run_table_;
     std::vector<Panel> drawn_;      // empty: the present run's plots
     std::optional<int> pin_waits_;  // the place that the run under way is to be pinned at
-    Worker<std::shared_ptr<Simulated>> worker_;
+    // A run that is made beside the present one, to be pinned at this place.
+    using Runner = Worker<std::shared_ptr<Simulated>>;
+    struct PinUnderWay {
+        int place;
+        Run run;
+        std::unique_ptr<Runner> worker;
+    };
+    std::vector<PinUnderWay> pins_;                 // the first was asked for first
+    std::vector<std::unique_ptr<Runner>> stopped_;  // until they have forgotten what nobody wants any more
+    std::function<void()> ready_;
+    std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
 };
 
 // Lets so much time pass for a session that plays, at its speed. At the end it stops or begins again.

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
+#include <utility>
 
 #include "figure/difference.hpp"
 #include "session/refusal.hpp"
@@ -50,34 +52,38 @@ void Session::perform(const command::Pin& command) {
     const auto same =
         std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& p) { return p.trajectory->run == asked_; });
     if (same != pinned_.end()) throw refusal(fmt::format("this run is pinned already, as {}", same->place));
-    if (pinned_.size() >= most_pinned)
+    const auto made = std::find_if(pins_.begin(), pins_.end(), [&](const PinUnderWay& p) { return p.run == asked_; });
+    if (pin_waits_ || made != pins_.end())
+        throw refusal(
+            fmt::format("this run is pinned, as {}, when it is there", pin_waits_ ? *pin_waits_ : made->place));
+    if (pinned_.size() + pins_.size() >= most_pinned)
         throw refusal(fmt::format("{} runs are pinned, and more cannot be told apart", most_pinned),
                       "let one go first: unpin 1, or: unpin all");
     int place = command.place;
     if (place > most_pinned)
         throw refusal(fmt::format("there is no place {} for a run: there are {}", place, most_pinned));
-    if (place > 0 && pinned_at(place) != nullptr)
+    const auto is_taken = [this](int at) { return pinned_at(at) != nullptr || waits_at(at); };
+    if (place > 0 && is_taken(place))
         throw refusal(fmt::format("there is a run pinned at {}", place), fmt::format("unpin {} first, or: pin", place));
     if (place == 0)
-        for (place = 1; pinned_at(place) != nullptr;) ++place;
+        for (place = 1; is_taken(place);) ++place;
     scene_.perform(command::Show{"runs", true});
     if (watch_ != nullptr) {  // nothing is said of a run that is not there
         pin_waits_ = place;
         return;
     }
-    pin(place);
+    pin(place, simulated_);
     compose_pinned();
 }
 
-// The run that is shown. Throws InputError where all of them would need more memory than one run may.
-void Session::pin(int place) {
-    double bytes = bytes_of(simulated_->trajectory);
+// Throws InputError where all of them would need more memory than one run may.
+void Session::pin(int place, const std::shared_ptr<Simulated>& all) {
+    double bytes = bytes_of(all->trajectory);
     for (const PinnedRun& run : pinned_) bytes += bytes_of(*run.trajectory);
-    if (const double most = simulated_->trajectory.run.options.memory; bytes > most)
+    if (const double most = all->trajectory.run.options.memory; bytes > most)
         throw refusal(
             fmt::format("the pinned runs would take {:.4g} MB, and memory is {:.4g} MB", bytes / 1e6, most / 1e6),
             fmt::format("let one go (unpin), or allow more: memory {:.1g}", 2.0 * bytes));
-    const std::shared_ptr<Simulated>& all = simulated_;
     PinnedRun run;
     run.place = place;
     run.trajectory = {all, &all->trajectory};
@@ -86,18 +92,68 @@ void Session::pin(int place) {
     pinned_.push_back(std::move(run));
 }
 
-// Another run takes the place of one that is to be pinned when it is there: so long it may take.
-void Session::await_pin() {
+bool Session::waits_at(int place) const {
+    return pin_waits_ == place ||
+           std::any_of(pins_.begin(), pins_.end(), [&](const PinUnderWay& pin) { return pin.place == place; });
+}
+
+std::vector<int> Session::pins_under_way() const {
+    std::vector<int> places;
+    for (const PinUnderWay& pin : pins_) places.push_back(pin.place);
+    if (pin_waits_) places.push_back(*pin_waits_);
+    return places;
+}
+
+void Session::on_ready(const std::function<void()>& ready) {
+    ready_ = ready;
+    worker_->on_ready(ready);
+    for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
+}
+
+// Another run is to be made while one that is to be pinned is under way: that goes on beside it, and nobody waits.
+void Session::put_aside_pin() {
     if (!pin_waits_) return;
-    constexpr double longest = 5.0;
-    receive(patience_ ? Patience(longest) : Patience());
-    if (pin_waits_.has_value()) warn("the run that was to be pinned was not finished, and is not pinned");
+    if (!patience_) receive(patience_);
+    if (!pin_waits_) return;
+    pins_.push_back({*std::exchange(pin_waits_, std::nullopt), asked_, std::move(worker_)});
+    worker_ = std::make_unique<Runner>();
+    if (ready_) worker_->on_ready(ready_);
+    watch_.reset();
+}
+
+// In the order in which they were asked for.
+void Session::receive_pins(Patience patience) {
+    std::erase_if(stopped_, [](const auto& worker) { return worker->take(0.0).has_value(); });
+    while (!pins_.empty()) {
+        try {
+            const std::optional<std::shared_ptr<Simulated>> run = pins_.front().worker->take(patience);
+            if (!run) return;
+            pin(pins_.front().place, *run);
+        } catch (const InputError& problem) {
+            error_ = problem.what();
+        } catch (const std::bad_alloc&) {
+            error_ = "there is not enough memory for the run that was to be pinned";
+        }
+        pins_.erase(pins_.begin());
+        compose_pinned();
+    }
+}
+
+// A long run takes a while to forget, and nobody shall wait for that.
+void Session::stop_pin(std::size_t i) {
+    pins_[i].worker->start([](const std::stop_token&) { return std::shared_ptr<Simulated>(); });
+    stopped_.push_back(std::move(pins_[i].worker));
+    pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+void Session::let_pins_go() {
     pin_waits_.reset();
+    while (!pins_.empty()) stop_pin(0);
 }
 
 // A run of another system is nothing to compare with.
 void Session::let_go() {
-    pin_waits_.reset();
+    let_pins_go();
     if (pinned_.empty()) return;
     const bool one = pinned_.size() == 1;
     notice_ += fmt::format("{}{} of {} {} let go; undo brings {} back", notice_.empty() ? "" : "; ",
@@ -107,7 +163,15 @@ void Session::let_go() {
 }
 
 void Session::perform(const command::Unpin& command) {
-    pin_waits_.reset();
+    // One that waits is the last that was pinned.
+    if (const std::vector<int> waiting = pins_under_way();
+        command.place > 0 ? waits_at(command.place) : !waiting.empty()) {
+        const int place = command.place > 0 ? command.place : waiting.back();
+        if (pin_waits_ == place) pin_waits_.reset();
+        for (std::size_t i = pins_.size(); i-- > 0;)
+            if (pins_[i].place == place) stop_pin(i);
+        return;
+    }
     if (command.place > 0 && pinned_at(command.place) == nullptr)
         throw refusal(fmt::format("there is no run pinned at {}", command.place));
     if (!pinned_.empty())
@@ -117,7 +181,7 @@ void Session::perform(const command::Unpin& command) {
 }
 
 void Session::perform(const command::UnpinAll&) {
-    pin_waits_.reset();
+    let_pins_go();
     pinned_.clear();
     compose_pinned();
 }

@@ -25,6 +25,12 @@ inline Session session(const std::string& name, Patience patience = {}) {
     return {name, system(name), library(), patience};
 }
 
+// Elastic impacts until there are too many: seconds of work.
+inline void ask_for_a_long_run(Session& session) {
+    session.apply(command::Set{"e", 1.0});
+    session.apply(command::End{1e6});
+}
+
 // A surface as explore.cpp sets it up.
 inline SurfaceOptions surface(int width = 1280, int height = 800, double scale = 1.0) {
     SurfaceOptions result;

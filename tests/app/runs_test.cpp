@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
@@ -291,6 +293,60 @@ TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
     EXPECT_EQ(session.pinned()[0].trajectory->run.parameters[2], 0.3);
     EXPECT_EQ(session.pinned()[1].trajectory->run.parameters[2], 0.4);
     EXPECT_EQ(session.trajectory().run.parameters[2], 0.6);
+}
+
+// A run that is to be pinned goes on beside the next one; no hand waits for it, and nothing is said of it meanwhile.
+TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
+    Hands hands("ball_on_sine");
+    Session& session = hands.session;
+    session.set_patience(0.02);
+    test::ask_for_a_long_run(session);
+    ASSERT_NE(session.under_way(), nullptr);
+    session.apply(command::Pin{});
+    EXPECT_EQ(session.pins_under_way(), std::vector<int>{1});
+    for (int i = 0; i < 5; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        session.apply(command::Set{"g", 5.0 + i});
+        session.update();
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(500));
+    }
+    session.apply(command::Pin{});
+    session.apply(command::Pin{});
+    EXPECT_NE(session.error().find("this run is pinned, as 2"), std::string::npos) << session.error();
+    EXPECT_EQ(session.pins_under_way(), (std::vector<int>{1, 2}));
+    EXPECT_TRUE(session.pinned().empty());
+    EXPECT_TRUE(session.run_table().rows.empty());
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("still under way")) << hands.letters();
+    // Each can be given up, by its place or as the last; and with their system all are.
+    hands.click("unpin 1");
+    EXPECT_EQ(session.pins_under_way(), std::vector<int>{2});
+    session.apply(parse_command("unpin"));
+    EXPECT_TRUE(session.pins_under_way().empty());
+    session.apply(command::Pin{});
+    const auto begin = std::chrono::steady_clock::now();
+    session.apply(command::Open{"double_pendulum"});
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    EXPECT_TRUE(session.pins_under_way().empty());
+    EXPECT_EQ(session.error(), "");
+}
+
+TEST(Runs, that_are_under_way_arrive_with_update) {
+    Session session = test::session("ball_on_floor");
+    for (const char* line : {"set e 1", "end 20000"}) session.apply(parse_command(line));
+    session.set_patience(0.0);
+    session.apply(command::Set{"g", 8.0});
+    session.apply(command::Pin{});
+    session.apply(command::Set{"g", 9.0});
+    EXPECT_TRUE(session.pinned().empty());
+    for (int i = 0; i < 20000 && (session.under_way() != nullptr || session.pinned().empty()); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        session.update();
+    }
+    ASSERT_EQ(session.pinned().size(), 1U);
+    EXPECT_EQ(session.pinned()[0].trajectory->outcome.kind, Outcome::Kind::end_time);
+    EXPECT_EQ(session.pinned()[0].trajectory->run.parameters[2], 8.0);
+    EXPECT_EQ(session.trajectory().run.parameters[2], 9.0);
 }
 
 TEST(Runs, are_in_a_picture_that_is_made_again) {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "app/open.hpp"
+#include "app/hands.hpp"
 #include "output/output.hpp"
 #include "surface/interface.hpp"
 
@@ -67,12 +67,6 @@ TEST(Worker, tells_when_a_result_is_ready_and_ends_in_the_middle_of_a_job) {
     }
 }
 
-// Elastic impacts until there are too many: seconds of work.
-void ask_for_a_long_run(Session& session) {
-    session.apply(command::Set{"e", 1.0});
-    session.apply(command::End{1e6});
-}
-
 TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patient_one) {
     Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
     for (Session* session : {&patient, &live}) session->apply(command::End{200000.0});
@@ -97,7 +91,7 @@ TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patie
 TEST(LiveSession, a_newer_value_cancels_a_long_run) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.02);
-    ask_for_a_long_run(session);
+    test::ask_for_a_long_run(session);
     ASSERT_NE(session.under_way(), nullptr) << "choose a longer run";
     for (int i = 0; i < 5000 && session.under_way()->impacts < 100; ++i) std::this_thread::sleep_for(1ms);
     EXPECT_GE(session.under_way()->impacts, 100);
@@ -112,7 +106,7 @@ TEST(LiveSession, a_newer_value_cancels_a_long_run) {
 TEST(LiveSession, waits_no_longer_than_its_patience) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.02);
-    ask_for_a_long_run(session);
+    test::ask_for_a_long_run(session);
     for (int i = 0; i < 10; ++i) {
         const auto begin = std::chrono::steady_clock::now();
         session.apply(command::Set{"g", 1.0 + 0.1 * i});
@@ -171,12 +165,34 @@ TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
     EXPECT_GE(session.trajectory().statistics.impacts, 100000);
 }
 
+// How long a run still takes is for a window, whose frames come by the clock; a picture says nothing of it.
+TEST(LiveSession, says_how_long_a_run_still_takes) {
+    EXPECT_EQ(time_left(0.2, 0.5), "") << "too early to tell";
+    EXPECT_EQ(time_left(10.0, 0.0), "");
+    EXPECT_EQ(time_left(2.0, 0.9), "about 1 s left");
+    EXPECT_EQ(time_left(4.0, 0.25), "about 12 s left");
+    EXPECT_EQ(time_left(10.0, 0.2), "about 40 s left");
+    EXPECT_EQ(time_left(60.0, 0.1), "about 9 min left");
+    EXPECT_EQ(time_left(60.0, 0.002), "about 8 h left");
+    EXPECT_EQ(time_left(600.0, 0.002), "more than a day left");
+    test::Hands hands("ball_on_sine");
+    hands.session.set_patience(0.02);
+    test::ask_for_a_long_run(hands.session);
+    const Watch* const watch = hands.session.under_way();
+    ASSERT_NE(watch, nullptr);
+    for (int i = 0; i < 1000 && (hands.session.seconds_under_way() < 0.6 || watch->impacts < 3000); ++i)
+        std::this_thread::sleep_for(10ms);
+    EXPECT_FALSE(hands.says("left")) << "this surface is no window";
+    hands.state.in_window = true;
+    EXPECT_TRUE(hands.says("left")) << hands.letters();
+}
+
 TEST(LiveSession, closes_in_the_middle_of_a_run) {
     const auto begin = std::chrono::steady_clock::now();
     {
         Session session = test::session("ball_on_sine");
         session.set_patience(0.02);
-        ask_for_a_long_run(session);
+        test::ask_for_a_long_run(session);
         ASSERT_NE(session.under_way(), nullptr);
     }
     EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
