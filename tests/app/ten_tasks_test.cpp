@@ -1,0 +1,157 @@
+// Ten tasks of a researcher and of a teacher (ten_tasks.txt): what the explorer answers to each of them.
+// tests/app/ten_tasks_test.sh does them in a real window, with the places that are told here, and counts the actions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "app/hands.hpp"
+#include "app/program.hpp"
+#include "cli/entries.hpp"
+#include "figure/camera.hpp"
+#include "figure/stage.hpp"
+#include "model/model.hpp"
+#include "output/output.hpp"
+
+namespace achilles::ten_tasks {
+namespace {
+
+using test::Hands;
+
+const SurfaceOptions surface = test::surface(1280, 800);
+
+// For the script: the middle of a place, under a name without spaces.
+void tell(const Hands& hands, const std::string& name, const std::string& place) {
+    ASSERT_TRUE(hands.state.places.contains(place)) << place;
+    const Point at = hands.middle(place);
+    ASSERT_TRUE(at.x > 0.0 && at.x < 1280.0 && at.y > 0.0 && at.y < 800.0) << place << " is not seen";
+    std::printf("place %s %ld %ld\n", name.c_str(), std::lround(at.x), std::lround(at.y));
+}
+
+// Tells it, and clicks.
+void use(Hands& hands, const std::string& name, const std::string& place) {
+    tell(hands, name, place);
+    hands.click(place);
+}
+
+void give(Hands& hands, const std::string& command) {
+    hands.session.apply(parse_command(command));
+    ASSERT_EQ(hands.session.error(), "");
+    hands.rest(2);
+}
+
+// The second Zeno point of a run of the ball on the sine.
+std::size_t second_zeno(const Trajectory& run) {
+    int count = 0;
+    for (std::size_t i = 0; i < run.events.size(); ++i)
+        if (run.events[i].kind == Event::Kind::zeno && ++count == 2) return i;
+    return 0;
+}
+
+std::string result(const Hands& hands) {
+    return "result " + std::to_string(second_zeno(hands.session.trajectory()) + 1);
+}
+
+TEST(TenTasks, the_zeno_condition_has_its_value_at_an_impact) {
+    Hands hands("ball_on_sine", surface);
+    use(hands, "equations", "tab equations");
+    use(hands, "zeno", result(hands));
+    for (int i = 0; i < 2; ++i) hands.press(key::left);  // past the last, from which on the contact is held
+    const Trajectory& run = hands.session.trajectory();
+    EXPECT_EQ(hands.session.time(), run.events[second_zeno(run) - 2].t);
+    EXPECT_TRUE(hands.says("< 0: bouncing would end at a Zeno point")) << hands.letters();
+}
+
+TEST(TenTasks, what_differs_from_the_file_is_seen_without_a_hand) {
+    Hands hands("ball_on_sine", surface);
+    for (const char* command : {"set e 0.3", "set x' 1.2", "method dopri5"}) give(hands, command);
+    EXPECT_TRUE(hands.says("Differs from the file"));
+    for (const char* line : {"e = 0.3", "file: 0.5", "1.2 m/s", "dopri5", "file: taylor"})
+        EXPECT_TRUE(hands.says(line)) << line << ": " << hands.letters();
+}
+
+TEST(TenTasks, three_restitutions_have_their_second_zeno_times_in_a_table) {
+    Hands hands("ball_on_sine", surface);
+    use(hands, "pin", "pin");
+    give(hands, "set e 0.3");
+    use(hands, "pin_again", "pin");
+    give(hands, "set e 0.7");
+    ASSERT_EQ(hands.session.pinned().size(), 2U);
+    for (const Trajectory* run : {hands.session.pinned()[0].trajectory.get(),
+                                  hands.session.pinned()[1].trajectory.get(), &hands.session.trajectory()})
+        EXPECT_TRUE(hands.says(number(run->events[second_zeno(*run)].t, "{:.10g}"))) << hands.letters();
+}
+
+TEST(TenTasks, a_figure_has_the_width_of_a_column_and_letters_of_8_points) {
+    const test::Folder folder;
+    Session session = test::session("ball_on_sine");
+    session.apply(parse_command("export " + (folder.path() / "height.svg").string() + " plot 2 width 85 font 8"));
+    ASSERT_EQ(session.error(), "");
+    EXPECT_NE(test::content(folder.path() / "height.svg").find("width=\"85mm\""), std::string::npos);
+}
+
+TEST(TenTasks, a_class_sees_one_plot_in_large_letters) {
+    Hands hands("ball_on_sine", surface);
+    hands.press(key::f11);
+    EXPECT_TRUE(hands.session.scene().presents());
+    EXPECT_GT(hands.session.scene().text_scale(1280.0, 800.0), 1.3);
+    hands.state.places.clear();
+    hands.rest(2);
+    for (const char* seen : {"mechanism", "plot 0", "result 10"})
+        EXPECT_TRUE(hands.state.places.contains(seen)) << seen;
+    for (const char* hidden : {"plot 1", "set e", "event 1"})
+        EXPECT_FALSE(hands.state.places.contains(hidden)) << hidden;
+}
+
+TEST(TenTasks, the_last_bounces_are_seen_in_the_mechanism) {
+    Hands hands("ball_on_sine", surface);
+    hands.click(result(hands));
+    hands.press(key::left);
+    use(hands, "camera", "camera");
+    use(hands, "camera_zeno", "menu zeno: closer to the next Zeno point");
+    EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
+    // The picture is a thousandth of that of the whole run, or less.
+    const auto width = [&](CameraMode mode) {
+        const Drawing seen = hands.session.stage().camera().at(mode, hands.session.now(), {400.0, 300.0, 0.0, 0.0});
+        return seen.x_high - seen.x_low;
+    };
+    EXPECT_LT(width(CameraMode::zeno), 1e-3 * width(CameraMode::fit));
+}
+
+TEST(TenTasks, a_system_of_several_contacts_is_found_by_its_group) {
+    Hands hands("ball_on_sine", surface);
+    hands.state.systems = known_systems();
+    hands.press_with_control('G');
+    hands.rest(3);
+    tell(hands, "gallery", "gallery ball_on_sine");
+    hands.point("gallery ball_on_sine");
+    for (int notch = 0; notch < 40; ++notch) {
+        hands.hand.wheel = -1.0;
+        hands.rest(1);
+        hands.hand.wheel = 0.0;
+        hands.rest(1);
+    }
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("several contacts")) << hands.letters();
+    use(hands, "several", "gallery double_pendulum_two_stops");
+    EXPECT_EQ(hands.session.system(), "double_pendulum_two_stops");
+    EXPECT_GT(hands.session.model()->contacts(), 1U);
+}
+
+TEST(TenTasks, what_impacts_took_is_said_beside_the_energy) {
+    Hands hands("ball_on_sine", surface);
+    use(hands, "view", "menu View");
+    use(hands, "view_energy", "menu Energy");
+    use(hands, "zeno_over_energy", result(hands));
+    EXPECT_TRUE(hands.says("impacts took")) << hands.letters();
+}
+
+TEST(TenTasks, a_file_of_yesterday_stands_in_the_menu) {
+    Hands hands("ball_on_sine", surface);
+    hands.state.recent = {"/tmp/mine.toml"};
+    use(hands, "file", "menu File");
+    tell(hands, "recent", "menu /tmp/mine.toml");
+}
+
+}  // namespace
+}  // namespace achilles::ten_tasks

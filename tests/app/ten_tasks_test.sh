@@ -1,0 +1,132 @@
+#!/bin/bash
+# Ten tasks of a researcher and of a teacher in a real window: no more actions than ten_tasks.txt says, and in all at most two
+# thirds of what they took before. What the explorer answers to each is in ten_tasks_test.cpp.
+#     ten_tasks_test.sh BUILD_FOLDER
+table="$(realpath "$(dirname "$0")")/ten_tasks.txt"
+. "$(dirname "$0")/window.sh"
+
+actions=0 now=0 before=0 done=0
+# Every action goes through here.
+act() { actions=$((actions + 1)); xdotool "$@" sleep 0.2; }
+point() {
+    local x y
+    read -r x y < <(grep "^place $1 " "$folder/places" | cut -d' ' -f3-) || fail "nobody knows where $1 is"
+    xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
+}
+click() {
+    point "$1"
+    act click 1
+}
+entered() {
+    xdotool type --delay 8 "$1"
+    act key Return
+}
+# say LINE: the palette's two actions.
+say() {
+    act key ctrl+shift+p
+    entered "$1"
+}
+recorded() { await grep -q "$1" "$folder/record" || fail "$2: $(tail -3 "$folder/record")"; }
+# done_with TASK: it took what the table says.
+done_with() {
+    local was is
+    read -r was is < <(awk -v task="$1" '$1 == task { print $2, $3 }' "$table")
+    echo "$1: $actions actions, $was before"
+    [ "$actions" -eq "$is" ] || fail "the task '$1' takes $actions actions, and not $is"
+    now=$((now + actions)) before=$((before + was)) done=$((done + 1)) actions=0
+}
+# What nobody asked for: back to how the window was.
+back() {
+    xdotool mousemove --window "$window" 640 4
+    for line in "$@"; do
+        xdotool key ctrl+shift+p sleep 0.25 type --delay 8 "$line"
+        xdotool key Return sleep 0.15
+        recorded "^${line}\$" "the window is not as it was"
+    done
+    actions=0
+}
+
+"$build/test_app" --gtest_brief=1 --gtest_filter='TenTasks.*' > "$folder/places" || { cat "$folder/places"; fail "test_app"; }
+"$build/achilles" new "$folder/mine" > /dev/null
+mkdir "$folder/achilles"
+echo "open $folder/mine.toml" > "$folder/achilles/preferences.journal"
+cd "$folder"  # files go there
+open_window "" ball_on_sine --record "$folder/record"
+settle
+
+# A researcher.
+click equations
+recorded '^show equations$' "the tab shows no equations"
+click zeno
+recorded '^select ' "a result is not selected"
+act key Left
+act key Left
+recorded '^step -1$' "Left does not go to the impact before"
+done_with zeno_condition
+back "hide equations" "select 0" "seek 0"
+
+back "set e 0.3" "set x' 1.2" "method dopri5"
+done_with differs
+back "reset"
+
+click pin
+say "set e 0.3"
+recorded '^set e 0.3$' "the palette sets no value"
+click pin_again
+say "set e 0.7"
+recorded '^set e 0.7$' "the palette sets no second value"
+[ "$(grep -c '^pin$' "$folder/record")" -eq 2 ] || fail "two runs are not pinned"
+done_with restitutions
+back "unpin all" "hide runs" "reset"
+
+say "export height.svg plot 2 width 85 font 8"
+recorded '^export height.svg plot 2 width 85' "the palette exports nothing"
+await grep -q 'width="85mm"' "$folder/height.svg" || fail "the figure is not as wide as a column"
+done_with figure
+
+say "method dopri5"
+recorded '^method dopri5$' "the palette does not change the method"
+done_with method
+back "reset"
+
+# A teacher.
+act key F11
+recorded '^present on$' "F11 does not present"
+done_with class
+back "present off"
+
+click zeno
+act key Left
+click camera
+click camera_zeno
+recorded '^camera zeno$' "the camera does not go to the Zeno point"
+done_with bouncing
+back "camera fit" "select 0" "seek 0"
+
+click view
+click view_energy
+recorded '^show energy$' "the energy is not shown"
+click zeno_over_energy
+recorded '^select ' "a result is not selected beside the energy"
+done_with energy
+back "hide energy" "select 0"
+
+click file
+click recent
+recorded "^open $folder/mine.toml\$" "the menu does not open the file that was open last"
+done_with yesterday
+back "open ball_on_sine"
+
+act key ctrl+g
+settle
+point gallery
+act click --repeat 40 --delay 5 5
+settle
+click several
+recorded '^open double_pendulum_two_stops$' "the gallery opens no system with several contacts"
+done_with contacts
+
+close_window
+[ "$done" -eq "$(grep -cE '^[a-z_]+ +[0-9]+ +[0-9]+ ' "$table")" ] || fail "a task is left out"
+echo "in all: $now actions, $before before"
+[ $((3 * now)) -le $((2 * before)) ] || fail "$now actions are more than two thirds of $before"
