@@ -215,13 +215,14 @@ void show_event(const Session& session, std::size_t event, int present, const Ev
 void show_end(const Session& session, bool is_start, const EventColumns& columns, PanelState& state,
               Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const double t = is_start ? session.run().options.start_time : session.trajectory().end_time;
+    const double t = is_start ? session.trajectory().run.options.start_time : session.trajectory().end_time;
     const bool is_present = session.selected() == 0 && session.time() == t;
     if (ImGui::Selectable("##row", is_present)) {
         if (session.selected() > 0) commands.emplace_back(command::Select{0});
         commands.emplace_back(command::Seek{t});
     }
     remember(state, is_start ? "event start" : "event end");
+    if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
     number_cell(at, time_at, number(t, "{:.9f}"), faint_color());
     // Its time stands in a column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();

@@ -145,7 +145,8 @@ Picture paint_picture(const Session& session, const Rectangle& area, const HeldM
     if (holds_start(held)) now = {}, now.state = shown_state(session, held), now.t = shown_time(session, held);
     const State& state = now.state;
     const double t = now.t;
-    const auto& parameters = session.run().parameters;
+    // Those of the run that is seen, be it that another was asked for.
+    const auto& parameters = (holds_start(held) ? session.run() : session.trajectory().run).parameters;
     Drawing seen = seen_world(session, area);
     if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
     const Scene& scene = session.scene();

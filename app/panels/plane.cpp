@@ -61,7 +61,8 @@ Drawing seen(const Panel& panel) {
 // Lines and shade as they are at the present: made anew where what they depend on has changed.
 void update_lines(const Session& session, const Panel& panel, PlaneView& plane) {
     const State state = slice_of(session, plane);
-    const auto& parameters = session.run().parameters;
+    // Those of the run that is seen, be it that another was asked for.
+    const auto& parameters = (plane.is_held ? session.run() : session.trajectory().run).parameters;
     const Drawing limits = seen(panel);
     const auto changes = [&](std::vector<double>& key, std::vector<double> now) {
         now.insert(now.end(), parameters.begin(), parameters.end());

@@ -31,7 +31,8 @@ std::string explanation(const Session& session, std::size_t index) {
     const std::string said = typeset_sentence(
         fmt::format("{} at t = {:.10g} s: {}", event_name(event), event.t, session.sentences().of(index)));
     if (event.kind != Event::Kind::zeno) return said + "\nClick: why";
-    std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "nothing is proved of it";
+    std::string proof =
+        event.certificate ? sentence(*event.certificate, session.description()) : "nothing is proved of it";
     for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
         proof.replace(at, 2, "\n");
     return said + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
@@ -250,12 +251,14 @@ void show_none(const Session& session, ImVec2 at, float width) {
                                    : impacts == 1 ? std::string("one impact")
                                                   : fmt::format("{} impacts", impacts),
                                    trajectory.end_time);
-    if (is_early)
+    if (session.shows_start())
+        text = "its run is under way";
+    else if (is_early)
         text = fmt::format("{} at t = {:.6g} s: {}", to_text(trajectory.outcome.kind), trajectory.end_time,
                            trajectory.outcome.message);
     ImGui::SetCursorScreenPos({at.x, at.y + units(1.0F)});
     ImGui::TextDisabled("%s", fitted(text, width).c_str());
-    if (is_early) tooltip(trajectory.outcome.message);
+    if (is_early && !session.shows_start()) tooltip(trajectory.outcome.message);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ void show_legend(const Session& session) {
 }
 
 // A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
-// the run before it.
+// the run before it or, of another system, its start.
 void show_progress(const Session& session, const PanelState& state, const Watch& watch) {
     const Run& run = session.run();
     const double time = watch.time, impacts = static_cast<double>(watch.impacts);
@@ -75,7 +75,8 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
                                .c_str());
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, units(24.0F));
-    ImGui::TextDisabled("the run before this one is shown until then");
+    ImGui::TextDisabled(
+        "%s", session.shows_start() ? "its start is shown until then" : "the run before this one is shown until then");
 }
 
 }  // namespace

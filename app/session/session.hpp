@@ -78,6 +78,8 @@ class Session {
     }
     // How far the run is that was asked for last; null if it is the one that is shown.
     const Watch* under_way() const { return watch_.get(); }
+    // Until then nothing is shown but its start: it is the first of its system.
+    bool shows_start() const { return trajectory().outcome.kind == Outcome::Kind::cancelled; }
     // s, for how long that has been made; by the clock.
     double seconds_under_way() const;
 

@@ -227,8 +227,7 @@ void Session::compose_pinned() {
         compared.push_back({run.trajectory.get(), run.name, run_color(theme_, run.place)});
     }
     // Of a run that was told to stop there is nothing to compare.
-    if (!pinned_.empty() && trajectory().outcome.kind != Outcome::Kind::cancelled)
-        run_table_ = achilles::run_table(trajectories);
+    if (!pinned_.empty() && !shows_start()) run_table_ = achilles::run_table(trajectories);
     for (std::size_t i = 0; i < plots_.list().size() && i < plots().size(); ++i) {
         const Plot& plot = plots_.list()[i];
         std::vector<PinnedPanel> others;

@@ -98,14 +98,32 @@ Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
     return sample;
 }
 
-std::vector<Sample> Sampler::all(int between) { return of_every(1, between); }
+std::vector<Sample> Sampler::all(int between) { return of_every(1, between, {}); }
 
 std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {
-    return of_every(1 + (trajectory_.pieces.size() - 1) / most_steps, between);
+    const std::size_t stride = 1 + (trajectory_.pieces.size() - 1) / most_steps;
+    std::vector<bool> whole = stride > 1 ? blocks_with_events(stride) : std::vector<bool>();
+    if (static_cast<std::size_t>(std::count(whole.begin(), whole.end(), true)) * stride > most_steps) whole.clear();
+    return of_every(stride, between, whole);
 }
 
-// One step of each `stride` that follow one another, and not always the same of them: a motion may have that period.
-std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
+// Of the blocks of so many steps, those in which something happens, or at an end of which.
+std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
+    const std::vector<Piece>& pieces = trajectory_.pieces;
+    std::vector<bool> result((pieces.size() + stride - 1) / stride);
+    std::size_t block = 0;
+    const auto next_starts = [&] { return pieces[(block + 1) * stride].start; };
+    for (const Event& event : trajectory_.events) {
+        while (block + 1 < result.size() && next_starts() < event.t) ++block;
+        result[block] = true;
+        if (block + 1 < result.size() && next_starts() == event.t) result[block + 1] = true;
+    }
+    return result;
+}
+
+// One step of each `stride` that follow one another, and not always the same of them: a motion may have that period. Of a
+// block that is to be `whole` every step.
+std::vector<Sample> Sampler::of_every(std::size_t stride, int between, const std::vector<bool>& whole) {
     std::vector<Sample> samples;
     const std::vector<Event>& events = trajectory_.events;
     std::size_t j = 0, phase = 0;
@@ -140,9 +158,9 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
     };
     ContactSet held;
     const std::size_t count = trajectory_.pieces.size();
-    for (std::size_t block = 0; block * stride < count; ++block) {
-        const Piece& piece = trajectory_.pieces[std::min(block * stride + block * 7919 % stride, count - 1)];
-        const bool fresh = pass_events(piece.start) || samples.empty() || piece.held != held || stride > 1;
+    const auto take = [&](const Piece& piece) {
+        const bool fresh = pass_events(piece.start) || samples.empty() || piece.held != held ||
+                           (stride > 1 && samples.back().t != piece.start);
         held = piece.held;
         const Phase::Kind in = kind(piece.start);
         if (fresh) add_from(piece, piece.start, in);
@@ -151,6 +169,14 @@ std::vector<Sample> Sampler::of_every(std::size_t stride, int between) {
             add_from(piece, t, in);
         }
         add_from(piece, piece.end, in);
+    };
+    for (std::size_t block = 0; block * stride < count; ++block) {
+        const std::size_t first = block * stride, last = std::min(first + stride, count);
+        if (block < whole.size() && whole[block])
+            std::for_each(trajectory_.pieces.begin() + static_cast<std::ptrdiff_t>(first),
+                          trajectory_.pieces.begin() + static_cast<std::ptrdiff_t>(last), take);
+        else
+            take(trajectory_.pieces[std::min(first + block * 7919 % stride, count - 1)]);
     }
     if (pass_events(trajectory_.end_time) || samples.empty())
         add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_held, trajectory_.phases.back().carriers,

@@ -43,7 +43,8 @@ class Sampler {
     struct Projection;
     State state(const Piece& piece, double t) const;
     double work(const Piece& piece, double t) const;
-    std::vector<Sample> of_every(std::size_t stride, int between);
+    std::vector<Sample> of_every(std::size_t stride, int between, const std::vector<bool>& whole);
+    std::vector<bool> blocks_with_events(std::size_t stride) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
 };

@@ -165,6 +165,33 @@ TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
     EXPECT_GE(session.trajectory().statistics.impacts, 100000);
 }
 
+// Of a system whose run is under way the start is shown, and nothing is concluded from it; of another value the run before it.
+TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
+    int times = 0;
+    for (const char* shown : {"equations", "energy", "events"}) {
+        test::Hands hands("ball_on_sine");
+        hands.session.apply(command::Show{shown, true});
+        hands.session.apply(command::End{200000.0});
+        hands.session.apply(command::Pin{});
+        hands.session.set_patience(0.0);
+        hands.session.apply(command::Set{"e", 1.0});
+        hands.rest(2);
+        ASSERT_NE(hands.session.under_way(), nullptr);
+        std::string letters = hands.letters();
+        EXPECT_NE(letters.find("therunbeforethisoneisshownuntilthen"), std::string::npos) << letters;
+        EXPECT_EQ(letters.find("bouncesneverdieout"), std::string::npos) << "the run that is seen has e = 0.5";
+        hands.session.apply(command::Open{"double_pendulum"});
+        if (hands.session.under_way() == nullptr) continue;  // a short run may be there at once
+        ++times;
+        hands.rest(2);
+        letters = hands.letters();
+        for (const char* said :
+             {"therunbeforethisone", "cancelled", "stopped", "noZenopoint", "bouncesout", "never", "Zeno1", "provedto"})
+            EXPECT_EQ(letters.find(said), std::string::npos) << shown << ": " << said << ": " << letters;
+    }
+    EXPECT_GT(times, 0);
+}
+
 // How long a run still takes is for a window, whose frames come by the clock; a picture says nothing of it.
 TEST(LiveSession, says_how_long_a_run_still_takes) {
     EXPECT_EQ(time_left(0.2, 0.5), "") << "too early to tell";
