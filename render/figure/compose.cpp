@@ -219,12 +219,13 @@ double noise_of(const Trajectory& trajectory, std::span<const Sample> samples, V
     return most;
 }
 
-// A run of very many impacts has more points than a screen shows; short runs keep every one.
+// A run of very many impacts has more points than a screen shows; short runs keep every one. Even where a plot is wider than
+// that many pixels strokes are wider than a column.
 void thin(Panel& panel) {
     constexpr std::size_t many_points = 20000, many_markers = 8000;
     for (Curve& curve : panel.curves) {
         if (curve.points.size() <= many_points) continue;
-        curve.points = thinned(curve.points, panel.x, 2000.0);
+        curve.points = thinned(curve.points, panel.x, 1000.0);
         // Strokes so close together show no dashes, and half a million of these take long to draw.
         curve.stroke.dash.clear();
     }

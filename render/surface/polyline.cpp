@@ -24,7 +24,7 @@ class Cone {
     // Takes the point in, or says that the edge must end at farthest().
     bool accept(const Point& point) {
         const Point v = point - anchor_;
-        const double r = std::hypot(v.x, v.y);
+        const double r = std::sqrt(dot(v, v));      // neither too large nor small for that: is_finite()
         if (r < reach_ - tolerance_) return false;  // turned back: an extreme
         if (r <= tolerance_) return true;
         if (open_ && (cross(low_, v) < 0.0 || cross(v, high_) < 0.0 || dot(low_, v) < 0.0)) return false;
@@ -181,7 +181,7 @@ std::vector<Point> cut(const std::vector<Point>& points, const Box& box, const s
             pieces.lift();
             continue;
         }
-        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        const double length = dashes.solid() ? 0.0 : std::hypot(b.x - a.x, b.y - a.y);  // nobody else asks
         const auto part = inside(a, b, box);
         if (!part) {
             pieces.lift();

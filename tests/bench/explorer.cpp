@@ -1,5 +1,6 @@
 // How long the explorer's hand waits: medians, of the processor's time where one thread works, else by the clock.
-//     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 500 ms
+//     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 200 ms
+//     bench_explorer everything what is first of these alone: everything open at once, and a hand that changes values
 //     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
 //                               of 100 000 impacts are made one after the other
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <thread>
 
 #include "app/open.hpp"
 #include "bench/measure.hpp"
@@ -85,6 +87,38 @@ void frames() {
     }
 }
 
+// Equations, energy, poses at events, three runs of which two are pinned; and how long a hand waits for its answer, with
+// the patience of a window, but for the drawing itself.
+void everything() {
+    for (const auto& [what, system, change] : {std::tuple{"the paper's ball", "ball_on_sine", "end 20"},
+                                               std::tuple{"bouncing for ever", "ball_on_floor", "end 100000"}}) {
+        const bool is_long = std::string(system) == "ball_on_floor";
+        Desk desk(system, {"grid 3 2", is_long ? "set e 1" : "pause", change, "pin", "set g 9", "pin", "set g 8",
+                           "show equations", "show energy", "show strobe"});
+        const Interface::Active active(desk.interface);
+        for (int i = 0; i < 3; ++i) desk.frame();
+        say(fmt::format("{}, everything open: lists of a frame", what),
+            median_ms(60, bench::thread_seconds, [&](int) { desk.frame(); }), 5.0);
+        desk.session.set_patience(1.0 / 40.0);
+        double longest_change = 0.0, longest_arrival = 0.0;
+        int arrived = 0;
+        for (int i = 0; i < 40 || (arrived < 3 && i < 4000); ++i) {
+            const bool was_under_way = desk.session.under_way() != nullptr;
+            const double begin = wall_seconds();
+            desk.session.update();
+            const bool arrives = was_under_way && desk.session.under_way() == nullptr;
+            if (i % 10 == 0 && !was_under_way) desk.session.apply(command::Set{"g", 8.0 + 1e-3 * (i % 97)});
+            desk.frame();
+            (arrives ? longest_arrival : longest_change) =
+                std::max(arrives ? longest_arrival : longest_change, 1e3 * (wall_seconds() - begin));
+            arrived += arrives ? 1 : 0;
+            if (was_under_way && !arrives) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        say("    the longest frame with a change of a value", longest_change, 50.0);
+        if (arrived > 0) say("    the longest frame that takes a run in", longest_arrival, 50.0);
+    }
+}
+
 void sliders() {
     for (const char* system : {"ball_on_sine", "double_pendulum", "triple_pendulum"}) {
         Desk desk(system, {"grid 3 2"});
@@ -113,7 +147,7 @@ void start() {
                       apply(Input{});
                       interface.frame([&] { explorer(session, panels); }, Desk::width, Desk::height, 1.0 / 60.0);
                   }),
-        500.0);
+        200.0);
     say("the same, drawn offscreen and read",
         median_ms(5, wall_seconds,
                   [](int) {
@@ -184,6 +218,8 @@ int main(int count, char** words) {
         achilles::window();
         return 0;
     }
+    achilles::everything();
+    if (count > 1) return 0;
     achilles::frames();
     achilles::sliders();
     achilles::start();
