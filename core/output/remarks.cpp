@@ -47,7 +47,10 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
         std::size_t contact = 0;
         while (!event.contacts.contains(contact)) ++contact;
         const Certificate& c = *event.certificate;
-        const double bound = c.uniform_position.value_or(c.position_bound), enough = bound / large_share;
+        // With the paper's conditions what is left out is told by how high its bounces can be.
+        const double w = event.truncation->impact_speed;
+        const double bound = c.uniform_position.value_or(c.a_min > 0.0 ? 0.5 * w * w / c.a_min : c.position_bound);
+        const double enough = bound / large_share;
         double& largest = largest_of[contact];
         if (largest >= enough || has_been_above(enough, trajectory, contact, largest) || !(largest > 0.0)) continue;
         const std::string when =
@@ -55,9 +58,11 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
         const double eps = std::max(least_tolerance, std::pow(10.0, std::floor(std::log10(wanted_share * largest))));
         return Remark{
             "eps is large here",
-            fmt::format("eps_q = {:g} is large beside this motion: the bouncing was cut {}, t = {:.6g}, where the "
-                        "position is proved to {:.2g}, and the gap is never above {:.2g}: try --eps {:g}",
-                        trajectory.run.options.truncation.eps_q, when, event.truncation->t, bound, largest, eps)};
+            fmt::format(
+                "eps_q = {:g} is large beside this motion: the bouncing was cut {}, t = {:.6g}, where {} {:.2g}, "
+                "and the gap is never above {:.2g}: try --eps {:g}",
+                trajectory.run.options.truncation.eps_q, when, event.truncation->t,
+                c.uniform_position ? "the position is proved to" : "bounces may be as high as", bound, largest, eps)};
     }
     return std::nullopt;
 }

@@ -277,6 +277,9 @@ std::string summary(const Trajectory& trajectory) {
         text +=
             "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between "
             "bodies.\n";
+    text +=
+        "Digits are those of the computed run: the integration's errors grow along the way, and another --tolerance\n"
+        "shows how much.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });

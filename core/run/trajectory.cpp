@@ -36,7 +36,7 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
                                         [](const Piece& piece, double t) { return piece.start < t; });
     const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
     constexpr double generous = 30.0;
-    double state = generous * integration_error(used, static_cast<double>(after - pieces.begin()));
+    double state = generous * integration_error(used, std::max(1.0, static_cast<double>(after - pieces.begin())));
     for (std::size_t i = 0; i < zeno_event; ++i)
         if (const auto& cut = trajectory.events[i].certificate)
             state += std::max(cut->shadowing_position.value_or(0.0), cut->shadowing_velocity.value_or(0.0));

@@ -34,7 +34,8 @@ class GapAlong {
         Height before = at(piece, piece.start);
         for (int i = 1; i <= parts; ++i) {
             const Height after = at(piece, piece.start + (piece.end - piece.start) * i / parts);
-            if (before.hdot < 0.0 && after.hdot > 0.0 && where_tangents_meet(before, after) < least)
+            if (i < parts) least = std::min(least, after.h);
+            if (before.hdot <= 0.0 && after.hdot > 0.0 && where_tangents_meet(before, after) < least)
                 least = std::min(least, minimum(piece, before, after));
             before = after;
         }

@@ -36,7 +36,8 @@ class Sampler {
     // Every step end and every event (an impact as two samples, before and after), and `between` instants inside each
     // step.
     std::vector<Sample> all(int between = 0);
-    // The same of at most so many steps, spread over the run, and of the events that border on them.
+    // The same of at most so many steps, spread over the run, and of the events that border on them; where events are few as
+    // many steps again around them.
     std::vector<Sample> some(std::size_t most_steps, int between);
 
  private:

@@ -139,7 +139,9 @@ TEST(PlaneHand, takes_the_start_where_a_point_is_a_state) {
         hands.rest(2);
         const bool is_phase = hands.state.plane.plane->is_of_states();
         EXPECT_EQ(hands.session.can_undo(), is_phase) << line;
-        if (is_phase) EXPECT_GT(*hands.session.value("theta2'"), 0.1);
+        if (is_phase) {
+            EXPECT_GT(*hands.session.value("theta2'"), 0.1);
+        }
     }
 }
 

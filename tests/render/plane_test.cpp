@@ -69,11 +69,15 @@ TEST(Plane, has_a_line_for_each_gap_and_shades_where_all_are_open) {
     const Plane::Surfaces surfaces = plane.surfaces(run.parameters, start_of(run), box(-40.0, 40.0, -20.0, 60.0));
     ASSERT_EQ(surfaces.lines.size(), 2U);
     for (const Point& p : surfaces.lines[0].points)
-        if (std::isfinite(p.x)) EXPECT_NEAR(p.y, 0.0, 1e-9) << "the knee";
+        if (std::isfinite(p.x)) {
+            EXPECT_NEAR(p.y, 0.0, 1e-9) << "the knee";
+        }
     const double wall = surfaces.lines[1].points.at(0).x;
     EXPECT_NEAR(wall, 20.0535, 1e-3);
     for (const Point& p : surfaces.lines[1].points)
-        if (std::isfinite(p.x)) EXPECT_GE(p.y, -1e-9) << "not where the knee is overstretched";
+        if (std::isfinite(p.x)) {
+            EXPECT_GE(p.y, -1e-9) << "not where the knee is overstretched";
+        }
     EXPECT_NEAR(area(surfaces.open), (wall + 40.0) * 60.0, 1.0);
 }
 
@@ -89,7 +93,9 @@ TEST(Plane, has_the_surface_as_it_is_now) {
         ASSERT_EQ(surfaces.lines.size(), 1U);
         ASSERT_FALSE(surfaces.lines[0].points.empty());
         for (const Point& p : surfaces.lines[0].points)
-            if (std::isfinite(p.x)) EXPECT_NEAR(p.x, run.parameters[0] * std::sin(run.parameters[1] * t), 1e-6);
+            if (std::isfinite(p.x)) {
+                EXPECT_NEAR(p.x, run.parameters[0] * std::sin(run.parameters[1] * t), 1e-6);
+            }
     }
     EXPECT_EQ(plane.surfaces_key(state), std::vector<double>{0.3});
     const auto still = model_of("ball_on_floor");
@@ -107,7 +113,9 @@ TEST(Plane, has_the_line_of_a_gap_that_is_an_axis) {
     const auto surfaces = plane.surfaces(run.parameters, start_of(run), box(-5.0, 5.0, -5.0, 5.0));
     ASSERT_EQ(surfaces.lines.size(), 1U);
     for (const Point& p : surfaces.lines[0].points)
-        if (std::isfinite(p.x)) EXPECT_NEAR(p.x, 0.0, 1e-12);
+        if (std::isfinite(p.x)) {
+            EXPECT_NEAR(p.x, 0.0, 1e-12);
+        }
     EXPECT_NEAR(area(surfaces.open), 50.0, 1e-9);
 }
 
@@ -134,15 +142,18 @@ TEST(Plane, has_contours_at_round_energies) {
     EXPECT_TRUE(std::abs(datum) < 1e-9 || std::abs(datum + m * g * r) < 1e-9) << datum;
     for (const auto& level : levels)
         for (const Point& p : level.points)
-            if (std::isfinite(p.x)) EXPECT_NEAR(m * g * p.y + datum, value(level), 1e-9);
+            if (std::isfinite(p.x)) {
+                EXPECT_NEAR(m * g * p.y + datum, value(level), 1e-9);
+            }
     const Plane phase(*model, {"y", "y'"});
     state.v[0] = 2.0;
     const auto energies = phase.levels(run.parameters, state, box(0.0, 2.0, -4.0, 4.0));
     ASSERT_GE(energies.size(), 3U);
     for (const auto& level : energies)
         for (const Point& p : level.points)
-            if (std::isfinite(p.x))
+            if (std::isfinite(p.x)) {
                 EXPECT_NEAR(0.5 * m * (p.y * p.y + 4.0) + m * g * p.x + datum, value(level), 1e-2) << "between corners";
+            }
     EXPECT_EQ(phase.levels_key(state), std::vector<double>{2.0}) << "x' alone";
     EXPECT_TRUE(Plane(*model, {"x*y", "y"}).levels(run.parameters, state, box(0.0, 2.0, 0.0, 2.0)).empty());
     // Nothing is drawn of what is the same everywhere.

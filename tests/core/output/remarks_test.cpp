@@ -50,6 +50,17 @@ TEST(Remarks, ALooseTolerance) {
     EXPECT_TRUE(remarks(trajectory).empty());
 }
 
+// What a motion still goes along the surface is no bounce that is left out.
+TEST(Remarks, SlidingIsNoBouncing) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    run.options.truncation.conditions = Conditions::paper;
+    assign(run, floor->description(), "y=0.06001");
+    assign(run, floor->description(), "x'=0.5");
+    run.options.end_time = 0.1;
+    for (const Remark& remark : remarks(simulate(floor, run))) EXPECT_NE(remark.label, "eps is large here");
+}
+
 // What double precision cannot resolve is cut, whatever was asked for: then what was asked for is not said to hold.
 TEST(Remarks, AnEpsThatIsNotMet) {
     const auto ball = test::load("ball_on_sine");

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "core/systems.hpp"
+#include "model/flat.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -21,6 +22,22 @@ struct Edge {
 };
 
 void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.name; }
+
+// Flat is what stays so on the way to h = 0; a distance bends near its centre, and has a normal where it closes.
+TEST(Flat, IsNotADistanceFarFromWhereItCloses) {
+    const auto with_gap = [](const std::string& gap) {
+        return test::typed(
+            "title = \"flat\"\n[[coordinate]]\nname = \"x\"\n[[coordinate]]\nname = \"y\"\nstart = -0.3\n"
+            "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"y\"\n[[constraint]]\ngap = \"" +
+            gap + "\"\nrestitution = 0.5\n");
+    };
+    for (const auto& [gap, flat] :
+         {std::pair{"1 - sqrt(x^2 + y^2)", false}, {"y^2", true}, {"y^4", true}, {"-y", false}}) {
+        const auto model = with_gap(gap);
+        const auto run = model->default_run();
+        EXPECT_EQ(is_flat(*model, run.parameters, run.start()), flat) << gap;
+    }
+}
 
 class Edges : public testing::TestWithParam<Edge> {};
 
