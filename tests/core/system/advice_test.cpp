@@ -61,7 +61,7 @@ const Change with_advice[] = {
     {"gap = \"x", "h = \"x",
      "f.toml:18:1: unknown key 'h' in [[constraint]]; did you mean 'gap'?\n    h = \"x - sin(theta)/9\"\n    ^\nknown "
      "here: "
-     "name, gap, restitution, drawing"},
+     "name, gap, restitution, begins, ends, drawing"},
     {"rate = 0.5", "velocity = 0.5",
      "f.toml:5:1: unknown key 'velocity' in [[coordinate]]; did you mean 'rate'?\n    velocity = 0.5\n    ^\nknown "
      "here: "
