@@ -101,8 +101,9 @@ Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
 std::vector<Sample> Sampler::all(int between) { return of_every(1, between, {}); }
 
 std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {
+    if (trajectory_.pieces.size() <= most_steps) return all(between);  // also of a run that ended before its first step
     const std::size_t stride = 1 + (trajectory_.pieces.size() - 1) / most_steps;
-    std::vector<bool> whole = stride > 1 ? blocks_with_events(stride) : std::vector<bool>();
+    std::vector<bool> whole = blocks_with_events(stride);
     if (static_cast<std::size_t>(std::count(whole.begin(), whole.end(), true)) * stride > most_steps) whole.clear();
     return of_every(stride, between, whole);
 }

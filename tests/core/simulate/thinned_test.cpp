@@ -27,6 +27,14 @@ TEST(Thinned, StepsAroundEventsStay) {
     EXPECT_TRUE(std::is_sorted(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.t < b.t; }));
 }
 
+// A run may end at an event before its first step.
+TEST(Thinned, ARunWithoutStepsHasItsEvents) {
+    const auto floor = test::load("ball_on_floor");
+    Trajectory trajectory = simulate(floor, floor->default_run());
+    trajectory.pieces.clear();
+    EXPECT_EQ(Sampler(trajectory).some(500, 0).size(), Sampler(trajectory).all().size());
+}
+
 // Where everything is full of events the bound holds all the same.
 TEST(Thinned, ManyImpactsAreThinnedToo) {
     const auto floor = test::load("ball_on_floor");
