@@ -148,9 +148,9 @@ TEST(TenTasks, what_impacts_took_is_said_beside_the_energy) {
 
 TEST(TenTasks, a_file_of_yesterday_stands_in_the_menu) {
     Hands hands("ball_on_sine", surface);
-    hands.state.recent = {"/tmp/mine.toml"};
+    hands.state.recent = {"/elsewhere/mine.toml"};
     use(hands, "file", "menu File");
-    tell(hands, "recent", "menu /tmp/mine.toml");
+    tell(hands, "recent", "menu /elsewhere/mine.toml");
 }
 
 }  // namespace
