@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <future>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/dropped.hpp"
 #include "cli/entries.hpp"
+#include "cli/film_in_hand.hpp"
 #include "cli/manual.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
@@ -22,7 +24,6 @@
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "panels/print.hpp"
-#include "pictures/film_job.hpp"
 #include "pictures/picture_ending.hpp"
 #include "pictures/thumbnails.hpp"
 #include "session/open_session.hpp"
@@ -95,11 +96,11 @@ class Clock {
 // One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
 class Explorer {
  public:
-    Explorer(Session& session, Window& window, const ExploreOptions& options, std::unique_ptr<FilmJob>& film)
+    Explorer(Session& session, Window& window, const ExploreOptions& options, FilmInHand& film, PanelState state)
         : session_(session),
           window_(window),
           film_(film),
-          state_(panel_state(true)),
+          state_(std::move(state)),
           scale_(options.scale),
           trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
         if (!options.record.empty()) record_.emplace(options.record);
@@ -135,7 +136,7 @@ class Explorer {
         for (const Command& command : commands) take(command);
         take_answer();
         recover();
-        follow_film();
+        film_.follow(session_, state_.film);
         keep_text();
         if (commands.empty() && !tour_.runs()) remember_looks();
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
@@ -148,7 +149,8 @@ class Explorer {
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
             session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
-            session_.under_way() != nullptr || derives_equations(state_) || film_ || state_.thumbnails->is_busy()
+            session_.under_way() != nullptr || derives_equations(state_) || film_.is_busy() ||
+                    state_.thumbnails->is_busy()
                 ? progress_seconds
                 : 0.0);
     }
@@ -274,26 +276,6 @@ class Explorer {
         unsaved_.erase(unsaved_.begin());
     }
 
-    // A film that is drawn by another process: how far it is, and what became of it.
-    void follow_film() {
-        if (!film_) return state_.film.reset();
-        const bool is_given_up = state_.film && state_.film->is_given_up;
-        if (is_given_up) film_->cancel();
-        const bool has_ended = film_->update();
-        state_.film = FilmProgress{film_->film(), film_->progress(), film_->share(), false};
-        if (!has_ended) return;
-        const std::unique_ptr<FilmJob> film = std::move(film_);
-        state_.film.reset();
-        if (is_given_up)
-            session_.tell(film->film() + " is given up");
-        else if (film->is_made())
-            session_.tell(std::filesystem::absolute(film->film()).lexically_normal().string() + " is written");
-        else if (film->has_frames())
-            session_.tell(film->said());
-        else
-            session_.refuse(InputError(film->film(), {}, film->said()));
-    }
-
     // For the next window, once the hand rests. What a tour changes is not what the user wants to have.
     void remember_looks() {
         preferences_.keep(session_);
@@ -332,7 +314,7 @@ class Explorer {
 
     Session& session_;
     Window& window_;
-    std::unique_ptr<FilmJob>& film_;  // that is being drawn
+    FilmInHand& film_;
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
@@ -361,16 +343,15 @@ int explore(const ExploreOptions& options) {
     library.find = find_system;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
-    std::unique_ptr<FilmJob> film;
-    library.film = [&film](std::unique_ptr<FilmJob> begun) {
-        if (film) throw InputError(begun->film(), {}, "another film is still being drawn", "wait for it, or stop it");
-        film = std::move(begun);
-    };
+    FilmInHand film;
+    library.film = [&film](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
+    // The window system takes its time: the other core reads the gallery.
+    std::future<PanelState> state = std::async(std::launch::async, panel_state, true);
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
-    Explorer explorer(session, window, options, film);
+    Explorer explorer(session, window, options, film, state.get());
     session.set_patience(frame_patience);
     if (!journal.empty()) explorer.begin(journal);
     session.on_ready(Window::wake);

@@ -18,7 +18,9 @@ struct PinnedRun {
     std::shared_ptr<const Trajectory> trajectory;
     std::shared_ptr<Sampler> sampler;
     std::shared_ptr<const std::vector<Sample>> samples;  // for plots
-    std::shared_ptr<const Touch> touch;                  // how its discs rest in the present drawing
+    std::shared_ptr<const Touch> touch;                  // how its discs rest in the present drawing,
+    std::shared_ptr<const Mechanism> touched;            // of this mechanism,
+    double touched_size = 0.0;                           // in a world of this size
     std::string name;          // how it differs from the others and the present one; empty: not at all
     std::vector<Panel> plots;  // of what is plotted now
     int revision = -1;         // of that,

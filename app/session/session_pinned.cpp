@@ -219,7 +219,11 @@ void Session::compose_pinned() {
         PinnedRun& run = pinned_[i];
         run.name = names[i + 1];
         if (!run.shown) continue;
-        run.touch = std::make_shared<const Touch>(mechanism(), *run.trajectory, limits().size);
+        if (run.touched.get() != &mechanism() || run.touched_size != limits().size) {
+            run.touched = {system_, &mechanism()};
+            run.touched_size = limits().size;
+            run.touch = std::make_shared<const Touch>(mechanism(), *run.trajectory, run.touched_size);
+        }
         if (run.revision != plots_.revision() || run.dark != theme_.dark || run.plots.size() != plots_.list().size())
             run.plots = plots_.compose(*run.trajectory, *run.samples, theme_);
         run.revision = plots_.revision();

@@ -44,6 +44,23 @@ constexpr Habit signs[] = {
     {";", "nothing ends an expression"},
 };
 
+// What has corners or jumps.
+constexpr std::string_view for_abs = "sqrt(x^2 + w^2) is nearly |x|, with a small w";
+constexpr std::string_view for_step = "a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w";
+constexpr std::string_view for_mod = "what repeats is made of sin and cos";
+constexpr Habit corners[] = {
+    {"abs", for_abs},
+    {"min",
+     "two gaps are two [[constraint]]; else (a + b - sqrt((a - b)^2 + w^2))/2 is nearly min(a, b), with a small w"},
+    {"max", "(a + b + sqrt((a - b)^2 + w^2))/2 is nearly max(a, b), with a small w"},
+    {"floor", for_step},
+    {"ceil", for_step},
+    {"round", for_step},
+    {"sign", "tanh(x/w) is nearly sign(x), with a small w"},
+    {"mod", for_mod},
+    {"fmod", for_mod},
+};
+
 struct OtherName {
     std::string_view written, known, told;
 };
@@ -87,6 +104,12 @@ std::string instead_of_name(std::string_view name, const std::function<bool(std:
         if (name == other.written && (other.known.empty() || is_known(other.known)))
             return "; " + std::string(other.told);
     return "";
+}
+
+std::string_view instead_of_corner(std::string_view name) {
+    for (const Habit& corner : corners)
+        if (corner.written == name) return corner.instead;
+    return {};
 }
 
 }  // namespace achilles

@@ -11,5 +11,7 @@ namespace achilles {
 std::string instead_of_sign(std::string_view rest);
 // Of a name that has none: "; the gap is called gap" of h, where that is known.
 std::string instead_of_name(std::string_view name, const std::function<bool(std::string_view)>& is_known);
+// Of a function that has corners or jumps: "sqrt(x^2 + w^2) is nearly |x|, with a small w" of abs. A sentence of its own.
+std::string_view instead_of_corner(std::string_view name);
 
 }  // namespace achilles

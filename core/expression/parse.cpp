@@ -18,32 +18,6 @@ namespace {
 // Deeper than any formula a person writes, shallow enough for every stack.
 constexpr int deepest = 200;
 
-// What has corners or jumps, and what to write instead.
-struct NotSmooth {
-    std::string_view name, instead;
-};
-constexpr std::string_view for_abs = "sqrt(x^2 + w^2) is nearly |x|, with a small w";
-constexpr std::string_view for_step = "a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w";
-constexpr std::string_view for_mod = "what repeats is made of sin and cos";
-constexpr std::array<NotSmooth, 9> not_smooth{{
-    {"abs", for_abs},
-    {"min",
-     "two gaps are two [[constraint]]; else (a + b - sqrt((a - b)^2 + w^2))/2 is nearly min(a, b), with a small w"},
-    {"max", "(a + b + sqrt((a - b)^2 + w^2))/2 is nearly max(a, b), with a small w"},
-    {"floor", for_step},
-    {"ceil", for_step},
-    {"round", for_step},
-    {"sign", "tanh(x/w) is nearly sign(x), with a small w"},
-    {"mod", for_mod},
-    {"fmod", for_mod},
-}};
-
-const NotSmooth* not_smooth_of(std::string_view name) {
-    const auto found =
-        std::find_if(not_smooth.begin(), not_smooth.end(), [&](const NotSmooth& one) { return one.name == name; });
-    return found == not_smooth.end() ? nullptr : &*found;
-}
-
 constexpr std::array<std::string_view, 9> reserved{"t",    "pi",   "gap",   "lambda", "energy",
                                                    "work", "loss", "power", "deg"};
 
@@ -229,7 +203,7 @@ class Parser {
     void refuse_bar() const {
         if (peek() == '|')
             throw ParseError(at_, "|x| is not allowed: it is not smooth, and the equations of motion need derivatives",
-                             {}, for_abs);
+                             {}, std::string(instead_of_corner("abs")));
     }
 
     void close(std::size_t open) {
@@ -343,11 +317,12 @@ class Parser {
     }
 
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
-        if (const NotSmooth* corner = not_smooth_of(bare == "sgn" && peek() == '(' ? "sign" : bare))
+        if (const std::string_view instead = instead_of_corner(bare == "sgn" && peek() == '(' ? "sign" : bare);
+            !instead.empty())
             throw ParseError(
                 begin,
                 in_quotes(bare) + " is not allowed: it is not smooth, and the equations of motion need derivatives",
-                bare, corner->instead);
+                bare, instead);
         std::vector<std::string> known;
         for (const Function& function : functions) known.emplace_back(function.name);
         for (const auto& [word, element] : scope_.listed) known.push_back(word);
@@ -392,7 +367,7 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
 
 bool is_reserved(std::string_view name) {
     const auto is_name_of = [&](const auto& entry) { return entry.name == name; };
-    return std::find(reserved.begin(), reserved.end(), name) != reserved.end() || not_smooth_of(name) != nullptr ||
+    return std::find(reserved.begin(), reserved.end(), name) != reserved.end() || !instead_of_corner(name).empty() ||
            std::find_if(functions.begin(), functions.end(), is_name_of) != functions.end();
 }
 
