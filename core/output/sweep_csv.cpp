@@ -30,11 +30,8 @@ std::string sweep_csv_heading(const SweepTable& table, bool units) {
         names += comma + name;
         of_them += comma + printable(unit);
     };
-    for (const SweepAxis& axis : table.sweep().axes) {
-        const std::vector<const Option*> options = options_of_axis(axis.name);
-        const std::string unit = unit_of(table.model().description(), axis.name);
-        add(axis.name, unit.empty() && !options.empty() ? std::string(options.front()->unit) : unit);
-    }
+    for (const SweepAxis& axis : table.sweep().axes)
+        add(axis.name, unit_of_axis(table.model().description(), axis.name));
     if (table.is_section()) {
         add("t", "s");
         add("contact", "");
@@ -105,6 +102,7 @@ std::string to_bytes(const Rows& rows) {
     put(bytes, rows.numbers);
     put(bytes, rows.held);
     put(bytes, rows.ends);
+    put(bytes, rows.signatures);
     put(bytes, rows.times);
     put(bytes, rows.contacts);
     return bytes;
@@ -121,6 +119,7 @@ Rows rows_from(std::string_view bytes, const SweepTable& table) {
     take(bytes, rows.numbers, count * table.measures().numbers());
     take(bytes, rows.held, count);
     take(bytes, rows.ends, count);
+    take(bytes, rows.signatures, count);
     if (table.is_section()) {
         take(bytes, rows.times, count);
         take(bytes, rows.contacts, count);

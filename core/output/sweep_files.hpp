@@ -33,7 +33,7 @@ std::string fault_of_hdf5(const SweepTable& table);
 // Reads all rows, a chunk after the other, from the first on: take(rows). Asked more than once.
 using EachRows = std::function<void(const std::function<void(const Rows&)>& take)>;
 // Writes /axes/NAME, the values along each axis of a grid, else those of every row; /values/TEXT, in the shape of the grid or
-// by rows, with the outcome and, of a section, t and contact; units as attributes of each, the origin and the options as
+// by rows, with the outcome and, of a section, t and contact; /signature in the same shape; units as attributes of each, the origin and the options as
 // those of the file. Nothing depends on when and how the rows were made. Throws std::runtime_error.
 void write_hdf5(const std::string& path, const SweepTable& table, const SweepOrigin& origin, const EachRows& each_rows);
 

@@ -224,9 +224,11 @@ class Array {
     hsize_t at_ = 0;
 };
 
-Handle number_type() {
+constexpr const char *f64 = "H5T_IEEE_F64LE_g", *u64 = "H5T_STD_U64LE_g";
+
+Handle type_named(const char* name) {
     const Library& h5 = Library::get();
-    return {h5.H5Tcopy(h5.constant("H5T_IEEE_F64LE_g")), h5.H5Tclose};
+    return {h5.H5Tcopy(h5.constant(name)), h5.H5Tclose};
 }
 
 // A column of the table, by rows.
@@ -236,13 +238,18 @@ class ColumnArray {
     using Texts = std::function<std::string(const Rows&, std::size_t row)>;
     ColumnArray(hid_t file, const std::string& path, const std::vector<hsize_t>& shape, const std::string& units,
                 Numbers numbers)
-        : array_(file, path, shape, number_type(), units), numbers_(std::move(numbers)) {}
+        : array_(file, path, shape, type_named(f64), units), numbers_(std::move(numbers)) {}
     ColumnArray(hid_t file, const std::string& path, const std::vector<hsize_t>& shape, std::size_t width, Texts texts)
         : array_(file, path, shape, text_type(width), ""),
           width_(std::max<std::size_t>(1, width)),
           texts_(std::move(texts)) {}
 
+    // The signatures.
+    ColumnArray(hid_t file, const std::string& path, const std::vector<hsize_t>& shape)
+        : array_(file, path, shape, type_named(u64), "") {}
+
     void append(const Rows& rows) {
+        if (!numbers_ && !texts_) return array_.append(rows.signatures.data(), rows.count(), sizeof(std::uint64_t));
         if (numbers_) {
             std::vector<double> column(rows.count());
             for (std::size_t i = 0; i < column.size(); ++i) column[i] = numbers_(rows, i);
@@ -315,7 +322,7 @@ class Writer {
  private:
     void add_axis(std::size_t index) {
         const SweepAxis& axis = table_.sweep().axes[index];
-        const std::string path = "/axes/" + axis.name, unit = unit_of(table_.model().description(), axis.name);
+        const std::string path = "/axes/" + axis.name, unit = unit_of_axis(table_.model().description(), axis.name);
         if (!is_grid_) {
             const auto value = [this, index](const Rows& rows, std::size_t row) {
                 return table_.sweep().value(index, rows.points[row]);
@@ -323,7 +330,7 @@ class Writer {
             columns_.emplace_back(file_, path, shape_, unit, value);
             return;
         }
-        Array array(file_, path, {axis.count}, number_type(), unit);
+        Array array(file_, path, {axis.count}, type_named(f64), unit);
         constexpr std::uint64_t at_once = 1 << 16;
         for (std::uint64_t first = 0; first < axis.count; first += at_once) {
             std::vector<double> values;
@@ -335,15 +342,16 @@ class Writer {
     }
 
     void add_values() {
-        const auto names_of = [this](ContactSet set) {
-            return set.empty() ? std::string() : joined_names(table_.model(), set, "+");
+        const auto add_sets = [&](const std::string& path, std::size_t width, std::vector<ContactSet> Rows::*sets) {
+            columns_.emplace_back(file_, path, shape_, width, [this, sets](const Rows& rows, std::size_t row) {
+                const ContactSet set = (rows.*sets)[row];
+                return set.empty() ? std::string() : joined_names(table_.model(), set, "+");
+            });
         };
         if (table_.is_section()) {
             columns_.emplace_back(file_, "/values/t", shape_, "s",
                                   [](const Rows& rows, std::size_t row) { return rows.times[row]; });
-            columns_.emplace_back(
-                file_, "/values/contact", shape_, extent_.contacts,
-                [names_of](const Rows& rows, std::size_t row) { return names_of(rows.contacts[row]); });
+            add_sets("/values/contact", extent_.contacts, &Rows::contacts);
         }
         const std::size_t numbers = table_.measures().numbers();
         std::size_t number = 0;
@@ -355,13 +363,12 @@ class Writer {
                     return rows.numbers[row * numbers + place];
                 });
             } else if (column.kind == Column::Kind::held) {
-                columns_.emplace_back(file_, path, shape_, extent_.held, [names_of](const Rows& rows, std::size_t row) {
-                    return names_of(rows.held[row]);
-                });
+                add_sets(path, extent_.held, &Rows::held);
             }
         }
         columns_.emplace_back(file_, "/values/outcome", shape_, extent_.ends,
                               [](const Rows& rows, std::size_t row) { return std::string(rows.ends[row].text()); });
+        columns_.emplace_back(file_, "/signature", shape_);
     }
 
     hid_t file_;

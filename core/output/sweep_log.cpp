@@ -17,7 +17,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::string_view magic = "Achilles sweep, unfinished: 1\n";
+constexpr std::string_view magic = "Achilles sweep, unfinished: 2\n";
 
 // FNV-1a, eight bytes at a time.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t hash = 0xCBF29CE484222325u) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number/mixed.hpp"
+
 namespace achilles {
 
 double SweepAxis::value(std::uint64_t i) const {
@@ -25,14 +27,7 @@ double SweepAxis::between(double share) const {
 
 namespace {
 
-// A number for each point and axis that depends on nothing else: the bits of a counter, well mixed (splitmix64).
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9E3779B97F4A7C15u;
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-    return x ^ (x >> 31);
-}
-
+// A number for each point and axis that depends on nothing else: the bits of a counter.
 double share_of(std::uint64_t seed, std::size_t axis, std::uint64_t i) {
     return static_cast<double>(mixed(mixed(mixed(seed) + axis) + i) >> 11) * 0x1p-53;
 }
@@ -60,6 +55,12 @@ std::vector<const Option*> options_of_axis(std::string_view name) {
         if (option.command == name) found.push_back(&option);
     }
     return found;
+}
+
+std::string unit_of_axis(const SystemDescription& description, std::string_view name) {
+    const std::string unit = unit_of(description, name);
+    const std::vector<const Option*> options = options_of_axis(name);
+    return unit.empty() && !options.empty() ? std::string(options.front()->unit) : unit;
 }
 
 SweepPoints::SweepPoints(const Sweep& sweep, const SystemDescription& description) : sweep_(&sweep) {

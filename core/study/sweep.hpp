@@ -96,5 +96,7 @@ class SweepPoints {
 
 // The options that a name stands for on an axis; none where it stands for none.
 std::vector<const Option*> options_of_axis(std::string_view name);
+// "" where it is not known.
+std::string unit_of_axis(const SystemDescription& description, std::string_view name);
 
 }  // namespace achilles

@@ -2,22 +2,23 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
-#include <algorithm>
 #include <limits>
 
 #include "number/ground.hpp"
 
 namespace achilles {
 
-RunEnd RunEnd::from(std::uint8_t code) {
-    RunEnd end;
-    end.code_ = std::min<std::uint8_t>(code, 1 + static_cast<std::uint8_t>(Outcome::Kind::cancelled));
-    return end;
+namespace {
+
+std::uint64_t signature_of(const Trajectory& trajectory) {
+    const RunEnd end(trajectory.outcome.kind);
+    return trajectory.events.empty() ? signature_of(trajectory.passages, end)
+                                     : signature_of(sequence_of(trajectory), end);
 }
 
-std::string_view RunEnd::text() const {
-    return code_ == 0 ? "cannot start" : to_text(static_cast<Outcome::Kind>(code_ - 1));
-}
+const std::uint64_t signature_of_nothing = signature_of(std::span<const Passage>(), RunEnd());
+
+}  // namespace
 
 struct SweepTable::Worker {
     explicit Worker(const SweepTable& table) : measuring(table.measures_), runs(table.model_) {}
@@ -58,6 +59,7 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count) 
     rows.numbers.assign(n * width, std::numeric_limits<double>::quiet_NaN());
     rows.held.resize(n);
     rows.ends.resize(n);
+    rows.signatures.assign(n, signature_of_nothing);
     std::vector<double> numbers;
     const auto take = [&](std::size_t i, Attempt&& attempt) {
         rows.points[i] = first + i;
@@ -68,17 +70,19 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count) 
         std::copy(numbers.begin(), numbers.end(), rows.numbers.begin() + static_cast<std::ptrdiff_t>(i * width));
         rows.held[i] = trajectory->end_held;
         rows.ends[i] = RunEnd(trajectory->outcome.kind);
+        rows.signatures[i] = signature_of(*trajectory);
     };
     worker.runs.simulate(
         n, [&](std::size_t i) { return points_.run(first + i); }, take);
     return rows;
 }
 
-void SweepTable::add_nothing(std::uint64_t point, RunEnd end, Rows& rows) const {
+void SweepTable::add_nothing(std::uint64_t point, RunEnd end, std::uint64_t signature, Rows& rows) const {
     rows.points.push_back(point);
     rows.numbers.insert(rows.numbers.end(), measures_.numbers(), std::numeric_limits<double>::quiet_NaN());
     rows.held.emplace_back();
     rows.ends.push_back(end);
+    rows.signatures.push_back(signature);
     if (!is_section()) return;
     rows.times.push_back(std::numeric_limits<double>::quiet_NaN());
     rows.contacts.emplace_back();
@@ -87,13 +91,15 @@ void SweepTable::add_nothing(std::uint64_t point, RunEnd end, Rows& rows) const 
 void SweepTable::add_sections(Measuring& measuring, const Trajectory& trajectory, std::uint64_t point,
                               Rows& rows) const {
     const RunEnd end(trajectory.outcome.kind);
+    const std::uint64_t signature = signature_of(trajectory);
     const std::vector<Moment> moments = measuring.moments(trajectory, *sweep_.at);
-    if (moments.empty()) return add_nothing(point, end, rows);
+    if (moments.empty()) return add_nothing(point, end, signature, rows);
     for (const Moment& moment : moments) {
         rows.points.push_back(point);
         measuring.at(trajectory, moment, rows.numbers);
         rows.held.push_back(moment.sample.held);
         rows.ends.push_back(end);
+        rows.signatures.push_back(signature);
         rows.times.push_back(moment.sample.t);
         rows.contacts.push_back(moment.contacts);
     }
@@ -106,7 +112,7 @@ Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t c
         try {
             trajectory = simulate(model_, points_.run(point));
         } catch (const InputError&) {
-            add_nothing(point, RunEnd(), rows);
+            add_nothing(point, RunEnd(), signature_of_nothing, rows);
             continue;
         }
         if (is_section()) {
@@ -117,6 +123,7 @@ Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t c
         worker.measuring.at_end(*trajectory, rows.numbers);
         rows.held.push_back(trajectory->end_held);
         rows.ends.emplace_back(trajectory->outcome.kind);
+        rows.signatures.push_back(signature_of(*trajectory));
     }
     return rows;
 }

@@ -6,22 +6,9 @@
 #include <vector>
 
 #include "study/measures.hpp"
+#include "study/signature.hpp"
 
 namespace achilles {
-
-// How the run of a point ended: the kind of an Outcome, or a start that it cannot have.
-class RunEnd {
- public:
-    RunEnd() = default;  // cannot start
-    explicit RunEnd(Outcome::Kind kind) : code_(static_cast<std::uint8_t>(1 + static_cast<int>(kind))) {}
-    static RunEnd from(std::uint8_t code);
-    std::uint8_t code() const { return code_; }
-    std::string_view text() const;  // "end time", ..., "cannot start"
-    friend bool operator==(const RunEnd&, const RunEnd&) = default;
-
- private:
-    std::uint8_t code_ = 0;
-};
 
 // Rows of points that follow one another: one each, or of a section as many as it has moments, and one with nothing in it
 // where it has none. Column by column.
@@ -30,8 +17,9 @@ struct Rows {
     std::vector<double> numbers;  // the measures, row by row
     std::vector<ContactSet> held;
     std::vector<RunEnd> ends;
-    std::vector<double> times;         // of a section; no number in a row without a moment
-    std::vector<ContactSet> contacts;  // of a section, the event's
+    std::vector<std::uint64_t> signatures;  // of the whole run, in each of its rows (signature_of)
+    std::vector<double> times;              // of a section; no number in a row without a moment
+    std::vector<ContactSet> contacts;       // of a section, the event's
     std::size_t count() const { return points.size(); }
     friend bool operator==(const Rows&, const Rows&) = default;
 };
@@ -59,7 +47,7 @@ class SweepTable {
     Rows ends(Worker& worker, std::uint64_t first, std::uint64_t count) const;
     Rows one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count) const;
     void add_sections(Measuring& measuring, const Trajectory& trajectory, std::uint64_t point, Rows& rows) const;
-    void add_nothing(std::uint64_t point, RunEnd end, Rows& rows) const;
+    void add_nothing(std::uint64_t point, RunEnd end, std::uint64_t signature, Rows& rows) const;
 
     std::shared_ptr<const Model> model_;
     Sweep sweep_;

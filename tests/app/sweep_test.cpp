@@ -270,7 +270,8 @@ class SweepHdf5 : public testing::Test {
                     "    v = f['values/' + name]\n"
                     "    if v.dtype.kind == 'f':\n"
                     "        c = numpy.array([float(r[k] or 'nan') for r in table[1:]])\n"
-                    "        assert numpy.array_equal(v[:].ravel(), c, equal_nan=True), name\n");
+                    "        assert numpy.array_equal(v[:].ravel(), c, equal_nan=True), name\n"
+                    "assert f['signature'].dtype == 'uint64' and f['signature'].shape == f['values/outcome'].shape\n");
         const std::string cd = "cd '" + folder_.path().string() + "' && ";
         if (std::system((cd + "python3 -c 'import h5py' 2>/dev/null").c_str()) != 0) return;
         EXPECT_EQ(std::system((cd + "python3 read.py").c_str()), 0);

@@ -67,6 +67,7 @@ void expect_single_runs(const SweepTable& table, double tolerance) {
         EXPECT_NEAR(numbers[1], alone.end.v[0], tolerance) << i;
         for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_EQ(numbers[2 + kind], counts[kind]) << i;
         EXPECT_EQ(rows.held[i], alone.end_held) << i;
+        EXPECT_EQ(rows.signatures[i], signature_of(sequence, RunEnd(alone.outcome.kind))) << i;
         EXPECT_EQ(is_nan(numbers[5]), is_nan(last_zeno)) << i;
         if (is_nan(last_zeno)) continue;
         EXPECT_NEAR(numbers[5], last_zeno, 1e-6) << i;
@@ -103,12 +104,14 @@ TEST(SweepTable, IsTheSameInAnyChunks) {
             append(parts.numbers, rows.numbers);
             append(parts.held, rows.held);
             append(parts.ends, rows.ends);
+            append(parts.signatures, rows.signatures);
             append(parts.times, rows.times);
         }
         EXPECT_EQ(parts.points, whole.points);
         EXPECT_TRUE(same(parts.numbers, whole.numbers)) << text;
         EXPECT_EQ(parts.held, whole.held);
         EXPECT_EQ(parts.ends, whole.ends);
+        EXPECT_EQ(parts.signatures, whole.signatures);
         EXPECT_TRUE(same(parts.times, whole.times)) << text;
     }
 }
