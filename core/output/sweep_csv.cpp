@@ -53,7 +53,7 @@ std::string sweep_csv(const SweepTable& table, const Rows& rows) {
             append(text, sweep.value(axis, rows.points[row]));
         }
         if (table.is_section()) {
-            text += ',';
+            if (!sweep.axes.empty()) text += ',';
             append(text, rows.times[row]);
             text += ',';
             text += joined_names(table.model(), rows.contacts[row], "+");

@@ -101,7 +101,6 @@ std::vector<SweepAxis> read_axes(const std::vector<std::string>& over, const Sys
             if (other.name == axis.name) throw refusal("--over", text, fmt::format("{} is varied already", axis.name));
         axes.push_back(axis);
     }
-    if (axes.empty()) throw InputError("--over", {}, "nothing is varied", how_to_vary);
     return axes;
 }
 
@@ -166,6 +165,9 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
     Sweep sweep;
     sweep.base = base;
     sweep.axes = read_axes(asked.over, description);
+    // Of a section one run may be enough.
+    if (sweep.axes.empty() && (!asked.at || asked.random))
+        throw InputError("--over", {}, "nothing is varied", how_to_vary);
     sweep.random = read_random(asked, sweep.axes);
     double points = 1.0;
     for (const SweepAxis& axis : sweep.axes) points *= sweep.random ? 1.0 : static_cast<double>(axis.count);

@@ -110,6 +110,10 @@ float widest_name(const Panel& panel, const Metrics& m) {
     return width;
 }
 
+// Of the colours of numbers, and from the box to them.
+float bar_width(const Metrics& m) { return std::round(1.1F * m.text); }
+float bar_distance(const Metrics& m) { return std::round(1.1F * m.text); }
+
 // A label that is at most `room` long.
 struct Fitted {
     std::string label;
@@ -190,6 +194,12 @@ Margins margins(const Panel& panel, const Metrics& m) {
     // The outermost labels stand out by half their size.
     room.right = std::max(widest_label(panel.x, m) / 2.0F, m.line);
     room.left = std::max(room.left, room.right);
+    if (!panel.color_bar.colors.empty()) {
+        const Axis& bar_axis = panel.color_bar.axis;
+        room.right =
+            std::max(room.right, bar_distance(m) + bar_width(m) + m.line + m.tick + m.gap + widest_label(bar_axis, m) +
+                                     m.gap + (bar_axis.label.empty() ? 0.0F : m.text * 1.1F + m.gap));
+    }
     room.top = panel.title.empty() ? m.text * 0.55F : m.text * 1.45F;
     room.bottom = std::max(room.bottom, m.text * 0.55F);
     return {std::ceil(room.left), std::ceil(room.right), std::ceil(room.top), std::ceil(room.bottom)};
@@ -225,6 +235,33 @@ void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     for (const Placed& p : ticks_y(panel, plot, m))
         if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
             bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
+}
+
+void lay_color_bar(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
+                   const Metrics& m) {
+    const ColorBar& colors = panel.color_bar;
+    if (colors.colors.empty()) return;
+    const Rectangle area{plot.x + plot.width + m.line + bar_distance(m), plot.y, bar_width(m), plot.height};
+    bar(sheet, area.x - m.line, area.y - m.line, area.width + 2.0F * m.line, area.height + 2.0F * m.line, style.ink);
+    auto cells = std::make_shared<Cells>(Cells{1, static_cast<int>(colors.colors.size()), colors.colors});
+    std::reverse(cells->colors.begin(), cells->colors.end());
+    sheet.emplace_back(Tiles{area, area, std::move(cells)});
+    Panel beside;
+    beside.y = colors.axis;
+    const float right = area.x + area.width + m.line;
+    for (const Placed& p : ticks_y(beside, area, m)) {
+        bar(sheet, right, p.at, p.labelled ? m.tick : m.minor_tick, m.line, style.ink);
+        if (p.labelled)
+            sheet.emplace_back(TextRun{right + m.tick + m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 0.0F,
+                                       p.tick->label, style.ink, m.text});
+    }
+    if (colors.axis.label.empty()) return;
+    const auto [label, size] = fitting(colors.axis.label, m, plot.height + room.top + room.bottom);
+    const float half = m.width(label, size) / 2.0F;
+    const float lowest = plot.y + plot.height + room.bottom - half;
+    const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
+    sheet.emplace_back(
+        TextRun{plot.x + plot.width + room.right - m.text * 1.1F, at, 0.5F, label, style.ink, size, true});
 }
 
 float strip_height(const Panel& panel, Rectangle area, const Metrics& m) {

@@ -53,6 +53,10 @@ void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
 void lay_axes(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& margins,
               float title_lift, float strip, const Metrics& metrics);
 
+// The colours of numbers in the room at the right of the box, with an axis of their own.
+void lay_color_bar(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& margins,
+                   const Metrics& metrics);
+
 // What the time bars take from the bottom of an area: a row each, less where there are many; 0 without any.
 float strip_height(const Panel& panel, Rectangle area, const Metrics& metrics);
 // The time bars in the strip under the plot area, their names where the y axis has its numbers.

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -73,12 +74,53 @@ struct Axis {
     bool labelled = true;  // false: ticks alone, because another panel beside this one shows the same axis
 };
 
+// A picture of cells, all of one size: row by row from the top.
+struct Cells {
+    int columns = 0, rows = 0;
+    std::vector<Color> colors;
+    friend bool operator==(const Cells&, const Cells&) = default;
+};
+
+// Cells over a rectangle of the plot, which may go on beyond the limits. On a logarithmic axis equal cells are equal factors.
+struct Raster {
+    std::shared_ptr<const Cells> cells;  // null: none
+    double left = 0.0, right = 1.0, bottom = 0.0, top = 1.0;
+};
+
+// Points too many for markers: each is a small dot of its own colour, the last one above. Without colours a dot is darker
+// the more points are in it, by the logarithm of their number.
+struct Dots {
+    std::vector<Point> points;
+    std::vector<Color> colors;  // so many, or none
+    Color ink;                  // of the fullest dot, where there are none
+    // Where points stand at so many even places from left to right: a dot is then as wide as a place, unless it were a
+    // dash. 0: anywhere.
+    int columns = 0;
+    double left = 0.0, right = 0.0;
+};
+
+// What the colours of numbers mean, beside the plot area.
+struct ColorBar {
+    Axis axis;
+    std::vector<Color> colors;  // from axis.low on, evenly; empty: no bar
+};
+
+// Strokes across the plot area, behind all, seen where nothing covers them.
+struct Hatch {
+    std::string label;  // "" : not in the legend
+    Color color{0, 0, 0, 0};
+};
+
 struct Panel {
     std::string title;  // "(a)", or a view's name
     Axis x, y;
     bool equal_axes = false;  // one unit is the same length on both axes
     int rows = 1;             // of the figure's, that it stands beside
     std::vector<Band> bands;
+    Hatch hatch;
+    Raster raster;  // behind the curves, as are
+    Dots dots;
+    ColorBar color_bar;
     Curve boundary;  // behind the curves: what the path cannot cross
     std::vector<Curve> curves;
     std::vector<Markers> markers;
@@ -88,10 +130,10 @@ struct Panel {
     std::array<double, 2> legend_at{1.0, 1.0};  // corner of the plot area: (0,0) bottom left, (1,1) top right
 };
 
-// A line of a legend: a stroke or a marker and its meaning.
+// A line of a legend: a stroke, a marker or a hatched field and its meaning.
 struct Key {
     std::string label;
-    std::variant<Stroke, Markers> sign;
+    std::variant<Stroke, Markers, Hatch> sign;
 };
 
 struct Figure {

@@ -34,6 +34,40 @@ std::string points_text(const std::vector<Point>& points) {
     return text;
 }
 
+// Every colour in turn with how many cells of it follow one another, at most forty such runs; a sum tells of the rest.
+std::string cells_text(const Cells& cells) {
+    constexpr int most = 40;
+    std::string text;
+    std::uint64_t sum = 0xCBF29CE484222325u;
+    int runs = 0;
+    for (std::size_t i = 0, next = 0; i < cells.colors.size(); i = next, ++runs) {
+        for (next = i; next < cells.colors.size() && cells.colors[next] == cells.colors[i];) ++next;
+        const Color& c = cells.colors[i];
+        for (const std::size_t part : {std::size_t{c.r}, std::size_t{c.g}, std::size_t{c.b}, std::size_t{c.a}, next})
+            sum = (sum ^ part) * 0x100000001B3u;
+        if (runs < most) text += fmt::format(" {}{}", color_text(c), next > i + 1 ? fmt::format("x{}", next - i) : "");
+    }
+    return fmt::format("{} x {}, {} runs, sum {:016x}:{}", cells.columns, cells.rows, runs, sum, text);
+}
+
+std::string many_text(const Panel& panel) {
+    std::string text;
+    if (panel.hatch.color.a > 0)
+        text += fmt::format("  hatch \"{}\" {}\n", panel.hatch.label, color_text(panel.hatch.color));
+    if (panel.raster.cells)
+        text += fmt::format("  raster [{:.9g}, {:.9g}] [{:.9g}, {:.9g}] {}\n", panel.raster.left, panel.raster.right,
+                            panel.raster.bottom, panel.raster.top, cells_text(*panel.raster.cells));
+    const Dots& dots = panel.dots;
+    if (!dots.points.empty())
+        text += fmt::format("  dots {} of {}:{}\n", dots.colors.empty() ? color_text(dots.ink) : "in colours",
+                            dots.points.size(), points_text(dots.points));
+    if (!panel.color_bar.colors.empty())
+        text += axis_text("bar", panel.color_bar.axis) + fmt::format("  from {} to {}\n",
+                                                                     color_text(panel.color_bar.colors.front()),
+                                                                     color_text(panel.color_bar.colors.back()));
+    return text;
+}
+
 const char* shape_text(Markers::Shape shape) {
     switch (shape) {
         case Markers::Shape::square:
@@ -65,6 +99,7 @@ std::string to_text(const Figure& figure) {
         for (const Band& band : panel.bands)
             text += fmt::format("  band \"{}\" {} {:.9g} to {:.9g}\n", band.label, color_text(band.color), band.low,
                                 band.high);
+        text += many_text(panel);
         if (!panel.boundary.points.empty())
             text += fmt::format("  boundary {} points {}:{}\n", color_text(panel.boundary.stroke.color),
                                 panel.boundary.points.size(), points_text(panel.boundary.points));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "figure/grid.hpp"
+#include "figure/tiles.hpp"
 
 namespace achilles {
 
@@ -81,6 +82,9 @@ Stroke scaled(Stroke stroke, double scale) {
 
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
+    lay_hatch(panel.hatch, sheet, plot, m);
+    lay_raster(panel.raster, sheet, plot, map);
+    lay_dots(panel.dots, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
     const auto lay = [&](const Curve& curve) {
@@ -106,6 +110,7 @@ std::vector<Key> keys_of(const Panel& panel) {
         if (!curve.label.empty()) keys.push_back({curve.label, curve.stroke});
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
+    if (!panel.hatch.label.empty()) keys.push_back({panel.hatch.label, panel.hatch});
     return keys;
 }
 
@@ -114,6 +119,12 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
     if (const auto* stroke = std::get_if<Stroke>(&key.sign)) {
         const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
         sheet.emplace_back(Path{{{x, y}, {x + length, y}}, scaled(*stroke, m.scale), around});
+        return;
+    }
+    if (const auto* hatch = std::get_if<Hatch>(&key.sign)) {
+        const float side = std::round(0.8F * m.text);
+        lay_hatched_field(*hatch, sheet,
+                          {std::round(x + (length - side) / 2.0F), y - std::round(side / 2.0F), side, side}, m);
         return;
     }
     const Markers& markers = std::get<Markers>(key.sign);
@@ -223,7 +234,9 @@ bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, co
 float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     if (!panel.legend || !panel.legend_above) return 0.0F;
     const KeyLines keys(keys_of(panel), plot_width, m);
-    const float spare = title_beside(panel, keys, plot_width, m) ? m.text * 1.35F : 0.0F;
+    const float line = panel.title.empty() ? 0.55F : 1.35F;  // that is there already
+    const float spare =
+        title_beside(panel, keys, plot_width, m) ? m.text * line - (panel.title.empty() ? m.gap : 0.0F) : 0.0F;
     return std::max(keys.height(m) - spare, 0.0F);
 }
 
@@ -249,6 +262,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
             lay_bars(markers, sheet, {inner.x, inner.y + inner.height + m.line, inner.width, strip - m.line},
                      PanelMap(panel, inner), m);
     lay_axes(panel, style, sheet, inner, room, lift, strip, m);
+    lay_color_bar(panel, style, sheet, inner, room, m);
     lay_events(panel, sheet, inner, m);
     if (panel.legend && !panel.legend_above) lay_legend(panel, style, sheet, inner, m);
     return inner;

@@ -24,13 +24,6 @@ int columns_for(const std::vector<Panel>& panels) {
     return panels.size() <= 6 ? 2 : 3;
 }
 
-// "(a)", or "(a) height" where the view has a name.
-std::string lettered(std::size_t i, const std::string& name) {
-    std::string letter;
-    for (++i; i > 0; i = (i - 1) / 26) letter.insert(letter.begin(), static_cast<char>('a' + (i - 1) % 26));
-    return "(" + letter + ")" + (name.empty() ? "" : "\u00A0\u00A0" + name);
-}
-
 // Smaller than on a screen. Impacts crowd: rims would leave odd shapes of those that others cover.
 Markers for_print(Markers markers) {
     const bool is_impact = markers.shape == Markers::Shape::square;
@@ -141,6 +134,12 @@ void set_path(Figure& figure, const PublicationStyle& style) {
 }
 
 }  // namespace
+
+std::string lettered(std::size_t i, const std::string& name) {
+    std::string letter;
+    for (++i; i > 0; i = (i - 1) / 26) letter.insert(letter.begin(), static_cast<char>('a' + (i - 1) % 26));
+    return "(" + letter + ")" + (name.empty() ? "" : "\u00A0\u00A0" + name);
+}
 
 void share_axes(Figure& figure) {
     std::vector<Panel>& panels = figure.panels;

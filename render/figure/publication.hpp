@@ -23,6 +23,9 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
 // occurs in the runs they show.
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme = light_theme());
 
+// "(a)", or "(a) height" where the panel has a name.
+std::string lettered(std::size_t i, const std::string& name);
+
 // Takes the labels off the x axes of every row whose panels all stand on others with the same axes. A panel beside
 // several rows keeps its own.
 void share_axes(Figure& figure);

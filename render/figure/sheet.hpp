@@ -36,6 +36,12 @@ struct Mark {
     double size = 6.0, edge_width = 1.0;
 };
 
+// Cells as rectangles, all of them in the area; those that are clear show what is behind.
+struct Tiles {
+    Rectangle area, clip;
+    std::shared_ptr<const Cells> cells;
+};
+
 struct TextRun {
     float x = 0, y = 0;  // the top of the line where `anchor` of its length is behind: 0 its start, 0.5 its middle
     float anchor = 0;
@@ -45,6 +51,6 @@ struct TextRun {
     bool upwards = false;  // turned by 90 degrees to the left; x is then the top of the letters
 };
 
-using Sheet = std::vector<std::variant<Fill, Path, Mark, TextRun>>;
+using Sheet = std::vector<std::variant<Fill, Path, Mark, Tiles, TextRun>>;
 
 }  // namespace achilles

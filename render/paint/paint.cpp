@@ -6,6 +6,7 @@
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "surface/curves.hpp"
+#include "surface/tiles.hpp"
 
 namespace achilles {
 
@@ -23,6 +24,12 @@ class Brush {
         const Rectangle& r = path.clip;
         list_->PushClipRect({r.x, r.y}, {r.x + r.width, r.y + r.height}, true);
         add_curve(list_, path.points, screen_stroke(path.stroke, 1.0));
+        list_->PopClipRect();
+    }
+    void operator()(const Tiles& tiles) const {
+        const Rectangle& r = tiles.clip;
+        list_->PushClipRect({r.x, r.y}, {r.x + r.width, r.y + r.height}, true);
+        add_tiles(list_, tiles.area, *tiles.cells);
         list_->PopClipRect();
     }
     void operator()(const Mark& mark) const { paint_marker(list_, mark); }

@@ -10,6 +10,8 @@
 
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
+#include "image/base64.hpp"
+#include "image/image.hpp"
 #include "image/xml.hpp"
 #include "paint/font_file.hpp"
 #include "paint/marker.hpp"
@@ -46,6 +48,21 @@ struct Span {
     double up = 0.0;  // of its base line
     bool same_kind(const Letter& letter) const { return italic == letter.italic && script == letter.script; }
 };
+
+// Every cell as several pixels: some programs smooth what they enlarge, whatever they are asked for.
+Image image_of(const Cells& cells) {
+    constexpr int most = 8, side = 2048;
+    const int times = std::clamp(side / std::max({cells.columns, cells.rows, 1}), 1, most);
+    Image image{cells.columns * times, cells.rows * times, {}, {}};
+    const bool is_clear = std::any_of(cells.colors.begin(), cells.colors.end(), [](Color c) { return c.a < 255; });
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const Color& c = cells.colors[static_cast<std::size_t>(y / times * cells.columns + x / times)];
+            image.rgb.insert(image.rgb.end(), {c.r, c.g, c.b});
+            if (is_clear) image.alpha.push_back(c.a);
+        }
+    return image;
+}
 
 // Writes the items of a sheet, one after the other.
 class Writer {
@@ -101,6 +118,17 @@ class Writer {
         body_ += "Z\"" + look + "/>\n";
     }
 
+    void operator()(const Tiles& tiles) {
+        const Rectangle& r = tiles.area;
+        body_ += fmt::format(
+            "<g clip-path=\"url(#{})\"><image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
+            "preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" "
+            "xlink:href=\"data:image/png;base64,",
+            clip(tiles.clip), number(r.x), number(r.y), number(r.width), number(r.height));
+        body_ += base64(png_bytes(image_of(*tiles.cells), {9, -1})) + "\"/></g>\n";
+        has_images_ = true;
+    }
+
     void operator()(const TextRun& words) {
         const std::vector<Letter> line = letters(words.label);
         if (line.empty()) return;
@@ -117,6 +145,7 @@ class Writer {
     }
 
     const std::string& body() const { return body_; }
+    bool has_images() const { return has_images_; }
     std::string clips() const {
         std::string text;
         for (const auto& [box, name] : clips_)
@@ -202,6 +231,7 @@ class Writer {
 
     const FontFile& font_;
     std::string body_;
+    bool has_images_ = false;
     std::map<std::tuple<float, float, float, float>, std::string> clips_;
 };
 
@@ -213,8 +243,8 @@ std::string file_of(const Writer& writer, const SvgSize& size, const Notes& note
                                    : fmt::format("width=\"{}\" height=\"{}\"", size.width, size.height);
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" {} viewBox=\"0 0 {} {}\">\n",
-        extent, size.width, size.height);
+        "<svg xmlns=\"http://www.w3.org/2000/svg\"{} {} viewBox=\"0 0 {} {}\">\n",
+        writer.has_images() ? " xmlns:xlink=\"http://www.w3.org/1999/xlink\"" : "", extent, size.width, size.height);
     for (const Note& note : notes)
         if (note.keyword == "Title") text += "<title>" + xml_escaped(note.text) + "</title>\n";
     text += xml_notes(notes);

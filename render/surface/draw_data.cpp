@@ -39,7 +39,8 @@ const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(byt
 
 }  // namespace
 
-Canvas::Canvas(const AddressFunction& address_of, int curve_fineness) : gl_(address_of), curves_(gl_, curve_fineness) {
+Canvas::Canvas(const AddressFunction& address_of, int curve_fineness)
+    : gl_(address_of), curves_(gl_, curve_fineness), tiles_(gl_) {
     program_ = gl_.program(triangle_vertex, triangle_fragment);
     gl_.GenBuffers(1, &vertex_buffer_);
     gl_.GenBuffers(1, &index_buffer_);
@@ -126,6 +127,9 @@ void Canvas::draw_list(const ImDrawList& list) {
     for (const ImDrawCmd& command : list.CmdBuffer) {
         if (is_curve(command)) {
             curves_.draw(list, command, vertex_buffer_, target_);
+            set_state();
+        } else if (are_tiles(command)) {
+            tiles_.draw(list, command, target_);
             set_state();
         } else if (command.UserCallback == ImDrawCallback_ResetRenderState) {
             set_state();

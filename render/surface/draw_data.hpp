@@ -4,6 +4,7 @@
 #include "image/image.hpp"
 #include "surface/curves.hpp"
 #include "surface/gl.hpp"
+#include "surface/tiles.hpp"
 
 struct ImDrawCmd;
 struct ImDrawData;
@@ -39,6 +40,7 @@ class Canvas {
 
     Gl gl_;
     CurvePainter curves_;
+    TilesPainter tiles_;
     GLuint program_ = 0, vertices_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
     GLuint fonts_ = 0, picture_ = 0;
     Target target_;

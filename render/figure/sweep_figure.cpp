@@ -1,0 +1,151 @@
+#include "figure/sweep_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "figure/publication.hpp"
+#include "figure/sweep_panels.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+enum class Form { curves, map, diagram, section, samples };
+
+Form form_of(const SweepData& data) {
+    const std::size_t axes = data.sweep.axes.size();
+    if (data.is_section()) return axes == 0 ? Form::section : Form::diagram;
+    if (data.sweep.random) return Form::samples;
+    return axes == 1 ? Form::curves : Form::map;
+}
+
+std::vector<std::size_t> columns_of(const SweepData& data, const SweepLook& look) {
+    if (!look.columns.empty()) return look.columns;
+    std::vector<std::size_t> all;
+    for (std::size_t i = 0; i < data.columns.size(); ++i) all.push_back(i);
+    if (all.empty()) all.push_back(sequence_column);
+    return all;
+}
+
+[[noreturn]] void refuse(const std::string& why, const std::string& hint) {
+    throw InputError("--out", {}, why, hint + "; --csv and --hdf5 take the table as it is");
+}
+
+}  // namespace
+
+void check_drawn(const SweepData& data, const SweepLook& look) {
+    const std::size_t axes = data.sweep.axes.size();
+    const Form form = form_of(data);
+    std::size_t numbers = 0, classes = 0;
+    for (const std::size_t column : columns_of(data, look))
+        ++(SweepColumn(data, column).is_number() ? numbers : classes);
+    if (form == Form::section && (numbers != 2 || classes > 0))
+        refuse("a section without an axis is drawn as one print over another", "give --print twice, or one --over");
+    if (form == Form::diagram && axes > 1)
+        refuse(fmt::format("a section over {} axes has no figure", axes), "one --over makes a diagram of it");
+    if (form == Form::diagram && numbers == 0)
+        refuse("a diagram of a section needs a number along its axis", "--print an expression");
+    if (axes > 2 || (axes == 0 && form != Form::section))
+        refuse(fmt::format("a sweep over {} axes has no figure", axes), "one --over is drawn as curves, two as a map");
+    if (form != Form::map) return;
+    for (const SweepAxis& axis : data.sweep.axes)
+        if (axis.count > most_map_side)
+            refuse(fmt::format("{} values of {} are more than a map has cells along a side", axis.count, axis.name),
+                   fmt::format("at most {} are drawn", most_map_side));
+}
+
+namespace {
+
+// Of a grid over one axis: numbers of one unit share a panel.
+std::vector<Panel> curve_panels(const SweepData& data, const std::vector<std::size_t>& columns, const Theme& theme,
+                                const SweepLook& look) {
+    std::vector<std::vector<SweepColumn>> groups;
+    for (const std::size_t column : columns) {
+        const SweepColumn one(data, column);
+        const auto fits = [&](const std::vector<SweepColumn>& group) {
+            constexpr std::size_t most = 8;  // hues
+            return one.is_number() && group.front().is_number() && group.front().unit() == one.unit() &&
+                   !one.unit().empty() && group.size() < most;
+        };
+        const auto group = std::find_if(groups.begin(), groups.end(), fits);
+        if (group != groups.end())
+            group->push_back(one);
+        else
+            groups.push_back({one});
+    }
+    std::vector<Panel> panels;
+    for (const std::vector<SweepColumn>& group : groups)
+        panels.push_back(group.front().is_number() ? curves_panel(data, group, theme, look)
+                                                   : classes_panel(data, group.front(), theme));
+    return panels;
+}
+
+std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const SweepLook& look) {
+    const std::vector<std::size_t> columns = columns_of(data, look);
+    const Form form = form_of(data);
+    if (form == Form::curves) return curve_panels(data, columns, theme, look);
+    if (form == Form::section)
+        return {section_panel(data, SweepColumn(data, columns[0]), SweepColumn(data, columns[1]), theme)};
+    std::vector<Panel> panels;
+    for (const std::size_t column : columns) {
+        const SweepColumn one(data, column);
+        if (form == Form::map) panels.push_back(map_panel(data, one, theme, look));
+        if (form == Form::samples) panels.push_back(samples_panel(data, one, theme, look));
+        if (form == Form::diagram && one.is_number()) panels.push_back(diagram_panel(data, one, theme, look));
+    }
+    return panels;
+}
+
+// What all panels say stands once above them.
+void share_keys(Figure& figure) {
+    const auto is_everywhere = [&](const std::string& label) {
+        return !label.empty() && std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+            const auto has = [&](const auto& one) { return one.label == label; };
+            return panel.hatch.label == label || std::any_of(panel.curves.begin(), panel.curves.end(), has) ||
+                   std::any_of(panel.markers.begin(), panel.markers.end(), has);
+        });
+    };
+    std::vector<std::string> shared;
+    const auto add = [&](const std::string& label, const auto& sign) {
+        if (!is_everywhere(label)) return;
+        shared.push_back(label);
+        figure.keys.push_back({label, sign});
+    };
+    for (const Curve& curve : figure.panels.front().curves) add(curve.label, curve.stroke);
+    for (const Markers& markers : figure.panels.front().markers) add(markers.label, markers);
+    add(figure.panels.front().hatch.label, figure.panels.front().hatch);
+    const auto clear = [&](auto& one) {
+        if (std::find(shared.begin(), shared.end(), one.label) != shared.end()) one.label.clear();
+    };
+    for (Panel& panel : figure.panels) {
+        for (Curve& curve : panel.curves) clear(curve);
+        for (Markers& markers : panel.markers) clear(markers);
+        clear(panel.hatch);
+    }
+}
+
+}  // namespace
+
+Figure compose_sweep(const SweepData& data, const SweepLook& look) {
+    check_drawn(data, look);
+    const Theme theme = look.dark ? dark_theme() : light_theme();
+    Figure figure;
+    figure.background = theme.background;
+    if (look.transparent) figure.background.a = 0;
+    figure.ink = theme.ink;
+    figure.grid.a = 0;
+    figure.smallest_text = 0.9;
+    figure.panels = panels_of(data, theme, look);
+    const bool one_column =
+        figure.panels.size() == 1 || form_of(data) == Form::curves || form_of(data) == Form::diagram;
+    figure.columns = one_column ? 1 : 2;
+    share_axes(figure);
+    if (figure.panels.size() > 1) share_keys(figure);
+    for (std::size_t i = 0; i < figure.panels.size() && figure.panels.size() > 1; ++i)
+        figure.panels[i].title = lettered(i, figure.panels[i].title);
+    return figure;
+}
+
+}  // namespace achilles

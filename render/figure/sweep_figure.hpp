@@ -1,0 +1,37 @@
+// Figures of a sweep: curves over one axis, maps over two, diagrams of sections, samples.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "figure/figure.hpp"
+#include "study/sweep_data.hpp"
+
+namespace achilles {
+
+// In the place of a column: the sequences of events, as classes.
+inline constexpr std::size_t sequence_column = ~std::size_t{0};
+// More rows than these are not drawn, nor axes of a map with more values.
+inline constexpr std::uint64_t most_drawn_rows = std::uint64_t{1} << 24, most_map_side = 4096;
+
+struct SweepLook {
+    std::vector<std::size_t> columns;  // of the data; none: all, and the outcome where there are none
+    bool dark = false, transparent = false;
+    bool contours = true;  // of a map: between cells of different sequences
+    // Of the numbers: the limits of their axis, or of their colours. Without them what is there fits.
+    std::optional<std::array<double, 2>> range;
+};
+
+// Throws InputError where such a sweep has no figure, and says what would have. Rows do not matter.
+void check_drawn(const SweepData& data, const SweepLook& look);
+
+// Of a grid over one axis, columns with one unit are curves of a panel: without a value they have a gap, and where the
+// sequence of events changes a break, as what is plotted may jump there. Over two axes every column is a map: numbers in
+// number_color() with their bar, classes in the hues of phases and events, a thin line between cells of different sequences.
+// Of a section every column is a diagram over the axis; without an axis the second print stands over the first. Random
+// points stand where they are. What has no value is hatched, and named. Rows that are not there yet are left free. Throws
+// InputError as check_drawn().
+Figure compose_sweep(const SweepData& data, const SweepLook& look = {});
+
+}  // namespace achilles

@@ -1,0 +1,178 @@
+#include "figure/sweep_panels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "figure/label.hpp"
+#include "figure/ticks.hpp"
+
+namespace achilles {
+
+SweepColumn::SweepColumn(const SweepData& data, std::size_t column) : data_(&data), kind_(Kind::sequence) {
+    if (column == sequence_column) {
+        name_ = "sequence of events";
+        return;
+    }
+    using Of = RunMeasures::Column::Kind;
+    const RunMeasures::Column& one = data.columns[column];
+    kind_ = one.kind == Of::number ? Kind::number : one.kind == Of::held ? Kind::held : Kind::outcome;
+    name_ = one.name;
+    unit_ = one.unit;
+    if (kind_ != Kind::number) return;
+    const auto before = data.columns.begin() + static_cast<std::ptrdiff_t>(column);
+    number_ = static_cast<std::size_t>(
+        std::count_if(data.columns.begin(), before, [](const auto& other) { return other.kind == Of::number; }));
+}
+
+std::string SweepColumn::label() const {
+    return kind_ == Kind::number ? with_unit(name(), typeset_unit(unit_)) : name();
+}
+
+namespace {
+
+// What is a word of the field's is one in a label, too: "Zeno time 2" for zeno_time(2).
+std::string words_of(const std::string& print) {
+    const std::size_t bracket = std::min(print.find('('), print.size());
+    const std::string word = print.substr(0, bracket), k = print.substr(bracket);
+    for (const auto& [written, read] :
+         {std::pair{"zeno_time", "Zeno time"}, std::pair{"impact_time", "impact time"},
+          std::pair{"impact_speed", "impact speed"}, std::pair{"release_time", "release time"},
+          std::pair{"zeno_points", "Zeno points"}, std::pair{"least_gap", "least gap"}}) {
+        if (word != written) continue;
+        if (k.empty()) return read;
+        if (k.find(')') + 1 == k.size()) return std::string(read) + " " + k.substr(1, k.size() - 2);
+    }
+    return typeset(print);
+}
+
+}  // namespace
+
+std::string SweepColumn::name() const { return kind_ == Kind::number ? words_of(name_) : name_; }
+
+std::array<double, 2> SweepColumn::range() const {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    std::array<double, 2> range{nan, nan};
+    for (std::size_t row = 0; row < data_->count(); ++row) {
+        const double x = number(row);
+        if (!std::isfinite(x)) continue;
+        range = {std::fmin(range[0], x), std::fmax(range[1], x)};
+    }
+    return range;
+}
+
+std::optional<std::uint64_t> SweepColumn::code(std::size_t row) const {
+    const RunEnd end = data_->rows.ends[row];
+    if (kind_ == Kind::outcome) return end.code();
+    if (end == RunEnd()) return std::nullopt;  // there is no run
+    return kind_ == Kind::held ? std::bit_cast<std::uint32_t>(data_->rows.held[row]) : data_->rows.signatures[row];
+}
+
+bool SweepColumn::has_value(std::size_t row) const {
+    return is_number() ? std::isfinite(number(row)) : code(row).has_value();
+}
+
+std::string SweepColumn::class_name(std::uint64_t code, std::size_t place, double share) const {
+    if (kind_ == Kind::outcome) return std::string(RunEnd::from(static_cast<std::uint8_t>(code)).text());
+    if (kind_ == Kind::sequence) return fmt::format("{}. ({:.{}f} %)", place + 1, 100.0 * share, share < 0.095 ? 1 : 0);
+    std::string names;
+    for (std::size_t i = 0; i < data_->contacts.size(); ++i)
+        if ((code >> i & 1u) != 0) names += (names.empty() ? "" : " + ") + data_->contacts[i];
+    return names.empty() ? "no contact" : names;
+}
+
+std::vector<std::pair<std::uint64_t, std::string>> SweepColumn::classes() const {
+    std::map<std::uint64_t, std::size_t> counts;
+    std::size_t all = 0;
+    for (std::size_t row = 0; row < data_->count(); ++row)
+        if (const auto one = code(row)) ++counts[*one], ++all;
+    std::vector<std::pair<std::uint64_t, std::size_t>> sorted(counts.begin(), counts.end());
+    if (kind_ == Kind::held)  // those of few contacts first
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const auto& a, const auto& b) { return std::popcount(a.first) < std::popcount(b.first); });
+    else
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::vector<std::pair<std::uint64_t, std::string>> classes;
+    for (const auto& [one, count] : sorted)
+        classes.emplace_back(one,
+                             class_name(one, classes.size(), static_cast<double>(count) / static_cast<double>(all)));
+    return classes;
+}
+
+namespace {
+
+// The hues of phases, then those of events, then those of curves.
+std::vector<Color> class_colors(const Theme& theme) {
+    std::vector<Color> colors{phase_color(theme, Phase::Kind::hybrid), phase_color(theme, Phase::Kind::constrained),
+                              event_markers(theme, Event::Kind::release).fill,
+                              event_markers(theme, Event::Kind::zeno).fill};
+    for (std::size_t i = 0; i < 5; ++i) colors.push_back(phase_stroke(theme, Phase::Kind::constrained, i, 8).color);
+    return colors;
+}
+
+}  // namespace
+
+SweepClasses::SweepClasses(const SweepColumn& column, const Theme& theme) {
+    const std::vector<Color> colors = class_colors(theme);
+    for (const auto& [code, name] : column.classes())
+        all.push_back({code, name, all.size() < colors.size() ? colors[all.size()] : theme.surface});
+    named = all.size() <= colors.size() + 1 ? all.size() : colors.size();
+    std::sort(all.begin() + static_cast<std::ptrdiff_t>(named), all.end(),
+              [](const One& a, const One& b) { return a.code < b.code; });
+}
+
+std::size_t SweepClasses::place(std::uint64_t code) const {
+    for (std::size_t i = 0; i < named; ++i)
+        if (all[i].code == code) return i;
+    return named;
+}
+
+Color SweepClasses::color(std::uint64_t code) const { return all[std::min(place(code), all.size() - 1)].color; }
+
+std::vector<Markers> SweepClasses::keys() const {
+    std::vector<Markers> keys;
+    const auto add = [&](const std::string& name, const Color& color) {
+        Markers markers;
+        markers.label = name;
+        markers.fill = color;
+        markers.edge = {0, 0, 0, 0};
+        markers.size = 11.0;
+        keys.push_back(std::move(markers));
+    };
+    for (std::size_t i = 0; i < named; ++i) add(all[i].name, all[i].color);
+    if (named < all.size()) add(fmt::format("{} others", all.size() - named), all.back().color);
+    return keys;
+}
+
+Axis axis_of(const SweepData& data, std::size_t index) {
+    const SweepAxis& one = data.sweep.axes[index];
+    Axis axis;
+    axis.label = with_unit(typeset(data.names[index]), typeset_unit(data.units[index]));
+    axis.logarithmic = one.logarithmic;
+    const double low = std::min(one.low, one.high), high = std::max(one.low, one.high);
+    set_ticks(axis, low, high, 0.0);
+    return axis;
+}
+
+std::vector<std::uint32_t> rows_of_points(const SweepData& data) {
+    std::vector<std::uint32_t> rows(data.sweep.count(), no_row);
+    for (std::size_t row = 0; row < data.count(); ++row)
+        if (data.rows.points[row] < rows.size()) rows[data.rows.points[row]] = static_cast<std::uint32_t>(row);
+    return rows;
+}
+
+double edge_of(const SweepAxis& axis, double i) {
+    const double parts = axis.count > 1 ? static_cast<double>(axis.count - 1) : 1.0;
+    const double share = (i - 0.5) / parts;
+    if (axis.logarithmic) return axis.low * std::pow(axis.high / axis.low, share);
+    return axis.low + (axis.high - axis.low) * share;
+}
+
+Hatch nothing(const Theme& theme) { return {no_value, theme.border}; }
+
+}  // namespace achilles

@@ -1,0 +1,15 @@
+// What fills a plot area rather than crosses it: hatching, rasters of cells, and points by the million.
+#pragma once
+
+#include "figure/axes.hpp"
+
+namespace achilles {
+
+void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& metrics);
+// Its sign in a legend.
+void lay_hatched_field(const Hatch& hatch, Sheet& sheet, Rectangle field, const Metrics& metrics);
+void lay_raster(const Raster& raster, Sheet& sheet, Rectangle plot, const PanelMap& map);
+// As cells of about a point of the layout.
+void lay_dots(const Dots& dots, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& metrics);
+
+}  // namespace achilles
