@@ -66,7 +66,6 @@ int run(std::vector<std::string> words) {
     int status = reached_end;
     add_explore(program, status);
     add_simulate(program, status);
-    add_sweep(program, status);
     PictureJob job(words);
     add_pictures(program, status, job);
     add_reproduce(program, status);

@@ -32,6 +32,20 @@ void put(int file, std::string_view bytes, const std::string& path) {
     }
 }
 
+// Opens it, or standard output, and closes it.
+void write_file(const std::string& path, const std::function<void(int file)>& write) {
+    const bool is_standard = path == "-";
+    const int file = is_standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (file < 0) fail(path, errno);
+    try {
+        write(file);
+    } catch (...) {
+        if (!is_standard) ::close(file);
+        throw;
+    }
+    if (!is_standard && ::close(file) != 0) fail(path, errno);
+}
+
 // Standard output, or a device.
 bool is_stream(const std::string& path) {
     std::error_code ignored;
@@ -50,10 +64,10 @@ std::string_view rows_in(std::string_view bytes) { return bytes.substr(sizeof(st
 
 }  // namespace
 
-SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const fs::path& system_file,
-                         const std::string& system_name)
-    : table_(table), csv_(asked.csv), hdf5_(asked.hdf5), units_(asked.units) {
-    if (csv_.empty() && hdf5_.empty()) csv_ = "-";
+SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const SweepPictures& pictures,
+                         const fs::path& system_file, const std::string& system_name)
+    : table_(table), pictures_(pictures), csv_(asked.csv), hdf5_(asked.hdf5), units_(asked.units) {
+    if (csv_.empty() && !keeps_rows()) csv_ = "-";
     if (units_ && csv_.empty()) throw InputError("--units", {}, "this needs --csv F");
     if (hdf5_ == "-") throw InputError("--hdf5 -", {}, "HDF5 is written into a file", "write --hdf5 F");
     if (!hdf5_.empty()) {
@@ -68,10 +82,12 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked,
     files_.spare(system_file);
     for (const std::string& file : {csv_, hdf5_})
         if (!file.empty()) files_.add(file);
+    for (const std::string& file : pictures_.files()) files_.add(file);
     if (is_stream(hdf5_)) throw InputError("--hdf5 " + hdf5_, {}, "HDF5 is written into a file");
     log_path_ = csv_.empty() || is_stream(csv_) ? hdf5_ : csv_;
+    if (log_path_.empty() && !pictures_.files().empty()) log_path_ = pictures_.files().front();
     if (log_path_.empty()) {
-        if (asked.resume) throw InputError("--resume", {}, "this needs a file, --csv F or --hdf5 F");
+        if (asked.resume) throw InputError("--resume", {}, "this needs a file, --csv F, --hdf5 F or --out F");
         stream_ = csv_ == "-" ? STDOUT_FILENO : ::open(csv_.c_str(), O_WRONLY | O_CLOEXEC);
         if (stream_ < 0)
             throw InputError(csv_, {}, fmt::format("the file cannot be written: {}", std::strerror(errno)));
@@ -94,6 +110,7 @@ SweepKey SweepOutput::key() const {
     std::string files;
     if (!csv_.empty()) files += units_ ? "csv with units " : "csv ";
     if (!hdf5_.empty()) files += "hdf5 ";
+    if (!pictures_.files().empty()) files += "pictures ";
     return {origin_.software, to_text(table_.sweep(), table_.model().description()), files, origin_.system};
 }
 
@@ -103,7 +120,7 @@ std::string SweepOutput::bytes(const Rows& rows) const {
     const std::uint64_t size = text.size();
     std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
     bytes += text;
-    if (!hdf5_.empty()) bytes += to_bytes(rows);
+    if (keeps_rows()) bytes += to_bytes(rows);
     return bytes;
 }
 
@@ -114,17 +131,10 @@ void SweepOutput::append(Chunk chunk, const std::string& bytes) {
 }
 
 void SweepOutput::write_csv(const std::string& path) const {
-    const bool is_standard = path == "-";
-    const int file = is_standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) fail(path, errno);
-    try {
+    write_file(path, [&](int file) {
         put(file, sweep_csv_heading(table_, units_), path);
         log_->each([&](Chunk, std::string_view bytes) { put(file, text_in(bytes), path); });
-    } catch (...) {
-        if (!is_standard) ::close(file);
-        throw;
-    }
-    if (!is_standard && ::close(file) != 0) fail(path, errno);
+    });
 }
 
 // Under another name first, which is always the same: one that was left behind is overwritten. On disk before it has its own,
@@ -149,6 +159,15 @@ void SweepOutput::make(const std::string& path, const std::function<void(const s
     }
 }
 
+void SweepOutput::draw(const EachRows& each_rows) const {
+    if (pictures_.files().empty()) return;
+    const Figure figure = pictures_.figure(each_rows);
+    for (const std::string& picture : pictures_.files()) {
+        const std::string bytes = pictures_.bytes(figure, picture);
+        make(picture, [&](const std::string& path) { write_file(path, [&](int file) { put(file, bytes, path); }); });
+    }
+}
+
 void SweepOutput::finish() {
     if (!log_) return;
     if (!csv_.empty()) make(csv_, [&](const std::string& file) { write_csv(file); });
@@ -164,6 +183,7 @@ void SweepOutput::finish() {
                 fail(hdf5_, errno == 0 ? EIO : errno);
             }
         });
+    draw(each_rows);
     log_->remove();
 }
 

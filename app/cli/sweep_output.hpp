@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "cli/sweep_pictures.hpp"
 #include "cli/write_files.hpp"
 #include "output/sweep_files.hpp"
 #include "output/sweep_log.hpp"
@@ -20,9 +21,9 @@ struct SweepOutputAsked {
 // where it ends. A table for standard output or a device alone is written as it is made, and kept nowhere.
 class SweepOutput {
  public:
-    // Looks whether the files can be written; nothing is computed before. Throws InputError.
-    SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const std::filesystem::path& system_file,
-                const std::string& system_name);
+    // Looks whether the files can be written; nothing is computed before. Throws InputError. Refers to the pictures.
+    SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const SweepPictures& pictures,
+                const std::filesystem::path& system_file, const std::string& system_name);
     ~SweepOutput();
     SweepOutput(const SweepOutput&) = delete;
     SweepOutput& operator=(const SweepOutput&) = delete;
@@ -33,18 +34,21 @@ class SweepOutput {
     std::string bytes(const Rows& rows) const;
     // Takes them, in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
-    // Makes the files. Throws std::system_error; the log stays then.
+    // Makes the files. Throws std::runtime_error; the log stays then.
     void finish();
     // For a message: ": --resume goes on with F.part", or nothing.
     std::string how_to_go_on();
 
  private:
     SweepKey key() const;
+    bool keeps_rows() const { return !hdf5_.empty() || !pictures_.files().empty(); }
+    void draw(const EachRows& each_rows) const;
     std::string name_of_csv() const;
     void write_csv(const std::string& file) const;
     void make(const std::string& path, const std::function<void(const std::string& file)>& write) const;
 
     const SweepTable& table_;
+    const SweepPictures& pictures_;
     std::string csv_, hdf5_, log_path_;
     bool units_;
     SweepOrigin origin_;

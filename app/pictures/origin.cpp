@@ -101,7 +101,12 @@ namespace {
 // Where a picture goes and how it is worked at, rather than what it shows.
 bool is_where(const std::string& option) {
     return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite" ||
-           option == "--progress";
+           option == "--progress" || option == "--csv" || option == "--hdf5" || option == "--units" ||
+           option == "--resume" || option == "--threads";
+}
+
+bool is_flag(const std::string& option) {
+    return option == "--overwrite" || option == "--progress" || option == "--units" || option == "--resume";
 }
 
 }  // namespace
@@ -119,7 +124,7 @@ std::string command_line(const std::vector<std::string>& words) {
         const std::string name = words[i].substr(0, words[i].find('='));
         options_end = options_end || words[i] == "--";
         if (!options_end && is_where(name)) {
-            if (name == words[i] && name != "--overwrite" && name != "--progress") ++i;  // its value is the next word
+            if (name == words[i] && !is_flag(name)) ++i;  // its value is the next word
             continue;
         }
         kept.push_back(words[i]);

@@ -22,7 +22,7 @@ struct Origin {
 std::string shell_word(const std::string& word);
 // "achilles" and the words, as a shell reads them.
 std::string shell_line(const std::vector<std::string>& words);
-// The same without --out, --record, --jobs, --overwrite, --progress and their values.
+// The same without --out, --csv and what else says where files go or how the work is done.
 std::string command_line(const std::vector<std::string>& words);
 // The words again. Throws std::runtime_error if the text is no such command line.
 std::vector<std::string> words_of(std::string_view command_line);

@@ -63,6 +63,11 @@ PictureSize on_page(const PaperSize& page, const std::string& format, double tex
     return size;
 }
 
+PaperSize page_for(PaperSize page, const std::string& format) {
+    if (format != "png" && page.width > 0.0) page.dpi = 0.0;
+    return page;
+}
+
 std::string told(const PaperSize& page, const std::string& format, double shape) {
     const PictureSize size = on_page(page, format, 1.0, shape);
     const std::string mm = fmt::format("{:.4g} \u00d7 {:.4g} mm", page.width, height_of(page, shape));

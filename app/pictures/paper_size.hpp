@@ -27,6 +27,9 @@ void check(const PaperSize& page, const std::string& what);
 // PDF) counts 1200 pixels for 170 mm. Throws InputError for more pixels than a PNG may have.
 PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape);
 
+// The page as such a picture has it: a resolution is for pixels alone.
+PaperSize page_for(PaperSize page, const std::string& format);
+
 // "85 × 57 mm, 1004 × 669 px at 300 dpi".
 std::string told(const PaperSize& page, const std::string& format, double shape);
 

@@ -35,6 +35,8 @@ class PictureJob {
     // What the file will hold. `make` is not called for a picture nobody asked for.
     using Make = std::function<std::string(const Notes&)>;
     void put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs, const Make& make);
+    // Of a command that writes its pictures itself: what `reproduce` wants.
+    void keep(std::string picture) { made_ = std::move(picture); }
     void put_text(const std::string& path, const std::string& text);
     // Throws InputError where a path is that of a file that was added: it cannot be written for another reason as well.
     void refuse_output(const std::string& path) const;

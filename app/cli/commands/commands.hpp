@@ -16,12 +16,12 @@ constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_earl
 void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
 // Those that make pictures.
+void add_sweep(CLI::App& program, int& status, PictureJob& job);
 void add_figure(CLI::App& program, int& status, PictureJob& job);
 void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
-void add_sweep(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new

@@ -175,4 +175,17 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale,
         add_scale_option(command, scale, about);
 }
 
+void add_page_options(CLI::App& command, PaperSize& page) {
+    const auto add = [&](const char* option, double& target, const char* type, const std::string& about) {
+        command
+            .add_option_function<std::string>(
+                option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
+            ->type_name(type);
+    };
+    add("--width-mm", page.width, "MM", "its width on paper, in place of --size: 85 is a column, 170 a page");
+    add("--height-mm", page.height, "MM", "with --width-mm (default: as the plots need)");
+    add("--font-pt", page.font, "PT", fmt::format("with --width-mm, of the text (default {:g})", default_font));
+    add("--dpi", page.dpi, "N", fmt::format("with --width-mm, of a PNG (default {:g})", default_dpi));
+}
+
 }  // namespace achilles

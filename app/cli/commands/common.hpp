@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/overrides.hpp"
+#include "pictures/paper_size.hpp"
 
 namespace CLI {
 class App;
@@ -37,6 +38,9 @@ void add_scale_option(CLI::App& command, double& scale, const std::string& about
 
 // --size WxH and --scale S. `about` replaces what they say of themselves.
 void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});
+
+// --width-mm and what belongs to it, in the place of --size and --scale.
+void add_page_options(CLI::App& command, PaperSize& page);
 
 // Tells on standard error what a person may not expect of a finished run: its remarks, unless they stand elsewhere, and why it
 // stopped early. The exit status.

@@ -33,19 +33,11 @@ struct FigureArguments {
     std::string at;  // "": the start
 };
 
-// A resolution is for pixels alone.
-PaperSize page_for(const FigureArguments& arguments, const std::string& format) {
-    PaperSize page = arguments.page;
-    if (format == "png" || page.width == 0.0) return page;
-    page.dpi = 0.0;
-    return page;
-}
-
 // Puts what is drawn of a finished run where it belongs.
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const std::string& format, PictureJob& job,
         const std::function<std::string(const PaperSize& page, const Notes&)>& draw) {
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
-            [&](const Notes& notes) { return draw(page_for(arguments, format), notes); });
+            [&](const Notes& notes) { return draw(page_for(arguments.page, format), notes); });
     job.commit();
     return told_of(trajectory);
 }
@@ -118,20 +110,6 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     style.ordered = !arguments.views.empty();
     style.shape = double{1} * arguments.size.width / arguments.size.height;
     return put(arguments, trajectory, publication(trajectory, views, style), format, job);
-}
-
-// In the place of --size and --scale.
-void add_page_options(CLI::App& command, PaperSize& page) {
-    const auto add = [&](const char* option, double& target, const char* type, const std::string& about) {
-        command
-            .add_option_function<std::string>(
-                option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
-            ->type_name(type);
-    };
-    add("--width-mm", page.width, "MM", "its width on paper, in place of --size: 85 is a column, 170 a page");
-    add("--height-mm", page.height, "MM", "with --width-mm (default: as the plots need)");
-    add("--font-pt", page.font, "PT", fmt::format("with --width-mm, of the text (default {:g})", default_font));
-    add("--dpi", page.dpi, "N", fmt::format("with --width-mm, of a PNG (default {:g})", default_dpi));
 }
 
 void take_columns(const std::string& text, int& columns) {

@@ -1,4 +1,4 @@
-// sweep: many runs as a table.
+// sweep: many runs as a table and pictures of it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,13 +10,12 @@
 #include <optional>
 #include <system_error>
 
-#include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/sweep_output.hpp"
 #include "cli/terminal.hpp"
-#include "model/read_system.hpp"
 #include "output/output.hpp"
+#include "pictures/picture_job.hpp"
 #include "pictures/progress.hpp"
 
 namespace achilles {
@@ -27,6 +26,7 @@ struct SweepArguments {
     std::string system;
     AskedSweep asked;
     SweepOutputAsked output;
+    SweepPicturesAsked pictures;
     std::vector<std::string> settings;
     OptionOverrides overrides;
     int threads = 0;
@@ -106,14 +106,18 @@ class Failures {
     std::map<std::uint8_t, Kind> kinds_;
 };
 
-int run(const SweepArguments& arguments) {
-    const auto path = find_system(arguments.system);
-    const SystemDescription description = read_system(path);
+int run(const SweepArguments& arguments, PictureJob& job) {
+    const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = asked_run(description, arguments.settings, arguments.overrides);
     const Sweep sweep = make_sweep(arguments.asked, base, description);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
+    if (job.reproduces()) {
+        reproduce_sweep(table, arguments.pictures, job, arguments.threads);
+        return reached_end;
+    }
     warn_of(description, sweep);
-    SweepOutput output(table, arguments.output, path, arguments.system);
+    const SweepPictures pictures(table, arguments.pictures, job);
+    SweepOutput output(table, arguments.output, pictures, job.inputs().files_read().front(), arguments.system);
     stop_when_asked();
     const std::uint64_t points = sweep.count();
     Progress progress(points - output.done(), "runs");
@@ -137,6 +141,8 @@ int run(const SweepArguments& arguments) {
         }
     } catch (const std::system_error& problem) {
         print_clean(stderr, "achilles: the file cannot be written: {}\n", problem.what());
+    } catch (const std::runtime_error& problem) {
+        print_clean(stderr, "achilles: the picture cannot be drawn: {}\n", problem.what());
     }
     progress.end();
     const std::string how = output.how_to_go_on();
@@ -154,11 +160,11 @@ void add_texts(CLI::App& command, const char* flag, std::vector<std::string>& te
 
 }  // namespace
 
-void add_sweep(CLI::App& program, int& status) {
+void add_sweep(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<SweepArguments>();
     CLI::App* command = program.add_subcommand("sweep",
-                                               "Many runs as a table, CSV or HDF5: over values of parameters, "
-                                               "starts and options");
+                                               "Many runs as a table, CSV or HDF5, and as a figure: over values of "
+                                               "parameters, starts and options");
     add_system_argument(*command, arguments->system);
     AskedSweep& asked = arguments->asked;
     add_texts(*command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
@@ -183,6 +189,8 @@ void add_sweep(CLI::App& program, int& status) {
     command->add_option("--csv", output.csv, "where to write the table; without a file, to standard output")
         ->type_name("F");
     command->add_option("--hdf5", output.hdf5, "the same as HDF5: /axes/NAME, /values/WHAT")->type_name("F");
+    add_texts(*command, "--out", arguments->pictures.files, "F.png|F.svg|F.pdf",
+              "the picture: curves over one axis, a map over two, a diagram of --at; may be given again");
     command->add_flag("--units", output.units, "a second line of --csv has the units of the columns");
     command->add_flag("--resume", output.resume, "go on with the same sweep where it was interrupted");
     command
@@ -190,8 +198,13 @@ void add_sweep(CLI::App& program, int& status) {
             "--threads", [arguments](const std::string& text) { arguments->threads = threads_from(text); },
             "so many at once (default: one for every core); the files are the same")
         ->type_name("N");
+    SweepPicturesAsked& pictures = arguments->pictures;
+    command->add_flag("--transparent", pictures.look.transparent, "of --out: no background");
+    command->add_flag("--dark", pictures.look.dark, "of --out: light on dark, for a screen");
+    add_page_options(*command, pictures.page);
+    add_size_options(*command, pictures.size.width, pictures.size.height, pictures.size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
-    command->callback([arguments, &status] { status = run(*arguments); });
+    command->callback([arguments, &status, &job] { status = run(*arguments, job); });
 }
 
 }  // namespace achilles

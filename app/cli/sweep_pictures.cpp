@@ -1,0 +1,74 @@
+#include "cli/sweep_pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "cli/terminal.hpp"
+#include "pictures/pdf.hpp"
+#include "pictures/picture_ending.hpp"
+#include "pictures/take_away.hpp"
+#include "study/chunks.hpp"
+
+namespace achilles {
+
+SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job)
+    : table_(table), asked_(asked), job_(job) {
+    if (asked_.files.empty()) return;
+    for (const std::string& file : asked_.files) {
+        if (file == "-")
+            throw InputError("--out -", {}, "a picture of a sweep is written into a file", "write --out F.png");
+        const std::string format = format_for(file, "");
+        if (format == "pdf") need_pdf_writer("--out " + file);
+        if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
+    }
+    check(asked_.page, "--width-mm");
+    check_drawn(SweepData(table), asked_.look);
+}
+
+Figure SweepPictures::figure(const EachRows& each_rows) const {
+    std::uint64_t count = 0;
+    each_rows([&](const Rows& rows) { count += rows.count(); });
+    const std::uint64_t every = (count + most_drawn_rows - 1) / most_drawn_rows;
+    SweepData data(table_);
+    std::uint64_t next = 0;
+    each_rows([&](const Rows& rows) {
+        if (every <= 1) return data.add(rows);
+        for (std::size_t row = 0; row < rows.count(); ++row)
+            if (next++ % every == 0) data.add(rows, row);
+    });
+    if (every > 1)
+        print_clean(stderr, "achilles: warning: of {} rows every {}th is drawn: a figure has room for {}\n", count,
+                    every, most_drawn_rows);
+    return compose_sweep(data, asked_.look);
+}
+
+std::string SweepPictures::bytes(const Figure& figure, const std::string& file) const {
+    const std::string format = format_for(file, "");
+    const PictureSize size = size_of(page_for(asked_.page, format), asked_.size, figure, format);
+    job_.check_size(size.width, size.height);
+    const SystemDescription& description = table_.model().description();
+    Notes notes = job_.notes_of("", {});
+    for (Note& note : notes)
+        if (note.keyword == "Title") note.text = description.title + ": " + to_text(table_.sweep(), description);
+    return picture_of(figure, size, notes, format);
+}
+
+void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads) {
+    const SweepPictures pictures(table, asked, job);
+    const std::uint64_t points = table.sweep().count();
+    if (points > most_drawn_rows)
+        throw InputError({}, {}, fmt::format("a sweep of {} runs is too long to be made again", points),
+                         fmt::format("at most {} are done for a picture that may be anybody's", most_drawn_rows));
+    const std::atomic<bool> stop{false};
+    std::vector<Rows> all;
+    do_chunks(
+        0, points, threads, [&](Chunk chunk) { return to_bytes(table.rows(chunk.first, chunk.count)); },
+        [&](Chunk, const std::string& bytes) { all.push_back(rows_from(bytes, table)); }, stop);
+    const Figure figure = pictures.figure([&](const auto& take) {
+        for (const Rows& rows : all) take(rows);
+    });
+    job.keep(pictures.bytes(figure, pictures.files().front()));
+}
+
+}  // namespace achilles
