@@ -8,6 +8,7 @@ class App;
 
 namespace achilles {
 
+class Messages;
 class PictureJob;
 
 // Exit statuses. made_differently: `reproduce` could, but the bytes are not the same.
@@ -21,7 +22,8 @@ void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
-void add_sweep(CLI::App& program, int& status);
+// `ranks`: the processes that share the runs (study/ranks.hpp); null where this one is alone.
+void add_sweep(CLI::App& program, int& status, Messages* ranks);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new
