@@ -105,9 +105,14 @@ Share sweep_share(std::string_view order) {
 void help_with_sweep(Messages& messages) {
     // Rank 0 is asked to stop as well, and dismisses this one. Where it is no more, this one ends soon.
     struct sigaction action {};
-    action.sa_handler = [](int) { ::alarm(5); };
+    static std::atomic<bool> asked_to_stop{false};
+    action.sa_handler = [](int) {
+        asked_to_stop = true;
+        ::alarm(5);
+    };
     for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
     help_with_chunks(messages, sweep_share);
+    if (asked_to_stop) messages.leave();
 }
 
 }  // namespace achilles

@@ -86,7 +86,7 @@ Ranks::Ranks(const Launch& launch) {
 
 Ranks::~Ranks() {
     if (rank_ == 0) dismiss(*this);
-    mpi_->end();
+    if (!is_left_) mpi_->end();  // which waits for all
 }
 
 void Ranks::send(int to, std::string_view bytes) {

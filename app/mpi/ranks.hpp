@@ -33,10 +33,12 @@ class Ranks final : public Messages {
     int cores() const override { return cores_; }
     void send(int to, std::string_view bytes) override;
     std::optional<Letter> receive() override;
+    void leave() override { is_left_ = true; }
 
  private:
     const AchillesMpi* mpi_;
     int rank_ = 0, size_ = 1, cores_ = 1;
+    bool is_left_ = false;
 };
 
 }  // namespace achilles

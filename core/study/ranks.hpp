@@ -23,6 +23,8 @@ class Messages {
     };
     // One that has come. Those from one rank come in the order in which they were sent.
     virtual std::optional<Letter> receive() = 0;
+    // All are being ended: this process ends without waiting for the others.
+    virtual void leave() = 0;
 };
 
 // What a rank does of a work: the same bytes of a chunk as the first's own task.

@@ -107,6 +107,7 @@ int run(const SweepArguments& arguments, Messages* ranks) {
         progress.end();
         print_clean(stderr, "achilles: there is not enough memory for this\n");
     }
+    if (ranks != nullptr && asked_to_stop) ranks->leave();
     progress.end();
     const std::string how = output.how_to_go_on();
     print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
