@@ -23,25 +23,27 @@ void append(std::string& text, double x) {
 
 }  // namespace
 
-std::string sweep_csv_heading(const SweepTable& table, bool units) {
-    std::string names, of_them;
-    const auto add = [&](const std::string& name, const std::string& unit) {
-        const char* const comma = names.empty() ? "" : ",";
-        names += comma + name;
-        of_them += comma + printable(unit);
-    };
+std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
+    std::vector<SweepHeading> headings;
     for (const SweepAxis& axis : table.sweep().axes) {
         const std::vector<const Option*> options = options_of_axis(axis.name);
         const std::string unit = unit_of(table.model().description(), axis.name);
-        add(axis.name, unit.empty() && !options.empty() ? std::string(options.front()->unit) : unit);
+        headings.push_back({axis.name, unit.empty() && !options.empty() ? std::string(options.front()->unit) : unit});
     }
-    if (table.is_section()) {
-        add("t", "s");
-        add("contact", "");
-    }
+    if (table.is_section()) headings.insert(headings.end(), {{"t", "s"}, {"contact", ""}});
     for (const Column& column : table.measures().columns())
-        if (column.kind != Column::Kind::outcome) add(column.name, column.unit);
-    add("outcome", "");
+        if (column.kind != Column::Kind::outcome) headings.push_back({column.name, column.unit});
+    headings.push_back({"outcome", ""});
+    return headings;
+}
+
+std::string sweep_csv_heading(const SweepTable& table, bool units) {
+    std::string names, of_them;
+    for (const SweepHeading& heading : sweep_headings(table)) {
+        const char* const comma = names.empty() ? "" : ",";
+        names += comma + heading.name;
+        of_them += comma + printable(heading.unit);
+    }
     return names + "\n" + (units ? of_them + "\n" : "");
 }
 
