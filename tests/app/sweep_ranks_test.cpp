@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "app/program.hpp"
+#include "cli/sweep_work.hpp"
+#include "model/read_system.hpp"
 
 namespace achilles::test {
 namespace {
@@ -128,6 +130,33 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
     const Answer other = folder_.run(sweep, "PMI_RANK=0 PMI_SIZE=3");
     EXPECT_EQ(other.status, 2);
     EXPECT_NE(other.err.find("3 processes were started, which cannot share a sweep: each reaches 1"), other.err.npos);
+}
+
+// What other processes make of an order, from its text alone.
+TEST(SweepWork, IsTheSameFromItsOrder) {
+    const auto description = read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
+    Run base = default_run(description);
+    for (const char* set : {"e=1/3", "x'=1.3", "y=2.1"}) assign(base, description, set);
+    base.options.end_time = 7.0;
+    base.options.tolerance = 1e-9;
+    base.options.truncation.eps_q = 1e-5;
+    const Sweep sweep = make_sweep({{"x=-3:3:40", "y=-1:1:3"}, {"x", "zeno_time(1)/3", "held"}}, base, description);
+    const SweepTable table(std::make_shared<const Model>(description), sweep);
+    const SweepKept kept{true, true, true};
+    const std::string order = sweep_order(table, kept, 3);
+    const Share share = sweep_share(order);
+    EXPECT_EQ(share.threads, 3);
+    EXPECT_EQ(share.task({5, 40}), sweep_chunk(table, kept, {5, 40}));
+    EXPECT_NE(share.task({5, 40}), sweep_chunk(table, {true, false, true}, {5, 40}));
+    EXPECT_THROW(sweep_share("0.0.1" + order.substr(order.find('\n'))), std::runtime_error);
+    // The failures are behind what is kept.
+    RunFailures failures, none;
+    const std::string bytes = failures.take(sweep_chunk(table, kept, {0, 120}));
+    EXPECT_EQ(bytes, kept_bytes(table, kept, table.rows(0, 120)));
+    EXPECT_EQ(none.behind("a"), std::string("a\0", 2));
+    EXPECT_GT(failures.behind("").size(), 1u) << "some cannot start";
+    EXPECT_EQ(none.take(failures.behind("rows")), "rows");
+    EXPECT_EQ(none.behind(""), failures.behind(""));
 }
 
 TEST(SweepAlone, IsNotLinkedWithMpi) {
