@@ -4,14 +4,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <new>
+#include <thread>
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/sweep_work.hpp"
 #include "cli/terminal.hpp"
 #include "expression/nearest.hpp"
+#include "mpi/ranks.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
 #include "system/description.hpp"
@@ -59,7 +63,7 @@ std::string told(const CLI::ParseError& error, const CLI::App& program) {
     return fmt::format("'{}' is not expected here{}{}", rest.front(), did_you_mean(rest.front(), options), hint);
 }
 
-int run(std::vector<std::string> words) {
+int run(std::vector<std::string> words, Messages* ranks) {
     CLI::App program("Lagrangian hybrid systems, simulated past their Zeno points", "achilles");
     program.set_version_flag("--version", "achilles " + version());
     program.require_subcommand(1);
@@ -67,7 +71,7 @@ int run(std::vector<std::string> words) {
     add_explore(program, status);
     add_simulate(program, status);
     PictureJob job(words);
-    add_pictures(program, status, job);
+    add_pictures(program, status, job, ranks);
     add_reproduce(program, status);
     add_check(program, status);
     add_list(program, status);
@@ -83,6 +87,28 @@ int run(std::vector<std::string> words) {
         print_clean(stderr, "achilles: {}\n", told(error, program));
     }
     return bad_input;
+}
+
+// One of several processes that mpirun has started. A sweep is shared: rank 0 is the program, the others do what it tells them
+// and are silent. Any other command is what it is in every process.
+int run_as_rank(const Launch& launch, const std::vector<std::string>& words) {
+    std::optional<Ranks> ranks;
+    try {
+        ranks.emplace(launch);
+    } catch (const InputError&) {
+        // Rank 0 tells it, if it is so there too, and all are ended. One process that fails ends them at once: wait for that.
+        if (launch.rank > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
+        throw;
+    }
+    if (ranks->rank() == 0) return run(words, &*ranks);
+    help_with_sweep(*ranks);
+    return reached_end;
+}
+
+int run(const std::vector<std::string>& words) {
+    const bool is_sweep = !words.empty() && words.front() == "sweep";
+    const std::optional<Launch> launch = is_sweep ? find_launch() : std::nullopt;
+    return launch ? run_as_rank(*launch, words) : run(words, nullptr);
 }
 
 }  // namespace

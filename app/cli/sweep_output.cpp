@@ -114,13 +114,13 @@ SweepKey SweepOutput::key() const {
     return {origin_.software, to_text(table_.sweep(), table_.model().description()), files, origin_.system};
 }
 
-std::string SweepOutput::bytes(const Rows& rows) const {
-    const std::string text = csv_.empty() ? "" : sweep_csv(table_, rows);
-    if (!log_) return text;
+std::string kept_bytes(const SweepTable& table, SweepKept kept, const Rows& rows) {
+    const std::string text = kept.text ? sweep_csv(table, rows) : "";
+    if (!kept.in_log) return text;
     const std::uint64_t size = text.size();
     std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
     bytes += text;
-    if (keeps_rows()) bytes += to_bytes(rows);
+    if (kept.rows) bytes += to_bytes(rows);
     return bytes;
 }
 

@@ -17,6 +17,13 @@ struct SweepOutputAsked {
     bool units = false, resume = false;
 };
 
+// What is kept of rows until the files are made of it, or printed: their text, themselves; in a log both, told apart.
+struct SweepKept {
+    bool text = false, rows = false, in_log = false;
+};
+// Asked of several threads at once.
+std::string kept_bytes(const SweepTable& table, SweepKept kept, const Rows& rows);
+
 // Files that are there when the sweep is done. Until then it is kept in a log, F.part of the first file F, which is gone on with
 // where it ends. A table for standard output or a device alone is written as it is made, and kept nowhere.
 class SweepOutput {
@@ -30,9 +37,8 @@ class SweepOutput {
 
     // So many points are there already.
     std::uint64_t done() const { return log_ ? log_->done() : printed_; }
-    // What is kept of rows. Asked of several threads at once.
-    std::string bytes(const Rows& rows) const;
-    // Takes them, in the order of the points. Throws std::system_error.
+    SweepKept kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
+    // Takes what is kept of rows, in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
     // Makes the files. Throws std::runtime_error; the log stays then.
     void finish();

@@ -40,4 +40,8 @@ SystemDescription parse_system(std::string text, std::string name) {
     return std::move(read.system);
 }
 
+std::shared_ptr<const Model> derive(SystemDescription description) {
+    return std::make_shared<const Model>(std::move(description));
+}
+
 }  // namespace achilles

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "system/description.hpp"
@@ -13,5 +14,10 @@ namespace achilles {
 SystemDescription read_system(const std::filesystem::path& file);
 // The same from text; `name` stands for the file in messages.
 SystemDescription parse_system(std::string text, std::string name = "<text>");
+
+class Model;
+// The equations of motion of a system, derived and compiled once, for all its runs. Throws InputErrors for T, V, h or e that is
+// not what it should be.
+std::shared_ptr<const Model> derive(SystemDescription description);
 
 }  // namespace achilles

@@ -23,22 +23,25 @@ void append(std::string& text, double x) {
 
 }  // namespace
 
+std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
+    std::vector<SweepHeading> headings;
+    for (const SweepAxis& axis : table.sweep().axes)
+        headings.push_back({axis.name, unit_of_axis(table.model().description(), axis.name)});
+    }
+    if (table.is_section()) headings.insert(headings.end(), {{"t", "s"}, {"contact", ""}});
+    for (const Column& column : table.measures().columns())
+        if (column.kind != Column::Kind::outcome) headings.push_back({column.name, column.unit});
+    headings.push_back({"outcome", ""});
+    return headings;
+}
+
 std::string sweep_csv_heading(const SweepTable& table, bool units) {
     std::string names, of_them;
-    const auto add = [&](const std::string& name, const std::string& unit) {
+    for (const SweepHeading& heading : sweep_headings(table)) {
         const char* const comma = names.empty() ? "" : ",";
-        names += comma + name;
-        of_them += comma + printable(unit);
-    };
-    for (const SweepAxis& axis : table.sweep().axes)
-        add(axis.name, unit_of_axis(table.model().description(), axis.name));
-    if (table.is_section()) {
-        add("t", "s");
-        add("contact", "");
+        names += comma + heading.name;
+        of_them += comma + printable(heading.unit);
     }
-    for (const Column& column : table.measures().columns())
-        if (column.kind != Column::Kind::outcome) add(column.name, column.unit);
-    add("outcome", "");
     return names + "\n" + (units ? of_them + "\n" : "");
 }
 

@@ -9,8 +9,14 @@
 
 namespace achilles {
 
-// The first line, and with `units` a second one with the unit of every column, empty where it is not known: the axes, of a
-// section t and contact, the prints, outcome.
+// What stands above a column, and its unit, empty where it is not known.
+struct SweepHeading {
+    std::string name, unit;
+};
+// Of all columns: the axes, of a section t and contact, the prints, outcome.
+std::vector<SweepHeading> sweep_headings(const SweepTable& table);
+
+// The first line, and with `units` a second one with the unit of every column.
 std::string sweep_csv_heading(const SweepTable& table, bool units);
 // A line for each row. What does not exist is empty.
 std::string sweep_csv(const SweepTable& table, const Rows& rows);

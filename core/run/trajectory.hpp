@@ -22,6 +22,7 @@
 namespace achilles {
 
 class Model;
+struct Sample;
 
 // Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
 struct Piece {
@@ -199,6 +200,9 @@ struct Trajectory {
     // Where the options of `run` left it undecided: those that it was made again by, as exactly as double precision allows.
     std::optional<Options> made_again_by;
     std::string undecided;  // what was, then; else empty
+
+    // The state at a time (s), clamped to the run; at an event that after it. Who asks often asks a Sampler (simulate/sampler.hpp).
+    Sample operator()(double t) const;
 };
 
 // What the local errors of so many steps may have grown to in the state, roughly: a measure, no bound.

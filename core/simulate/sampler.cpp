@@ -31,6 +31,8 @@ Sampler::Sampler(const Trajectory& trajectory)
     : trajectory_(trajectory), projection_(std::make_unique<Projection>(trajectory)) {}
 Sampler::~Sampler() = default;
 
+Sample Trajectory::operator()(double t) const { return Sampler(*this).at(t); }
+
 State Sampler::state(const Piece& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
     if (!piece.held.empty()) {

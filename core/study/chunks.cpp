@@ -1,86 +1,135 @@
 #include "study/chunks.hpp"
 
-#include <tbb/global_control.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
+#include <tbb/info.h>
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
+#include <system_error>
+#include <thread>
+
+#include "study/chunk_queue.hpp"
 
 namespace achilles {
 
-namespace {
-
-struct Done {
-    Chunk chunk;
-    std::string bytes;
-};
-
-// How long the next chunk is.
-class Lengths {
- public:
-    explicit Lengths(int threads) : threads_(static_cast<std::uint64_t>(threads)) {}
-
-    std::uint64_t next(std::uint64_t left) const {
-        constexpr double seconds = 0.25;
-        constexpr std::uint64_t least = 1, at_first = 32, most = 4096, few = 32;
-        const double rate = rate_.load(std::memory_order_relaxed);
-        const std::uint64_t length =
-            rate > 0.0 ? static_cast<std::uint64_t>(std::clamp(rate * seconds, double{least}, double{most})) : at_first;
-        // Near the end they are shorter, so that no thread waits long for the last one.
-        const std::uint64_t share = std::max(few, left / (2 * threads_));
-        return std::min({length, share, left});
-    }
-
-    void note(std::uint64_t count, double seconds) {
-        rate_.store(static_cast<double>(count) / std::max(seconds, 1e-6), std::memory_order_relaxed);
-    }
-
- private:
-    std::uint64_t threads_;
-    std::atomic<double> rate_{0.0};  // items a second, of one thread
-};
-
-}  // namespace
+int threads_for(int asked) { return asked > 0 ? asked : std::max(1, tbb::info::default_concurrency()); }
 
 bool do_chunks(std::uint64_t first, std::uint64_t end, int threads, const ChunkTask& task, const ChunkWriter& write,
                const std::atomic<bool>& stop) {
-    // More threads than cores, where they are asked for.
-    std::optional<tbb::global_control> limit;
-    if (threads > 0)
-        limit.emplace(
-            tbb::global_control::max_allowed_parallelism,
-            std::max<std::size_t>(static_cast<std::size_t>(threads),
-                                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    const int workers = arena.max_concurrency();
-    Lengths lengths(workers);
-    std::uint64_t next = first;
-    const auto cut = [&](tbb::flow_control& control) {
-        if (next >= end || stop) {
-            control.stop();
-            return Chunk{};
+    ChunkQueue queue(first, end, write, stop);
+    threads = threads_for(threads);
+    queue.add_threads(threads);
+    work_on(queue, threads, task);
+    return queue.finish();
+}
+
+void work_on(ChunkSource& source, int threads, const ChunkTask& task) {
+    const auto work = [&] {
+        try {
+            while (const std::optional<Chunk> chunk = source.take()) {
+                const auto clock = std::chrono::steady_clock::now();
+                std::string bytes = task(*chunk);
+                const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - clock;
+                source.put(*chunk, std::move(bytes), taken.count());
+            }
+        } catch (...) {
+            source.fail(std::current_exception());
         }
-        const Chunk chunk{next, lengths.next(end - next)};
-        next += chunk.count;
-        return chunk;
     };
-    const auto work = [&](Chunk chunk) {
-        const auto clock = std::chrono::steady_clock::now();
-        Done done{chunk, task(chunk)};
-        lengths.note(chunk.count, std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count());
-        return done;
-    };
-    const auto put = [&](const Done& done) { write(done.chunk, done.bytes); };
-    using tbb::filter_mode;
-    arena.execute([&] {
-        tbb::parallel_pipeline(static_cast<std::size_t>(workers > 1 ? 2 * workers : 1),
-                               tbb::make_filter<void, Chunk>(filter_mode::serial_in_order, cut) &
-                                   tbb::make_filter<Chunk, Done>(filter_mode::parallel, work) &
-                                   tbb::make_filter<Done, void>(filter_mode::serial_in_order, put));
-    });
-    return next >= end;
+    std::vector<std::jthread> others;
+    try {
+        while (static_cast<int>(others.size()) + 1 < threads) others.emplace_back(work);
+    } catch (const std::system_error&) {  // there are no more
+    }
+    work();
+}
+
+ChunkQueue::ChunkQueue(std::uint64_t first, std::uint64_t end, const ChunkWriter& write, const std::atomic<bool>& stop)
+    : write_(write), stop_(stop), next_(first), written_(first), end_(end) {}
+
+void ChunkQueue::add_threads(int threads) {
+    const std::scoped_lock lock(mutex_);
+    threads_ += static_cast<std::uint64_t>(threads);
+    changed_.notify_all();
+}
+
+bool ChunkQueue::is_over() const { return problem_ != nullptr || stop_ || next_ >= end_; }
+
+bool ChunkQueue::has_room() const { return started_ < (threads_ > 1 ? 3 * threads_ : 1); }
+
+std::optional<Chunk> ChunkQueue::take() {
+    std::unique_lock lock(mutex_);
+    // Nobody tells that it is to stop.
+    while (!is_over() && !has_room()) changed_.wait_for(lock, std::chrono::milliseconds(50));
+    if (is_over()) return {};
+    return cut();
+}
+
+std::optional<Chunk> ChunkQueue::take_at_once() {
+    const std::scoped_lock lock(mutex_);
+    if (is_over() || !has_room()) return {};
+    return cut();
+}
+
+std::uint64_t ChunkQueue::next_length() const {
+    constexpr double seconds = 0.25;
+    constexpr std::uint64_t least = 1, at_first = 32, most = 4096, few = 32;
+    const std::uint64_t left = end_ - next_, length = rate_ > 0.0 ? static_cast<std::uint64_t>(std::clamp(
+                                                                        rate_ * seconds, double{least}, double{most}))
+                                                                  : at_first;
+    // Near the end they are shorter, so that no thread waits long for the last one.
+    const std::uint64_t share = std::max(few, left / (2 * std::max<std::uint64_t>(1, threads_)));
+    return std::min({length, share, left});
+}
+
+Chunk ChunkQueue::cut() {
+    const Chunk chunk{next_, next_length()};
+    next_ += chunk.count;
+    ++started_;
+    return chunk;
+}
+
+void ChunkQueue::put(Chunk chunk, std::string bytes, double seconds) {
+    std::unique_lock lock(mutex_);
+    rate_ = static_cast<double>(chunk.count) / std::max(seconds, 1e-6);
+    waiting_.emplace(chunk.first, Done{chunk, std::move(bytes)});
+    if (!is_writing_) write_waiting(lock);
+}
+
+void ChunkQueue::write_waiting(std::unique_lock<std::mutex>& lock) {
+    is_writing_ = true;
+    while (!problem_ && !waiting_.empty() && waiting_.begin()->first == written_) {
+        const Done done = std::move(waiting_.extract(waiting_.begin()).mapped());
+        lock.unlock();
+        std::exception_ptr problem;
+        try {
+            write_(done.chunk, done.bytes);
+        } catch (...) {
+            problem = std::current_exception();
+        }
+        lock.lock();
+        if (problem && !problem_) problem_ = problem;
+        if (!problem) written_ += done.chunk.count;
+        --started_;
+        changed_.notify_all();
+    }
+    is_writing_ = false;
+}
+
+void ChunkQueue::fail(std::exception_ptr problem) {
+    const std::scoped_lock lock(mutex_);
+    if (!problem_) problem_ = std::move(problem);
+    changed_.notify_all();
+}
+
+bool ChunkQueue::has_failed() const {
+    const std::scoped_lock lock(mutex_);
+    return problem_ != nullptr;
+}
+
+bool ChunkQueue::finish() {
+    const std::scoped_lock lock(mutex_);
+    if (problem_) std::rethrow_exception(problem_);
+    return written_ >= end_;
 }
 
 }  // namespace achilles

@@ -8,6 +8,7 @@ class App;
 
 namespace achilles {
 
+class Messages;
 class PictureJob;
 
 // Exit statuses. made_differently: `reproduce` could, but the bytes are not the same.
@@ -16,12 +17,14 @@ constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_earl
 void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
 // Those that make pictures.
-void add_sweep(CLI::App& program, int& status, PictureJob& job);
 void add_figure(CLI::App& program, int& status, PictureJob& job);
 void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
-void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
+// `ranks`: the processes that share the runs (study/ranks.hpp); null where this one is alone.
+void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks);
+// All of them.
+void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks = nullptr);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new

@@ -77,8 +77,8 @@ int reproduce(const std::string& picture, const std::string& out) {
 
 }  // namespace
 
-void add_pictures(CLI::App& program, int& status, PictureJob& job) {
-    add_sweep(program, status, job);
+void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks) {
+    add_sweep(program, status, job, ranks);
     add_figure(program, status, job);
     add_frames(program, status, job);
     add_paper(program, status, job);
@@ -92,7 +92,9 @@ void add_reproduce(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
         "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
-    command->add_option("PICTURE", arguments->picture, "a PNG, SVG or PDF file of figure, sweep, frames, paper or screenshot")
+    command
+        ->add_option("PICTURE", arguments->picture,
+                     "a PNG, SVG or PDF file of figure, sweep, frames, paper or screenshot")
         ->required()
         ->type_name("");
     command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")

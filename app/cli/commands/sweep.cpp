@@ -5,14 +5,14 @@
 #include <atomic>
 #include <cmath>
 #include <csignal>
-#include <map>
-#include <mutex>
+#include <new>
 #include <optional>
 #include <system_error>
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/sweep_output.hpp"
+#include "cli/sweep_work.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
@@ -66,47 +66,8 @@ void warn_of(const SystemDescription& description, const Sweep& sweep) {
     }
 }
 
-// Runs that are points with another outcome than the end time: so many, and the first.
-class Failures {
- public:
-    void note(const Rows& rows) {
-        const std::scoped_lock lock(mutex_);
-        for (std::size_t i = 0; i < rows.count(); ++i) {
-            const bool is_next_row = i > 0 && rows.points[i] == rows.points[i - 1];
-            if (is_next_row || rows.ends[i] == RunEnd(Outcome::Kind::end_time)) continue;
-            Kind& kind = kinds_[rows.ends[i].code()];
-            ++kind.count;
-            kind.first = std::min(kind.first, rows.points[i]);
-        }
-    }
-
-    void tell(const SweepTable& table) const {
-        const SweepPoints points(table.sweep(), table.model().description());
-        for (const auto& [code, kind] : kinds_) {
-            std::string where, why;
-            for (std::size_t axis = 0; axis < table.sweep().axes.size(); ++axis)
-                where += fmt::format("{}{} = {}", axis == 0 ? "" : ", ", table.sweep().axes[axis].name,
-                                     table.sweep().value(axis, kind.first));
-            try {
-                table.model().check(points.run(kind.first));
-            } catch (const InputError& error) {
-                why = ": " + error.message;
-            }
-            const std::string_view outcome = RunEnd::from(code).text();
-            print_clean(stderr, "achilles: warning: {} of the runs: {}; the first has {}{}\n", kind.count, outcome,
-                        where, why);
-        }
-    }
-
- private:
-    struct Kind {
-        std::uint64_t count = 0, first = most_points;
-    };
-    std::mutex mutex_;
-    std::map<std::uint8_t, Kind> kinds_;
-};
-
-int run(const SweepArguments& arguments, PictureJob& job) {
+// `ranks`: the other processes that share it; may be null.
+int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = asked_run(description, arguments.settings, arguments.overrides);
     const Sweep sweep = make_sweep(arguments.asked, base, description);
@@ -122,28 +83,35 @@ int run(const SweepArguments& arguments, PictureJob& job) {
     const std::uint64_t points = sweep.count();
     Progress progress(points - output.done(), "runs");
     const std::uint64_t before = output.done();
-    Failures failures;
-    const auto task = [&](Chunk chunk) {
-        const Rows rows = table.rows(chunk.first, chunk.count);
-        failures.note(rows);
-        return output.bytes(rows);
-    };
+    RunFailures failures;
+    const auto task = [&](Chunk chunk) { return sweep_chunk(table, output.kept(), chunk); };
     const auto write = [&](Chunk chunk, const std::string& bytes) {
-        output.append(chunk, bytes);
+        output.append(chunk, failures.take(bytes));
         progress.show(chunk.first + chunk.count - before);
     };
+    const auto do_all = [&] {
+        if (ranks == nullptr) return do_chunks(before, points, arguments.threads, task, write, asked_to_stop);
+        const std::string order = sweep_order(table, output.kept(), arguments.threads);
+        return do_chunks(*ranks, order, before, points, arguments.threads, task, write, asked_to_stop);
+    };
     try {
-        if (do_chunks(before, points, arguments.threads, task, write, asked_to_stop)) {
+        if (do_all()) {
             output.finish();
             progress.end();
             failures.tell(table);
             return reached_end;
         }
     } catch (const std::system_error& problem) {
+        progress.end();
         print_clean(stderr, "achilles: the file cannot be written: {}\n", problem.what());
     } catch (const std::runtime_error& problem) {
-        print_clean(stderr, "achilles: the picture cannot be drawn: {}\n", problem.what());
+        progress.end();
+        print_clean(stderr, "achilles: {}\n", problem.what());
+    } catch (const std::bad_alloc&) {
+        progress.end();
+        print_clean(stderr, "achilles: there is not enough memory for this\n");
     }
+    if (ranks != nullptr && asked_to_stop) ranks->leave();
     progress.end();
     const std::string how = output.how_to_go_on();
     print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
@@ -160,7 +128,7 @@ void add_texts(CLI::App& command, const char* flag, std::vector<std::string>& te
 
 }  // namespace
 
-void add_sweep(CLI::App& program, int& status, PictureJob& job) {
+void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks) {
     const auto arguments = std::make_shared<SweepArguments>();
     CLI::App* command = program.add_subcommand("sweep",
                                                "Many runs as a table, CSV or HDF5, and as a figure: over values of "
@@ -196,7 +164,7 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job) {
     command
         ->add_option_function<std::string>(
             "--threads", [arguments](const std::string& text) { arguments->threads = threads_from(text); },
-            "so many at once (default: one for every core); the files are the same")
+            "so many at once in each process (default: one for every core); the files are the same")
         ->type_name("N");
     SweepPicturesAsked& pictures = arguments->pictures;
     command->add_flag("--transparent", pictures.look.transparent, "of --out: no background");
@@ -204,7 +172,7 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job) {
     add_page_options(*command, pictures.page);
     add_size_options(*command, pictures.size.width, pictures.size.height, pictures.size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
-    command->callback([arguments, &status, &job] { status = run(*arguments, job); });
+    command->callback([arguments, &status, &job, ranks] { status = run(*arguments, job, ranks); });
 }
 
 }  // namespace achilles

@@ -1,0 +1,71 @@
+#include "mpi/module.hpp"
+
+#include <mpi.h>
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+// What is wrong MPI tells itself, and ends all processes.
+
+namespace {
+
+// Of the cores that the processes of this machine may use, an equal share, and no more than this one may use: mpirun may have
+// bound each to its own.
+int share_of_cores() {
+    cpu_set_t own, all;
+    CPU_ZERO(&own);
+    CPU_ZERO(&all);
+    sched_getaffinity(0, sizeof own, &own);
+    MPI_Comm machine = MPI_COMM_NULL;
+    MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    int processes = 1;
+    MPI_Comm_size(machine, &processes);
+    MPI_Allreduce(&own, &all, static_cast<int>(sizeof own), MPI_BYTE, MPI_BOR, machine);
+    MPI_Comm_free(&machine);
+    return std::max(1, std::min(CPU_COUNT(&own), CPU_COUNT(&all) / processes));
+}
+
+void begin(int* rank, int* size, int* cores) {
+    // Open MPI looks for fast networks for a quarter of a second. A few messages a second need none. What the user says counts.
+    ::setenv("OMPI_MCA_pml", "ob1", 0);
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
+    MPI_Comm_rank(MPI_COMM_WORLD, rank);
+    MPI_Comm_size(MPI_COMM_WORLD, size);
+    *cores = share_of_cores();
+}
+
+void send(int to, const void* bytes, int size) {
+    MPI_Request request = MPI_REQUEST_NULL;
+    MPI_Isend(bytes, size, MPI_BYTE, to, 0, MPI_COMM_WORLD, &request);
+    for (int has_gone = 0;;) {
+        MPI_Test(&request, &has_gone, MPI_STATUS_IGNORE);
+        if (has_gone != 0) return;
+        ::usleep(200);
+    }
+}
+
+int next(int* from) {
+    int is_there = 0, size = -1;
+    MPI_Status status;
+    MPI_Iprobe(MPI_ANY_SOURCE, 0, MPI_COMM_WORLD, &is_there, &status);
+    if (is_there == 0) return -1;
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    *from = status.MPI_SOURCE;
+    return size;
+}
+
+void receive(int from, void* bytes, int size) {
+    MPI_Recv(bytes, size, MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+}
+
+void end() { MPI_Finalize(); }
+
+}  // namespace
+
+const AchillesMpi* achilles_mpi(void) {
+    static const AchillesMpi functions{achilles_mpi_version, begin, send, next, receive, end};
+    return &functions;
+}

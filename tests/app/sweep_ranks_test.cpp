@@ -1,0 +1,174 @@
+// `mpirun -n N achilles sweep` as a user meets it: the same files for every N, and what is left when a rank or the disk fails.
+#include <gtest/gtest.h>
+
+#include "app/program.hpp"
+#include "cli/sweep_work.hpp"
+#include "model/read_system.hpp"
+
+namespace achilles::test {
+namespace {
+
+constexpr const char* program = ACHILLES_BINARY_DIR "/achilles";
+// Root may, more ranks than cores may, and what MPI keeps until the end is its own.
+constexpr const char* mpirun = "ASAN_OPTIONS=detect_leaks=0 mpirun --oversubscribe --allow-run-as-root ";
+
+int count_of(const std::string& what, const std::string& text) {
+    int count = 0;
+    for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + 1)) ++count;
+    return count;
+}
+
+class SweepRanks : public testing::Test {
+ protected:
+    void SetUp() override {
+        if (std::system("command -v mpirun >/dev/null") != 0) GTEST_SKIP() << "mpirun is missing (openmpi-bin)";
+    }
+    Answer run(int ranks, const std::string& arguments) const {
+        return folder_.run(arguments, mpirun + ("-n " + std::to_string(ranks)));
+    }
+    // A shell's script.
+    int script(const std::string& text) const {
+        folder_.put("script", text);
+        const int status = std::system(("cd '" + folder_.path().string() + "' && timeout 60 sh ./script").c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    std::string file(const char* name) const { return content(folder_.path() / name); }
+    bool has(const char* name) const { return std::filesystem::exists(folder_.path() / name); }
+    Folder folder_;
+};
+
+TEST_F(SweepRanks, WriteTheSameBytesHoweverMany) {
+    const std::string sweep =
+        "sweep ball_on_sine --over x=-3:3:60 --over y=-2:2:50 --print x --print \"zeno_time(2)\" --print held --end 9 ";
+    const std::string hdf5 = folder_.run(sweep + "--hdf5 one.h5").status == 0 ? " --hdf5 " : "";
+    std::filesystem::remove(folder_.path() / "one.h5");
+    const auto files = [&](const std::string& name) {
+        return "--csv " + name + ".csv" + (hdf5.empty() ? "" : hdf5 + name + ".h5");
+    };
+    const Answer one = folder_.run(sweep + files("one") + " --threads 1");
+    ASSERT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(count_of("\n", file("one.csv")), 3001);
+    const auto expect_same = [&](const Answer& answer, const char* name) {
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        EXPECT_EQ(answer.err, one.err) << "what is told of the runs, once";
+        EXPECT_EQ(answer.out, "");
+        EXPECT_EQ(file((std::string(name) + ".csv").c_str()), file("one.csv")) << name;
+        EXPECT_EQ(file((std::string(name) + ".h5").c_str()), file("one.h5")) << name;
+    };
+    expect_same(folder_.run(sweep + files("threads") + " --threads 2"), "threads");
+    expect_same(run(1, sweep + files("a")), "a");
+    expect_same(run(2, sweep + files("b")), "b");
+    expect_same(run(2, sweep + files("b2") + " --threads 2"), "b2");
+    expect_same(run(4, sweep + files("c")), "c");
+}
+
+TEST_F(SweepRanks, AreSilentButForTheFirst) {
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:5 --print ";
+    const Answer table = run(3, sweep + "x"), wrong = run(3, sweep + "xx --csv a.csv"), help = run(2, "sweep --help");
+    EXPECT_EQ(table.status, 0) << table.err;
+    EXPECT_EQ(table.out, folder_.run(sweep + "x").out);
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_EQ(count_of("--print xx: unknown name 'xx'", wrong.err), 1) << wrong.err;
+    EXPECT_EQ(help.status, 0) << help.err;
+    EXPECT_EQ(count_of("Usage: ", help.out), 1) << help.out;
+    EXPECT_TRUE(folder_.files().empty());
+}
+
+// A rank is killed, then all are asked to stop; --resume goes on, with ranks and without.
+TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:200000 --print x --print t ",
+                      ranks = std::string(mpirun) + "-n 2 sh -c 'echo $$ >pid$OMPI_COMM_WORLD_RANK; exec " + program +
+                              " " + sweep + "--csv a.csv --resume' 2>err &\nm=$!\n",
+                      wait = "  [ \"$(stat -c %s a.csv.part 2>/dev/null || echo 0)\" -gt ",
+                      go_on = " ] && break\n  sleep 0.01\ndone\n", loop = "for i in $(seq 2000); do\n";
+    EXPECT_EQ(script(ranks + loop + wait + "12000" + go_on + "kill -KILL $(cat pid1)\nwait $m"), 137);
+    EXPECT_EQ(count_of(" of 200000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
+        << file("err");
+    ASSERT_TRUE(has("a.csv.part"));
+    EXPECT_NE(script("size=$(stat -c %s a.csv.part)\n" + ranks + loop + wait + "$((size + 12000))" + go_on +
+                     "kill -INT $m\nwait $m"),
+              0);
+    EXPECT_EQ(count_of(" of 200000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
+        << file("err");
+    ASSERT_TRUE(has("a.csv.part"));
+    EXPECT_FALSE(has("a.csv"));
+    EXPECT_EQ(run(2, sweep + "--csv a.csv --resume").status, 0);
+    EXPECT_EQ(folder_.run(sweep + "--csv whole.csv").status, 0);
+    EXPECT_EQ(file("a.csv"), file("whole.csv"));
+    EXPECT_FALSE(has("a.csv.part"));
+}
+
+// The limit would be one of memory that ranks share, too: they speak over the loopback.
+TEST_F(SweepRanks, EndWhereTheDiskIsFull) {
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:3000 --print x --csv a.csv";
+    EXPECT_EQ(script(std::string(mpirun) +
+                     "--mca btl self,tcp -n 2 sh -c '[ $OMPI_COMM_WORLD_RANK = 1 ] || { trap \"\" XFSZ; ulimit -f 60; "
+                     "}; exec " +
+                     program + " " + sweep + "' 2>err"),
+              3);
+    EXPECT_EQ(count_of("achilles: the file cannot be written: a.csv.part: File too large\nachilles: the sweep stopped "
+                       "early, at ",
+                       file("err")),
+              1)
+        << file("err");
+    EXPECT_EQ(run(2, sweep + " --resume").status, 0);
+    EXPECT_EQ(folder_.run("sweep ball_on_sine --over x=-3:3:3000 --print x --csv whole.csv").status, 0);
+    EXPECT_EQ(file("a.csv"), file("whole.csv"));
+}
+
+// Alone each would do all of it, and write the same file.
+TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
+    std::filesystem::copy_file(program, folder_.path() / "achilles");
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:5 --print x --csv a.csv",
+                      assets = "export ACHILLES_ASSETS=" ACHILLES_BINARY_DIR "/assets\n";
+    EXPECT_EQ(script(assets + mpirun + "-n 2 ./achilles " + sweep + " 2>err"), 2);
+    EXPECT_EQ(count_of("achilles: 2 processes were started, which cannot share a sweep: ", file("err")), 1)
+        << file("err");
+    EXPECT_EQ(count_of("lib/achilles/libachilles_mpi.so is missing", file("err")), 1) << file("err");
+    EXPECT_FALSE(has("a.csv"));
+    EXPECT_EQ(script(assets + "ACHILLES_MPI=0 " + mpirun + "-n 1 ./achilles " + sweep), 0);
+    const Answer other = folder_.run(sweep, "PMI_RANK=0 PMI_SIZE=3");
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("3 processes were started, which cannot share a sweep: each reaches 1"), other.err.npos);
+}
+
+// What other processes make of an order, from its text alone.
+TEST(SweepWork, IsTheSameFromItsOrder) {
+    const auto description = read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
+    Run base = default_run(description);
+    for (const char* set : {"e=1/3", "x'=1.3", "y=2.1"}) assign(base, description, set);
+    base.options.end_time = 7.0;
+    base.options.tolerance = 1e-9;
+    base.options.truncation.eps_q = 1e-5;
+    const Sweep sweep = make_sweep({{"x=-3:3:40", "y=-1:1:3"}, {"x", "zeno_time(1)/3", "held"}}, base, description);
+    const SweepTable table(std::make_shared<const Model>(description), sweep);
+    const SweepKept kept{true, true, true};
+    const std::string order = sweep_order(table, kept, 3);
+    const Share share = sweep_share(order);
+    EXPECT_EQ(share.threads, 3);
+    EXPECT_EQ(share.task({5, 40}), sweep_chunk(table, kept, {5, 40}));
+    EXPECT_NE(share.task({5, 40}), sweep_chunk(table, {true, false, true}, {5, 40}));
+    EXPECT_THROW(sweep_share("0.0.1" + order.substr(order.find('\n'))), std::runtime_error);
+    // The failures are behind what is kept.
+    RunFailures failures, none;
+    const std::string bytes = failures.take(sweep_chunk(table, kept, {0, 120}));
+    EXPECT_EQ(bytes, kept_bytes(table, kept, table.rows(0, 120)));
+    EXPECT_EQ(none.behind("a"), std::string("a\0", 2));
+    EXPECT_GT(failures.behind("").size(), 1u) << "some cannot start";
+    EXPECT_EQ(none.take(failures.behind("rows")), "rows");
+    EXPECT_EQ(none.behind(""), failures.behind(""));
+}
+
+TEST(SweepAlone, IsNotLinkedWithMpi) {
+    EXPECT_EQ(content(program).find("libmpi"), std::string::npos);
+    const Folder folder;
+    const Answer slurm =
+        folder.run("sweep ball_on_sine --over x=0:1:2 --print x", "SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=3");
+    EXPECT_EQ(slurm.status, 2);
+    EXPECT_NE(slurm.err.find("srun --mpi=pmix does"), std::string::npos) << slurm.err;
+    EXPECT_EQ(folder.run("sweep ball_on_sine --over x=0:1:2 --print x", "SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=1").status,
+              0);
+}
+
+}  // namespace
+}  // namespace achilles::test
