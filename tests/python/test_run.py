@@ -28,6 +28,7 @@ def plain(value):
     return [plain(each) for each in value] if isinstance(value, list) else value
 
 
+@pytest.mark.filterwarnings("ignore::achilles.AchillesWarning")
 def test_it_says_what_the_program_says(program):
     run = achilles.simulate("ball_on_sine", **BALL, end=12, tolerance=1e-9, eps_t=1e-7, method="dopri5")
     text = program("simulate", "ball_on_sine", "--set", "e=0.3", "--set", "x'=1.2", "--end", "12", "--tolerance", "1e-9",

@@ -42,6 +42,14 @@ def test_values_are_read_as_the_command_line_reads_them():
     assert achilles.simulate("ball_on_sine", end_time=2).end.t == achilles.simulate("ball_on_sine", end=2).end.t == 2
 
 
+def test_a_value_that_is_called_like_an_option_goes_into_set():
+    text = achilles.System("ball_on_floor").text.replace('"g"', '"memory"').replace("*g", "*memory")
+    ball = achilles.System(text)
+    with pytest.warns(achilles.AchillesWarning, match="memory is taken as the option; the value .* goes into set"):
+        assert achilles.simulate(ball, memory=1e8).options.memory == 1e8
+    assert achilles.simulate(ball, set={"memory": 8.0}).parameters["memory"] == 8.0
+
+
 WRONG = """title = "Ball"
 [[coordinate]]
 name = "y"

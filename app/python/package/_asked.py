@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import inspect
 import numbers
+import warnings
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import _core
-from ._errors import InputError
+from ._errors import AchillesWarning, InputError
 
 _table: list[dict[str, Any]] = _core.option_table()
 
@@ -61,6 +62,9 @@ class Asked:
             if name in _flags:
                 if value is not None:
                     self._take(name, value)
+                    if name in system.settable:
+                        told = f"{name} is taken as the option; the value of the system that is called so goes into set"
+                        warnings.warn(told, AchillesWarning, stacklevel=3)
             elif name in values:
                 raise TypeError(f"{name} is given twice, in set, too")
             else:

@@ -86,7 +86,7 @@ class Run:
         if t is None:
             return self._core.values(expression, None)
         times = self._times(t)
-        return self._core.values(expression, times.ravel()).reshape(times.shape)
+        return self._core.values(expression, times.ravel()).reshape(times.shape)[()]
 
     def _times(self, t: Any) -> np.ndarray:
         times = np.asarray(t)
