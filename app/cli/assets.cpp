@@ -13,6 +13,19 @@ namespace achilles {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// Of what assets() stands in.
+fs::path& binary() {
+    std::error_code problem;
+    static fs::path file = fs::read_symlink("/proc/self/exe", problem);
+    return file;
+}
+
+}  // namespace
+
+void look_for_assets_beside(const fs::path& file) { binary() = file; }
+
 fs::path assets() {
     std::error_code problem;
     if (const char* given = std::getenv("ACHILLES_ASSETS"); given != nullptr && *given != '\0') {
@@ -20,8 +33,8 @@ fs::path assets() {
             throw InputError("ACHILLES_ASSETS", {}, fmt::format("'{}' is no folder", given));
         return given;
     }
-    const fs::path binary = fs::read_symlink("/proc/self/exe", problem);
-    const fs::path places[] = {binary.parent_path() / "assets", binary.parent_path().parent_path() / "share/achilles"};
+    const fs::path folder = binary().parent_path();
+    const fs::path places[] = {folder / "assets", folder.parent_path() / "share/achilles"};
     for (const fs::path& place : places)
         if (fs::is_directory(place, problem)) return place;
     throw InputError({}, {},

@@ -11,6 +11,8 @@ namespace achilles {
 // The folder that holds systems/, journals/, manual/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
 // "../share/achilles". Throws InputError if none is there.
 std::filesystem::path assets();
+// The binary is this file from now on: a library does not lie where the program lies that has loaded it.
+void look_for_assets_beside(const std::filesystem::path& file);
 
 // The system files in assets/systems, sorted by name.
 std::vector<std::filesystem::path> system_files();

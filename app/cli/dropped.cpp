@@ -13,6 +13,7 @@
 #include "model/read_system.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/picture_ending.hpp"
+#include "pictures/views.hpp"
 
 namespace achilles {
 

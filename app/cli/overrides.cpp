@@ -1,17 +1,53 @@
 #include "cli/overrides.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 
 #include "cli/terminal.hpp"
+#include "expression/nearest.hpp"
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
 
 std::string common_flag(const Option& option) { return "--" + std::string(option.command); }
+
+double number_from(const std::string& option, std::string_view text) {
+    try {
+        return read_number(text).value;
+    } catch (const ParseError& error) {
+        throw InputError(fmt::format("{} {}", option, shown(text)), {}, error.what());
+    }
+}
+
+namespace {
+
+int integer_from(const std::string& option, std::string_view text) {
+    int value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size())
+        throw InputError(fmt::format("{} {}", option, text), {}, "this is not a whole number");
+    return value;
+}
+
+}  // namespace
+
+OptionValue value_from(const Option& option, const std::string& flag, const std::string& text) {
+    if (std::holds_alternative<int>(option.get({}))) return integer_from(flag, text);
+    if (option.words.empty()) return number_from(flag, text);
+    const auto found = std::find(option.words.begin(), option.words.end(), text);
+    if (found != option.words.end()) return *found;
+    const std::vector<std::string> choices(option.words.begin(), option.words.end());
+    throw InputError(fmt::format("{} {}", flag, text), {},
+                     fmt::format("there is no '{}' to choose{}", text, did_you_mean(text, choices)),
+                     fmt::format("the choice is {}", fmt::join(choices, " or ")));
+}
 
 const std::pair<const std::string, OptionValue>* OptionOverrides::given(const Option& option) const {
     auto found = by_flag.find(option.flag);

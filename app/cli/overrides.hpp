@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,12 @@ struct OptionOverrides {
 };
 // The flag that gives all options of one command of the explorer. Most stand alone: it is theirs.
 std::string common_flag(const Option& option);
+
+// A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
+double number_from(const std::string& option, std::string_view text);
+
+// The value of an option as typed: one of its words, a whole number, or a number. Throws InputError about the flag.
+OptionValue value_from(const Option& option, const std::string& flag, const std::string& text);
 
 // Puts them over the options of a file. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);

@@ -160,8 +160,10 @@ std::vector<Command> recipe(const Session& session) {
 }
 
 std::vector<std::string> run_options(const Session& session) {
-    const SystemDescription& description = session.description();
-    const Run &text = session.file_run(), &run = session.run();
+    return run_options(session.description(), session.file_run(), session.run());
+}
+
+std::vector<std::string> run_options(const SystemDescription& description, const Run& text, const Run& run) {
     std::vector<std::string> words;
     for (const auto& [name, value] : changed_values(description, text, run))
         words.insert(words.end(), {"--set", fmt::format("{}={}", name, value.value)});

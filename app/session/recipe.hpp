@@ -14,6 +14,7 @@ std::vector<Command> recipe(const Session& session);
 
 // The options that make of a system's file the run that was asked for: --set e=0.3 --end 30.
 std::vector<std::string> run_options(const Session& session);
+std::vector<std::string> run_options(const SystemDescription& description, const Run& file, const Run& run);
 // One value or option of a run that is another in another run of the same system, as a person reads it.
 struct Difference {
     std::string name, now, other;  // "x(0)", "2 m", "1 m"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "model/model.hpp"
 #include "number/ground.hpp"
@@ -80,13 +81,18 @@ std::string heading(const Model& model, const CsvStyle& style) {
         add("work", "work");
         add("loss", "loss");
     }
+    if (style.instants) add("event");
     return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
 }
 
-// Step ends and events; where steps are long, so many instants between them that a plot of the rows is a curve.
-std::vector<Sample> all_samples(const Trajectory& trajectory) {
-    constexpr std::size_t wanted = 1000;
-    return Sampler(trajectory).all(static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size())));
+// The kinds of these events [first, last), each once, in time: "impact+zeno". Empty where there is none.
+std::string kinds_of(const Trajectory& trajectory, int first, int last) {
+    std::string kinds;
+    for (int i = first; i < last; ++i) {
+        const std::string_view kind = to_text(trajectory.events[static_cast<std::size_t>(i)].kind);
+        if (kinds.find(kind) == kinds.npos) kinds += (kinds.empty() ? "" : "+") + std::string(kind);
+    }
+    return kinds;
 }
 
 }  // namespace
@@ -100,7 +106,9 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         contacts.push_back(model.evaluator(model.programs_of(i).contact_terms, trajectory.run.parameters));
     ContactForces forces(model, trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
-    for (const Sample& sample : style.instants ? samples_at(trajectory, *style.instants) : all_samples(trajectory)) {
+    int happened = 0;  // events until the row before
+    for (const Sample& sample :
+         style.instants ? samples_at(trajectory, *style.instants) : samples_of_curve(trajectory)) {
         forces.set(sample);
         set_state(energy, sample.state);
         energy.run();
@@ -121,6 +129,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
             append(text, sample.work);
             append(text, sample.loss);
         }
+        if (style.instants) text += ',' + kinds_of(trajectory, std::exchange(happened, sample.j), sample.j);
         text += '\n';
     }
     return text;

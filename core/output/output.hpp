@@ -16,7 +16,7 @@ struct SystemDescription;
 std::string to_json(const Trajectory& trajectory, const Instants& instants = {});
 
 struct CsvStyle {
-    Instants instants{};
+    Instants instants{};       // with them a last column tells the events since the row before
     bool plain_names = false;  // columns called by names that Python can use: theta1_rate for theta1'
     bool units = false;        // a second line with the unit of every column; empty where it is not known
 };

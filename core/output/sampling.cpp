@@ -45,6 +45,11 @@ std::vector<double> read_instants(std::string_view text, const std::string& name
     return times;
 }
 
+std::vector<Sample> samples_of_curve(const Trajectory& trajectory) {
+    constexpr std::size_t wanted = 1000;
+    return Sampler(trajectory).all(static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size())));
+}
+
 std::vector<Sample> samples_at(const Trajectory& trajectory, const std::vector<double>& times) {
     Sampler sampler(trajectory);
     std::vector<Sample> samples;

@@ -18,6 +18,9 @@ std::vector<double> equidistant(int count, double start, double end);
 // InputError, too, for one that is not in [start, end].
 std::vector<double> read_instants(std::string_view text, const std::string& name, double start, double end);
 
+// Step ends and events, an impact as two, before and after it; where steps are long, so many instants between them that a plot
+// of them is a curve.
+std::vector<Sample> samples_of_curve(const Trajectory& trajectory);
 // The states at these instants, after an event that happens there. Instants that the run did not reach have none.
 std::vector<Sample> samples_at(const Trajectory& trajectory, const std::vector<double>& times);
 

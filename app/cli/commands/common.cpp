@@ -9,9 +9,6 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
-#include "expression/nearest.hpp"
-#include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "output/output.hpp"
 #include "system/input_error.hpp"
 
@@ -27,24 +24,6 @@ std::optional<Number> parse(std::string_view text) {
     return value;
 }
 
-int integer_from(const std::string& option, std::string_view text) {
-    const auto value = parse<int>(text);
-    if (!value) throw InputError(fmt::format("{} {}", option, text), {}, "this is not a whole number");
-    return *value;
-}
-
-// One of the option's words, a whole number, or a number.
-OptionValue value_from(const Option& option, const std::string& flag, const std::string& text) {
-    if (std::holds_alternative<int>(option.get({}))) return integer_from(flag, text);
-    if (option.words.empty()) return number_from(flag, text);
-    const auto found = std::find(option.words.begin(), option.words.end(), text);
-    if (found != option.words.end()) return *found;
-    const std::vector<std::string> choices(option.words.begin(), option.words.end());
-    throw InputError(fmt::format("{} {}", flag, text), {},
-                     fmt::format("there is no '{}' to choose{}", text, did_you_mean(text, choices)),
-                     fmt::format("the choice is {}", fmt::join(choices, " or ")));
-}
-
 void add_option(CLI::App& command, const Option& option, const std::string& flag, const std::string& about,
                 OptionOverrides& overrides) {
     const auto take = [&option, flag, &overrides](const std::string& text) {
@@ -57,14 +36,6 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 }
 
 }  // namespace
-
-double number_from(const std::string& option, std::string_view text) {
-    try {
-        return read_number(text).value;
-    } catch (const ParseError& error) {
-        throw InputError(fmt::format("{} {}", option, shown(text)), {}, error.what());
-    }
-}
 
 int told_of(const Trajectory& trajectory, bool with_remarks) {
     if (with_remarks)
@@ -92,30 +63,6 @@ void add_view_option(CLI::App& command, std::vector<std::string>& views, const s
         ->type_name("NAME")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names) {
-    std::vector<ViewDescription> views;
-    if (names.empty()) {
-        views = description.views;
-        std::stable_partition(views.begin(), views.end(),
-                              [](const ViewDescription& view) { return view.x.text == "t"; });
-        return views;
-    }
-    std::vector<std::string> known;
-    for (const ViewDescription& view : description.views) known.push_back(view.name);
-    for (const std::string& name : names) {
-        const auto at = std::find(known.begin(), known.end(), name);
-        if (at == known.end()) {
-            std::string all;
-            for (const std::string& view : known) all += (all.empty() ? "" : ", ") + view;
-            throw InputError("--view " + name, {},
-                             fmt::format("this system has no view '{}'{}", name, did_you_mean(name, known)),
-                             "its views are: " + all);
-        }
-        views.push_back(description.views[static_cast<std::size_t>(at - known.begin())]);
-    }
-    return views;
 }
 
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides) {

@@ -24,9 +24,6 @@ void add_format_option(CLI::App& command, std::string& format, const std::string
 
 // --view NAME, as often as wished for.
 void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about);
-// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
-// Throws InputError for a name that is none.
-std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names);
 
 // --set and everything that goes over a system's options.
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
@@ -45,8 +42,5 @@ void add_page_options(CLI::App& command, PaperSize& page);
 // Tells on standard error what a person may not expect of a finished run: its remarks, unless they stand elsewhere, and why it
 // stopped early. The exit status.
 int told_of(const Trajectory& trajectory, bool with_remarks = true);
-
-// A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
-double number_from(const std::string& option, std::string_view text);
 
 }  // namespace achilles

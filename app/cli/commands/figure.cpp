@@ -13,6 +13,7 @@
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
+#include "pictures/views.hpp"
 #include "session/open_session.hpp"
 #include "simulate/simulate.hpp"
 

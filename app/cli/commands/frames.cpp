@@ -17,6 +17,7 @@
 #include "pictures/picture_job.hpp"
 #include "pictures/process_pool.hpp"
 #include "pictures/progress.hpp"
+#include "pictures/views.hpp"
 #include "session/open_session.hpp"
 #include "simulate/simulate.hpp"
 

@@ -195,6 +195,18 @@ TEST_F(Outputs, ChosenInstantsAreTheOnlyRows) {
     }
 }
 
+TEST_F(Outputs, RowsAtChosenInstantsTellTheEventsSinceTheRowBefore) {
+    const std::vector<double> times{0.0, 1.0, 2.0, 3.0, 4.0, 20.0, 5.0};
+    const std::vector<std::string> lines = split(to_csv(trajectory, {times, false, false}), '\n');
+    const std::vector<std::string> told{"event", "", "", "impact", "impact+zeno", "release", "impact+zeno", ""};
+    for (std::size_t i = 0; i < told.size(); ++i)
+        EXPECT_EQ(lines[i].substr(lines[i].rfind(',') + 1), told[i]) << lines[i];
+    // At an event it has happened; without instants the rows themselves are steps and events.
+    const auto at = split(to_csv(trajectory, {std::vector{trajectory.events[0].t}, false, false}), '\n');
+    EXPECT_EQ(at[1].substr(at[1].rfind(',') + 1), "impact");
+    EXPECT_EQ(to_csv(trajectory).find("event"), std::string::npos);
+}
+
 TEST_F(Outputs, WhatTheRunDidNotReachHasNoSample) {
     auto run = with(Conditions::sharp);
     run.options.max_impacts = 3;

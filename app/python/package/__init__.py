@@ -1,0 +1,46 @@
+"""Lagrangian hybrid systems, simulated past their Zeno points.
+
+    import achilles
+
+    run = achilles.simulate("ball_on_sine", e=0.3, set={"x'": 1.5}, end=20)
+    run.t, run.q, run.v                  # NumPy arrays: every step and every event
+    q, v = run(3.2)                      # the state at a time, or at an array of them
+    run["y - sin(x)"]                    # any expression of the run, along run.t
+    run.events[0].kind, run.certificates # what happened, and what is proved of it
+    run.figure("height").save("f.pdf")   # as `achilles figure` draws it; a notebook shows it
+
+    map = achilles.sweep("ball_on_sine", over={"e": (0, 0.95, 200)}, print="zeno_time(2)")
+    map["zeno_time(2)"]                  # an array in the shape of the grid
+
+Systems are named as by `achilles list` (`achilles.gallery()`), by the path of a file, or are a `System` made of text. Numbers
+are in the units of the file, angles in radians, times in seconds. What is wrong with what was asked for is an `InputError`.
+"""
+
+from . import _core
+
+_core.look_for_assets_beside(_core.__file__)
+
+from ._errors import AchillesWarning, InputError
+from ._figure import Figure
+from ._records import Certificate, Event, Phase, Record
+from ._run import Run, State, simulate
+from ._sweep import Sweep, sweep
+from ._system import System, gallery
+
+__version__: str = _core.version
+__all__ = [
+    "AchillesWarning",
+    "Certificate",
+    "Event",
+    "Figure",
+    "InputError",
+    "Phase",
+    "Record",
+    "Run",
+    "State",
+    "Sweep",
+    "System",
+    "gallery",
+    "simulate",
+    "sweep",
+]

@@ -1,0 +1,126 @@
+"""Events, certificates and phases: what `achilles simulate --json` says, under the same names."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+_states = ("q", "v", "v_before", "v_after")
+
+
+class Record(dict):
+    """A dict whose entries are attributes, too: event["t"] is event.t. States are NumPy arrays; what does not apply is None."""
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self[name]
+        except KeyError:
+            raise AttributeError(f"{type(self).__name__} has no '{name}'; it has {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *(name for name in self if name.isidentifier())]
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all entries are the same, states number by number."""
+        if not isinstance(other, dict) or self.keys() != other.keys():
+            return NotImplemented if not isinstance(other, dict) else False
+        return all(_same(value, other[name]) for name, value in self.items())
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __ne__(self, other: object) -> bool:
+        same = self.__eq__(other)
+        return same if same is NotImplemented else not same
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return bool(np.array_equal(one, other))
+    return bool(one == other)
+
+
+class Certificate(Record):
+    """What is proved about a bouncing that was cut short; `achilles help data` says what each bound is of."""
+
+    certified: bool
+    conditions: str
+    reinitialization: str
+    below_rounding: bool
+    zeno_time: list[float]
+    position_bound: float | None
+    velocity_bound: float | None
+    shadowing_position: float | None
+    shadowing_velocity: float | None
+    uniform_position: float | None
+    a_min: float | None
+    a_max: float | None
+    decisive: str
+    inequalities: list[Record]
+    e1: float
+    e2: float
+    beta: float
+    eta: float
+    zeta: float
+    c1: float
+    c2: float
+    c3: float
+    transmission: Record
+    least_force: Record
+    least_other_gap: float | None
+    rounded_zero: bool
+    given: str
+
+
+class Event(Record):
+    """An impact, a Zeno point or a release. An impact has v_before and v_after, the others v; a Zeno point its certificate."""
+
+    kind: str
+    t: float
+    q: np.ndarray
+    v: np.ndarray
+    v_before: np.ndarray
+    v_after: np.ndarray
+    impact_speed: float
+    impulses: Record
+    contact: str
+    contacts: list[str]
+    held: list[str]
+    opened: list[str]
+    impacts: int
+    truncation: Record
+    certificate: Certificate
+    order_matters: bool
+    not_unique: bool
+    rounded_zero: bool
+    alternatives: list[Record]
+
+
+class Phase(Record):
+    """A part of a run, from start to end: hybrid (flights and impacts) or constrained, while contacts are held."""
+
+    kind: str
+    held: list[str]
+    start: float
+    end: float
+    impacts: int
+    not_unique: bool
+
+
+def _record(pairs: list[tuple[str, Any]]) -> Record:
+    record: Record = Record()
+    for name, value in pairs:
+        if name in _states and isinstance(value, list) and not (value and isinstance(value[0], Record)):
+            value = np.array(value, dtype=float)
+        elif name == "certificate" and isinstance(value, Record):
+            value = Certificate(value)
+        elif name in ("events", "phases"):
+            value = [(Event if name == "events" else Phase)(each) for each in value]
+        dict.__setitem__(record, name, value)
+    return record
+
+
+def records(text: str) -> Record:
+    """A JSON of ours as records."""
+    return json.loads(text, object_pairs_hook=_record)

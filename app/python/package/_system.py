@@ -1,0 +1,110 @@
+"""A system: what a file says, and what is derived from it."""
+
+from __future__ import annotations
+
+import functools
+import os
+from typing import Any
+
+from . import _core
+
+
+class System:
+    """A system, read and derived: from the text of a system file, or from the name of one of the gallery.
+
+    Runs of one System need not derive it again. Raises InputError with every mistake, each with its line and a caret.
+    """
+
+    name: str
+    """In the gallery, or the path of its file, or "<text>"."""
+    title: str
+    source: str
+    text: str
+    """Of its file."""
+    coordinates: list[str]
+    parameters: dict[str, float]
+    """Their values in the file, those that follow from others included."""
+    start: dict[str, float]
+    """The coordinates and rates, x and x', at the start."""
+    options: dict[str, Any]
+    """Of its runs: those of the file, else the defaults."""
+    contacts: list[str]
+    views: list[str]
+    """What figures can show."""
+    units: dict[str, str]
+    """Of coordinates, rates and parameters, where the file gives them."""
+
+    def __init__(self, text: str, name: str | None = None) -> None:
+        if not isinstance(text, str):
+            raise TypeError(f"the text of a system, or its name, is expected, not {type(text).__name__}")
+        is_name = name is None and "\n" not in text and "=" not in text and text != ""
+        self._core = _of_file(text) if is_name else _derived(text, name or "<text>")
+        core = self._core
+        self.name, self.title, self.source, self.text = core.name, core.title, core.source, core.text
+        self.coordinates = [coordinate for coordinate, _, _ in core.start]
+        self.start = {coordinate: q for coordinate, q, _ in core.start}
+        self.start |= {coordinate + "'": v for coordinate, _, v in core.start}
+        self.parameters, self.options, self.units = core.parameters, core.options, core.units
+        self.contacts, self.views = core.contacts, core.views
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str]) -> System:
+        """The system of a file."""
+        file = os.fspath(path)
+        return cls(_core.read_text(file), file)
+
+    @functools.cached_property
+    def equations(self) -> list[tuple[str, str]]:
+        """The derived equations, each with what it is: (words, LaTeX). Simplified, which may take a second."""
+        return self._core.equations()
+
+    def latex(self) -> str:
+        """All equations as one display for a page."""
+        lines = []
+        for words, formula in self.equations:
+            if words:
+                lines.append(rf"&\text{{{_escaped(words)}}}")
+            lines.append("&" + formula)
+        return "\\begin{aligned}\n" + " \\\\\n".join(lines) + "\n\\end{aligned}"
+
+    def _repr_latex_(self) -> str:
+        return f"$$\n{self.latex()}\n$$"
+
+    def __repr__(self) -> str:
+        return f"<achilles.System {self.name}: {self.title}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return System, (self.text, self.name)
+
+
+def gallery() -> dict[str, str]:
+    """The systems that come with Achilles: name and title."""
+    return {name: _of_file(name).title for name in _core.system_names()}
+
+
+def system_of(system: System | str | os.PathLike[str]) -> System:
+    """What a run is asked of: a System, a path or a name."""
+    if isinstance(system, System):
+        return system
+    if isinstance(system, os.PathLike):
+        return System.from_file(system)
+    if not isinstance(system, str):
+        raise TypeError(f"a System, a path or a name of the gallery is expected, not {type(system).__name__}")
+    if "\n" in system:
+        raise TypeError("a System, a path or a name of the gallery is expected; of a text make achilles.System(text)")
+    return System(_core.read_text(_core.find_system(system)), system)
+
+
+def _of_file(name: str) -> Any:
+    return _derived(_core.read_text(_core.find_system(name)), name)
+
+
+@functools.lru_cache(maxsize=64)
+def _derived(text: str, name: str) -> Any:
+    """The same file is derived once."""
+    return _core.System(text, name)
+
+
+def _escaped(words: str) -> str:
+    """Plain words inside \\text{}."""
+    return "".join("\\" + c if c in "&%$#_{}" else c for c in words.replace("\\", ""))

@@ -1,0 +1,237 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cmath>
+
+#include "cli/overrides.hpp"
+#include "figure/publication.hpp"
+#include "module.hpp"
+#include "number/ground.hpp"
+#include "output/contacts.hpp"
+#include "output/output.hpp"
+#include "pictures/paper_size.hpp"
+#include "pictures/pdf.hpp"
+#include "pictures/take_away.hpp"
+#include "pictures/views.hpp"
+#include "session/recipe.hpp"
+#include "simulate/contact_forces.hpp"
+#include "simulate/simulate.hpp"
+
+namespace py = pybind11;
+
+namespace achilles::python {
+
+namespace {
+
+// Where a run is at some instants, as arrays show it: they look into these, and keep them.
+struct Table {
+    std::vector<double> t, q, v;  // q and v row by row
+    std::vector<int> j;
+    std::vector<std::uint8_t> is_constrained;
+    py::ssize_t coordinates = 0;
+};
+
+struct Made {
+    std::shared_ptr<const System> system;
+    Asked asked;
+    Trajectory trajectory;
+    std::vector<std::string> warnings;
+};
+
+using Times = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+// Looks into `data` without a copy, for as long as anybody has it. Not to be written to: it is the run's.
+template <class Number>
+py::array looking_at(const std::shared_ptr<const Table>& owner, const std::vector<Number>& data, py::ssize_t columns) {
+    const py::capsule keeper(new std::shared_ptr<const Table>(owner),
+                             [](void* kept) { delete static_cast<std::shared_ptr<const Table>*>(kept); });
+    std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(owner->t.size())};
+    if (columns >= 0) shape.push_back(columns);
+    py::array_t<Number> array(shape, data.data(), keeper);
+    array.attr("flags").attr("writeable") = false;
+    return array;
+}
+
+std::shared_ptr<const Table> table_of(const Trajectory& trajectory, const std::vector<Sample>& samples) {
+    const auto table = std::make_shared<Table>();
+    table->coordinates = trajectory.model->dof();
+    for (const Sample& sample : samples) {
+        table->t.push_back(sample.t);
+        table->j.push_back(sample.j);
+        table->is_constrained.push_back(sample.phase == Phase::Kind::constrained);
+        table->q.insert(table->q.end(), sample.state.q.begin(), sample.state.q.end());
+        table->v.insert(table->v.end(), sample.state.v.begin(), sample.state.v.end());
+    }
+    return table;
+}
+
+// The arrays of a run, t first; without instants at the rows of its CSV.
+py::dict arrays_of(const std::shared_ptr<Made>& made, const std::optional<Times>& times) {
+    std::shared_ptr<const Table> table;
+    {
+        const std::vector<double> instants =
+            times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
+        const py::gil_scoped_release released;
+        const Ground ground;
+        table = table_of(made->trajectory,
+                         times ? samples_at(made->trajectory, instants) : samples_of_curve(made->trajectory));
+    }
+    py::dict arrays;
+    arrays["t"] = looking_at(table, table->t, -1);
+    arrays["q"] = looking_at(table, table->q, table->coordinates);
+    arrays["v"] = looking_at(table, table->v, table->coordinates);
+    arrays["j"] = looking_at(table, table->j, -1);
+    arrays["constrained"] = looking_at(table, table->is_constrained, -1).attr("view")("bool");
+    return arrays;
+}
+
+// An expression as a view may have it, at the rows of the CSV, or at these instants.
+py::array_t<double> values_of(const Made& made, const std::string& expression, const std::optional<Times>& times) {
+    const std::vector<double> instants =
+        times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
+    std::vector<double> values;
+    {
+        const py::gil_scoped_release released;
+        const Ground ground;
+        const Trajectory& trajectory = made.trajectory;
+        const std::array<Text, 1> texts{Text{expression, {}}};
+        const Program program = trajectory.model->compile_view(texts);
+        auto view = trajectory.model->evaluator(program, trajectory.run.parameters);
+        ContactForces forces(*trajectory.model, trajectory.run.parameters);
+        for (const Sample& sample : times ? samples_at(trajectory, instants) : samples_of_curve(trajectory)) {
+            forces.run_view(view, sample);
+            values.push_back(view.output(0));
+        }
+    }
+    return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+std::shared_ptr<Made> made_from(const std::shared_ptr<const System>& system, std::vector<std::string> settings,
+                                std::map<std::string, std::string> options) {
+    const auto made = std::make_shared<Made>();
+    made->system = system;
+    made->asked = {std::move(settings), std::move(options)};
+    const Run run = run_of(*system, made->asked);
+    check_asked(*system->model, run, made->asked.settings);
+    made->warnings = warnings_of(*system, run);
+    std::stop_source source;
+    Watch watch;
+    watch.stop = source.get_token();
+    work_and_listen([&] { made->trajectory = simulate(system->model, run, &watch); }, [&] { source.request_stop(); },
+                    [] {});
+    return made;
+}
+
+Instants instants_from(const std::optional<Times>& times) {
+    if (!times) return {};
+    return std::vector<double>(times->data(), times->data() + times->size());
+}
+
+// A figure as `achilles figure` draws it: the views of these names, all if there are none.
+struct Look {
+    std::vector<std::string> views;
+    PictureSize size;
+    PaperSize page;
+    PublicationStyle style;
+};
+
+// The command line that makes the same, which pictures carry.
+std::string command_of(const Made& made, const Look& look) {
+    const Model& model = *made.system->model;
+    std::vector<std::string> words{"figure", made.system->name};
+    const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
+    for (const std::string& view : look.views) add("--view", view);
+    if (look.page.width > 0.0) {
+        add("--width-mm", to_text(OptionValue{look.page.width}));
+        if (look.page.height > 0.0) add("--height-mm", to_text(OptionValue{look.page.height}));
+        if (look.page.font > 0.0) add("--font-pt", to_text(OptionValue{look.page.font}));
+        if (look.page.dpi > 0.0) add("--dpi", to_text(OptionValue{look.page.dpi}));
+    } else {
+        add("--size", std::to_string(look.size.width) + "x" + std::to_string(look.size.height));
+        add("--scale", to_text(OptionValue{look.size.scale}));
+    }
+    if (look.style.columns > 0) add("--columns", std::to_string(look.style.columns));
+    if (look.style.dark) words.emplace_back("--dark");
+    if (look.style.transparent) words.emplace_back("--transparent");
+    const std::vector<std::string> options = run_options(model.description(), model.default_run(), made.trajectory.run);
+    words.insert(words.end(), options.begin(), options.end());
+    return shell_line(words);
+}
+
+std::string draw(const Made& made, Look look, const std::string& format) {
+    check(look.page, "figure");
+    if (format == "pdf") need_pdf_writer("save");
+    look.style.ordered = !look.views.empty();
+    look.style.shape = double{1} * look.size.width / look.size.height;
+    const SystemDescription& description = made.system->model->description();
+    const Figure figure = publication(made.trajectory, views_of(description, look.views), look.style);
+    if (format != "png") look.page.dpi = 0.0;
+    const PictureSize size = size_of(look.page, look.size, figure, format);
+    const Origin origin{"Achilles " + version(),
+                        command_of(made, look),
+                        "",
+                        {{Source::Kind::system, made.system->name, description.source_text}}};
+    return picture_of(figure, size, notes(origin, {{made.system->name, &made.trajectory}}), format);
+}
+
+py::bytes drawn(const Made& made, std::vector<std::string> views, std::array<int, 2> size, double scale,
+                std::array<double, 4> page, int columns, bool dark, bool transparent, const std::string& format) {
+    Look look;
+    look.views = std::move(views);
+    look.size = {size[0], size[1], scale};
+    look.page = {page[0], page[1], page[2], page[3]};
+    look.style.columns = columns;
+    look.style.dark = dark;
+    look.style.transparent = transparent;
+    std::string bytes;
+    {
+        const py::gil_scoped_release released;
+        bytes = draw(made, std::move(look), format);
+    }
+    return bytes;
+}
+
+}  // namespace
+
+void bind_runs(py::module_& module) {
+    const py::call_guard<py::gil_scoped_release> released;
+    py::class_<Made, std::shared_ptr<Made>>(module, "Run")
+        .def_readonly("warnings", &Made::warnings)
+        .def_property_readonly("settings", [](const Made& m) { return m.asked.settings; })
+        .def_property_readonly("given", [](const Made& m) { return m.asked.options; })
+        .def_property_readonly("start_time", [](const Made& m) { return m.trajectory.run.options.start_time; })
+        .def_property_readonly("end_time", [](const Made& m) { return m.trajectory.end_time; })
+        .def_property_readonly("outcome", [](const Made& m) { return to_text(m.trajectory.outcome.kind); })
+        .def_property_readonly("message", [](const Made& m) { return m.trajectory.outcome.message; })
+        .def_property_readonly("seconds", [](const Made& m) { return m.trajectory.statistics.seconds; })
+        .def(
+            "remarks",
+            [](const Made& m) {
+                std::vector<std::string> sentences;
+                for (const Remark& remark : remarks(m.trajectory)) sentences.push_back(remark.sentence);
+                return sentences;
+            },
+            released)
+        .def("arrays", &arrays_of)
+        .def("values", &values_of)
+        .def(
+            "summary", [](const Made& m) { return summary(m.trajectory); }, released)
+        .def("json",
+             [](const Made& m, const std::optional<Times>& times) {
+                 const Instants instants = instants_from(times);
+                 const py::gil_scoped_release unlocked;
+                 return to_json(m.trajectory, instants);
+             })
+        .def("csv",
+             [](const Made& m, const std::optional<Times>& times, bool plain_names, bool units) {
+                 const CsvStyle style{instants_from(times), plain_names, units};
+                 const py::gil_scoped_release unlocked;
+                 return to_csv(m.trajectory, style);
+             })
+        .def("figure", &drawn);
+    module.def("simulate", &made_from);
+    module.def("equidistant", &equidistant);
+}
+
+}  // namespace achilles::python

@@ -1,0 +1,155 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <utility>
+#include <variant>
+
+#include "check/equation_sheet.hpp"
+#include "cli/assets.hpp"
+#include "cli/overrides.hpp"
+#include "expression/nearest.hpp"
+#include "model/derived_values.hpp"
+#include "model/read_system.hpp"
+#include "module.hpp"
+#include "output/wrap.hpp"
+
+namespace py = pybind11;
+
+namespace achilles::python {
+
+System::System(std::string text, std::string name_)
+    : name(std::move(name_)), model(std::make_shared<const Model>(parse_system(std::move(text), name))) {}
+
+Run run_of(const System& system, const Asked& asked) {
+    OptionOverrides overrides;
+    for (const Option& option : all_options())
+        for (const std::string& flag : {std::string(option.flag), common_flag(option)})
+            if (const auto given = asked.options.find(flag); given != asked.options.end())
+                overrides.by_flag.insert_or_assign(flag, value_from(option, flag, given->second));
+    return asked_run(system.model->description(), asked.settings, overrides);
+}
+
+std::vector<std::string> warnings_of(const System& system, const Run& run) {
+    const SystemDescription& description = system.model->description();
+    std::vector<std::string> all = warnings(run.options);
+    for (const auto& more : {outside_ranges(description, run), unseen_lines(description)})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+namespace {
+
+// A value of an option as Python has it.
+py::object value_of(const OptionValue& value) {
+    return std::visit([](const auto& one) -> py::object { return py::cast(one); }, value);
+}
+
+// The table of options: one row each, and one for each flag that gives several.
+py::list option_table() {
+    py::list rows;
+    const auto add = [&](std::string_view key, const std::string& flag, std::string_view about, const Option& option) {
+        rows.append(py::dict(py::arg("key") = key, py::arg("flag") = flag, py::arg("about") = about,
+                             py::arg("unit") = option.unit,
+                             py::arg("words") = std::vector<std::string>(option.words.begin(), option.words.end()),
+                             py::arg("default") = value_of(option.get({}))));
+    };
+    for (const Option& option : all_options()) {
+        if (const std::string common = common_flag(option);
+            common != option.flag && &option == &options_set_by(option.command)[0])
+            add(option.command, common, "all three of eps_q, eps_v and eps_t", option);
+        add(option.key, std::string(option.flag), option.about, option);
+    }
+    return rows;
+}
+
+py::dict parameters_of(const System& system) {
+    const Run run = system.model->default_run();
+    const SystemDescription& description = system.model->description();
+    py::dict values;
+    for (std::size_t i = 0; i < run.parameters.size(); ++i)
+        values[py::str(description.parameters[i].name)] = run.parameters[i];
+    const std::vector<double> derived = derived_values(*system.model, run.parameters);
+    for (std::size_t i = 0; i < derived.size(); ++i) values[py::str(description.derived[i].name)] = derived[i];
+    return values;
+}
+
+py::dict options_of(const System& system) {
+    py::dict values;
+    for (const Option& option : all_options())
+        values[py::str(std::string(option.key))] = value_of(option.get(system.model->description().options));
+    return values;
+}
+
+py::dict units_of(const System& system) {
+    const SystemDescription& description = system.model->description();
+    py::dict units;
+    for (const std::string& name : settable_names(description))
+        if (const std::string unit = unit_of(description, name); !unit.empty()) units[py::str(name)] = unit;
+    return units;
+}
+
+// The name of a coordinate, its value and its rate at the start.
+std::vector<std::tuple<std::string, double, double>> start_of(const System& system) {
+    std::vector<std::tuple<std::string, double, double>> start;
+    for (const CoordinateDescription& coordinate : system.model->description().coordinates)
+        start.emplace_back(coordinate.name, coordinate.start, coordinate.rate);
+    return start;
+}
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& list) {
+    std::vector<std::string> names;
+    for (const Named& one : list) names.push_back(one.name);
+    return names;
+}
+
+// The derived equations as displayed formulas, each under what it is: (words, LaTeX).
+std::vector<std::pair<std::string, std::string>> equations_of(const System& system) {
+    const EquationSheet sheet = equation_sheet(*system.model, system.model->default_run());
+    std::vector<std::pair<std::string, std::string>> equations;
+    std::string words;
+    for (const Block& block : sheet.blocks) {
+        const bool is_matrix = block.kind == Block::Kind::matrix;
+        if (!is_matrix && block.kind != Block::Kind::formula) {
+            if (block.kind == Block::Kind::caption || block.kind == Block::Kind::heading) words = block.words.text;
+            continue;
+        }
+        std::string right;
+        for (const auto& row : block.rows) {
+            for (std::size_t i = 0; i < row.size(); ++i) right += (i == 0 ? "" : " & ") + row[i];
+            right += " \\\\ ";
+        }
+        right = is_matrix ? "\\begin{pmatrix} " + right + "\\end{pmatrix}" : block.right;
+        equations.emplace_back(std::exchange(words, ""),
+                               block.words.latex + (block.words.latex.empty() ? "" : " = ") + right);
+    }
+    return equations;
+}
+
+}  // namespace
+
+void bind_systems(py::module_& module) {
+    py::class_<System, std::shared_ptr<System>>(module, "System")
+        .def(py::init<std::string, std::string>(), py::call_guard<py::gil_scoped_release>())
+        .def_readonly("name", &System::name)
+        .def_property_readonly("title", [](const System& s) { return s.model->description().title; })
+        .def_property_readonly("source", [](const System& s) { return s.model->description().source; })
+        .def_property_readonly("text", [](const System& s) { return s.model->description().source_text; })
+        .def_property_readonly("start", &start_of)
+        .def_property_readonly("parameters", &parameters_of)
+        .def_property_readonly("contacts", [](const System& s) { return names_of(s.model->description().constraints); })
+        .def_property_readonly("views", [](const System& s) { return names_of(s.model->description().views); })
+        .def_property_readonly("settable", [](const System& s) { return settable_names(s.model->description()); })
+        .def_property_readonly("options", &options_of)
+        .def_property_readonly("units", &units_of)
+        .def("equations", &equations_of, py::call_guard<py::gil_scoped_release>());
+    module.def("option_table", &option_table);
+    module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& names) {
+        return did_you_mean(word, names);
+    });
+    module.def("find_system", [](const std::string& name) { return find_system(name).string(); });
+    module.def("read_text", [](const std::string& file) { return read_text(file); });
+    module.def("system_names", &system_names);
+}
+
+}  // namespace achilles::python

@@ -1,0 +1,218 @@
+"""Systems, errors, the stub, README, the example, the installed module."""
+
+import ast
+import inspect
+import os
+import pathlib
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import achilles
+
+
+def test_systems(source):
+    ball = achilles.System("ball_on_sine")
+    file = source / "assets/systems/ball_on_sine.toml"
+    for same in (achilles.System.from_file(file), achilles.System(file.read_text()), pickle.loads(pickle.dumps(ball))):
+        assert same.text == ball.text and same.title == ball.title
+        assert achilles.simulate(same, end=3).to_json() == achilles.simulate("ball_on_sine", end=3).to_json()
+    assert achilles.simulate(file, end=3).to_json() == achilles.simulate(str(file), end=3).to_json()
+    assert ball.coordinates == ["x", "y"] and ball.parameters["e"] == 0.5 and ball.start["x'"] == 1.5
+    assert ball.units["x'"] == "m/s" and "height" in ball.views and ball.contacts == ["contact"]
+    assert ball.options["end_time"] == 20.0 and ball.options["method"] == "taylor"
+    assert achilles.gallery()["ball_on_sine"] == ball.title
+
+
+def test_equations_are_latex():
+    latex = achilles.System("double_pendulum")._repr_latex_()
+    assert latex.startswith("$$") and latex.endswith("$$") and "\\text{mass matrix}" in latex
+    assert "&M = \\begin{pmatrix}" in latex and "\\ddot{h}" in latex
+    for left, right in (("{", "}"), ("\\begin{", "\\end{")):
+        assert latex.count(left) == latex.count(right)
+
+
+def test_values_are_read_as_the_command_line_reads_them():
+    run = achilles.simulate("double_pendulum", set={"theta1": "30 deg", "theta2": "pi/12"}, e=np.float64(0.25), end=np.int64(2))
+    assert run.start.q.tolist() == [np.pi / 6, np.pi / 12] and run.parameters["e"] == 0.25 and run.end.t == 2
+    assert achilles.simulate("ball_on_sine", e=1 / 3).parameters["e"] == 1 / 3
+    assert achilles.simulate("ball_on_sine", end_time=2).end.t == achilles.simulate("ball_on_sine", end=2).end.t == 2
+
+
+def test_a_value_that_is_called_like_an_option_goes_into_set():
+    text = achilles.System("ball_on_floor").text.replace('"g"', '"memory"').replace("*g", "*memory")
+    ball = achilles.System(text)
+    with pytest.warns(achilles.AchillesWarning, match="memory is taken as the option; the value .* goes into set"):
+        assert achilles.simulate(ball, memory=1e8).options.memory == 1e8
+    assert achilles.simulate(ball, set={"memory": 8.0}).parameters["memory"] == 8.0
+
+
+WRONG = """title = "Ball"
+[[coordinate]]
+name = "y"
+start = 1.0
+rate = 0.0
+[lagrangian]
+kinetic = "m/2*y'^2"
+potential = "g*yy"
+[[parameter]]
+name = "m"
+value = 1.0
+[[constraint]]
+gap = "y +"
+restitution = 0.5
+"""
+
+
+def test_mistakes_of_a_file_are_told_with_their_places(tmp_path, program):
+    path = tmp_path / "wrong.toml"
+    path.write_text(WRONG)
+    with pytest.raises(achilles.InputError) as problem:
+        achilles.simulate(path)
+    error = problem.value
+    assert program("simulate", str(path), status=2).rstrip("\n").removeprefix("achilles: ") == str(error)
+    assert isinstance(error, ValueError) and error.file == str(path) and error.line == 8 and error.column == 14
+    assert error.caret == '    potential = "g*yy"\n                 ^' and "'g'" in error.message
+    assert len(error.mistakes) >= 2 and error.mistakes[0] is error and error.mistakes[-1].line == 13
+    with pytest.raises(achilles.InputError, match="^<text>:8:14: "):
+        achilles.System(WRONG)
+    with pytest.raises(achilles.InputError, match="no.such.toml"):
+        achilles.System.from_file("no/such.toml")
+
+
+@pytest.mark.parametrize("words, told", [
+    ({"ee": 0.3}, "there is no value or option 'ee'"),
+    ({"tolerence": 1e-9}, "there is no value or option 'tolerence'; did you mean 'tolerance'"),
+    ({"set": {"xdot": 1}}, "rates are written x'"),
+    ({"e": 2}, "^e=2: "),
+    ({"e": float("nan")}, "^e=nan: "),
+    ({"e": "1/0"}, "^e=1/0: "),
+    ({"method": "tailor"}, "there is no 'tailor' to choose; did you mean 'taylor'"),
+    ({"end": -1}, "^end"),
+    ({"max_steps": 1.5}, "max_steps 1.5: this is not a whole number"),
+    ({"set": {"y": -3}}, "^y=-3: "),
+])
+def test_what_is_wrong(words, told):
+    with pytest.raises(achilles.InputError, match=told) as problem:
+        achilles.simulate("ball_on_sine", **words)
+    assert "--" not in str(problem.value)
+
+
+@pytest.mark.parametrize("words, told", [
+    ({"e": [0.3]}, "e: a number or a text such as 'pi/6' is expected, not list"),
+    ({"e": None}, "e: a number or a text"),
+    ({"e": True}, "e: a number or a text"),
+    ({"e": 1j}, "e: a number or a text"),
+    ({"set": ["e=0.3"]}, "set: a dict such as"),
+    ({"e": 0.3, "set": {"e": 0.4}}, "e is given twice"),
+    ({"end": 3, "end_time": 4}, "end_time is given twice"),
+])
+def test_what_is_of_a_wrong_kind(words, told):
+    with pytest.raises(TypeError, match=told):
+        achilles.simulate("ball_on_sine", **words)
+
+
+def test_a_system_that_there_is_not():
+    with pytest.raises(achilles.InputError, match="no system 'ball_on_sin'; did you mean 'ball_on_sine'"):
+        achilles.simulate("ball_on_sin")
+    for wrong in (3, None, b"ball_on_sine", "title = 'text'\n"):
+        with pytest.raises(TypeError, match="a System, a path or a name of the gallery is expected"):
+            achilles.simulate(wrong)
+
+
+def members_of(stub):
+    return {node.name: node for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+
+
+def test_the_stub_says_what_the_module_says():
+    stub = members_of(ast.parse(pathlib.Path(achilles.__file__).with_name("__init__.pyi").read_text()))
+    assert sorted(stub) == sorted(achilles.__all__)
+    for name, node in stub.items():
+        live = getattr(achilles, name)
+        assert inspect.isclass(live) == isinstance(node, ast.ClassDef)
+        if not inspect.isclass(live):
+            check_signature(node, live)
+            continue
+        functions = [part for part in node.body if isinstance(part, ast.FunctionDef)]
+        for function in functions:
+            attribute = inspect.getattr_static(live, function.name)
+            if not function.decorator_list:
+                check_signature(function, attribute)
+        public = {key for key in vars(live) if not key.startswith("_")} - set(getattr(live, "_fields", ()))
+        assert public == {function.name for function in functions if not function.name.startswith("_")}, name
+
+
+def check_signature(node, live):
+    words = inspect.signature(live).parameters
+    arguments = node.args
+    named = [*arguments.args, *([arguments.vararg] if arguments.vararg else []), *arguments.kwonlyargs]
+    named += [arguments.kwarg] if arguments.kwarg else []
+    assert [each.arg for each in named] == list(words), node.name
+    for each in named[1:] if named and named[0].arg in ("self", "cls") else named:
+        assert each.annotation is not None, f"{node.name}: {each.arg}"
+        assert ast.unparse(ast.parse(words[each.arg].annotation)) == ast.unparse(each.annotation)
+    defaults = [ast.literal_eval(d) for d in [*arguments.defaults, *arguments.kw_defaults] if d is not None]
+    assert defaults == [word.default for word in words.values() if word.default is not word.empty], node.name
+
+
+def test_everything_public_is_explained():
+    for name in achilles.__all__:
+        live = getattr(achilles, name)
+        assert live.__doc__, name
+        for key, member in vars(live).items() if inspect.isclass(live) else ():
+            if not key.startswith("_") and (callable(member) or isinstance(member, property)):
+                assert member.__doc__, f"{name}.{key}"
+
+
+def test_every_option_of_the_table_is_an_argument(program):
+    for function in (achilles.simulate, achilles.sweep):
+        names = inspect.signature(function).parameters
+        text = program("simulate", "--help")
+        flags = {word.strip(",") for word in text.split() if word.startswith("--eps") or word in ("--end", "--method", "--memory")}
+        assert len(flags) >= 7 and {flag[2:].replace("-", "_") for flag in flags} <= set(names)
+        assert "tolerance: local error per step" in function.__doc__
+
+
+def python_of(text, heading):
+    """The indented lines below a heading of README that a Python reads."""
+    lines = text.split(heading, 1)[1].split("\n### ", 1)[0].splitlines()
+    code, is_code = [], False
+    for line in lines:
+        is_code = line.startswith("    ") or (is_code and not line)
+        if is_code:
+            code.append(line[4:])
+    return "\n".join(code)
+
+
+def test_the_example_of_readme_runs(source, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = python_of((source / "README.md").read_text(), "\n### From Python\n")
+    lines = [line for line in text.splitlines() if not line.startswith("app/run")]
+    names = {}
+    exec("\n".join(lines), names)
+    assert len(lines) >= 8 and (tmp_path / "ball.pdf").exists()
+    assert names["curve"]["zeno_time(2)"].shape == (200,)
+
+
+def test_the_example_draws_the_papers_figure(source, tmp_path):
+    picture = tmp_path / "figure4.png"
+    done = subprocess.run([sys.executable, source / "app/python/examples/figure4.py", picture], capture_output=True, text=True,
+                          env=os.environ | {"MPLBACKEND": "Agg"})
+    assert done.returncode == 0, done.stderr
+    assert "2.725142, 12.465775 s" in done.stdout and picture.stat().st_size > 30000
+
+
+def test_it_is_found_where_it_is_installed(tmp_path):
+    build = pathlib.Path(os.environ["ACHILLES_PROGRAM"]).parent
+    for component in ("python", "Unspecified"):
+        subprocess.run(["cmake", "--install", build, "--prefix", tmp_path, "--component", component], check=True,
+                       stdout=subprocess.DEVNULL)
+    (package,) = tmp_path.glob("lib/python3*/*-packages/achilles")
+    assert (package / "py.typed").exists() and (package / "__init__.pyi").exists()
+    code = "import achilles; print(achilles.__file__, achilles.simulate('ball_on_floor').figure().svg[:5])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd="/",
+                          env={"PYTHONPATH": str(package.parent)})
+    assert done.stdout.split() == [str(package / "__init__.py"), "<?xml"], done.stderr
