@@ -149,8 +149,8 @@ class Explorer {
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
             session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
-            session_.under_way() != nullptr || derives_equations(state_) || film_.is_busy() ||
-                    state_.thumbnails->is_busy()
+            session_.under_way() != nullptr || session_.sweep_job().is_busy() || derives_equations(state_) ||
+                    film_.is_busy() || state_.thumbnails->is_busy()
                 ? progress_seconds
                 : 0.0);
     }
@@ -382,6 +382,7 @@ int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     journal.insert(journal.end(), more.begin(), more.end());
     record.insert(record.end(), journal.begin(), journal.end());
     apply_all(session, journal);
+    session.settle();
     if (!options.record.empty()) job.put_text(options.record, journal_text(record));
     PanelState state = panel_state(false);
     job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {

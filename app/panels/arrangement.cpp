@@ -46,11 +46,12 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float energy = energy_in(m, left_over - above),
                 below_results = energy > 0.0F ? energy + 0.4F * between : 0.0F;
     const float height = std::max(0.0F, lower - between - top - above - below_results);
-    const bool has_plots = scene.shows("plots");
+    const bool has_plots = scene.shows("plots") || scene.shows("sweep");
     const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
     const float centre = inside - (has_plots ? right + between : 0.0F);
     parts.mechanism = {edge, top, centre, height};
-    parts.plots = {edge + centre + between, top, right, height};
+    // What runs beside the present one is what a class looks at.
+    (scene.shows("sweep") ? parts.sweep : parts.plots) = {edge + centre + between, top, right, height};
     parts.results = {edge, lower - between - below_results - results, inside, results};
     parts.energy = {edge, lower - between - energy, inside, energy};
     parts.timeline = {edge, lower, inside, timeline};
@@ -63,7 +64,8 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     if (scene.presents()) return arrange_presented(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
-    const bool has_plots = scene.shows("plots"), has_events = scene.shows("events") || scene.shows("equations");
+    const bool has_sweep = scene.shows("sweep"), has_plots = scene.shows("plots") || has_sweep;
+    const bool has_events = scene.shows("events") || scene.shows("equations");
     const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
     Arrangement parts;
     parts.bar = {0.0F, 0.0F, m.width, m.bar};
@@ -127,7 +129,23 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     parts.energy = {x, lower - energy, centre, energy};
     parts.timeline = {x, top + height - timeline, centre, timeline};
     const float plots_at = over_plots ? below(top, beside) : top;
-    parts.plots = {x + centre + between, plots_at, right, top + height - plots_at};
+    const float plots_height = top + height - plots_at;
+    parts.plots = {x + centre + between, plots_at, right, plots_height};
+    if (has_sweep) {
+        // Alone where the plots are not shown, or there is no room for both.
+        const bool with_plots = scene.shows("plots") && plots_height > 2.0F * least_plot * u + between;
+        const float sweep = with_plots ? size_of(scene.share("sweep"), m.height, 0.5F * (plots_height - between),
+                                                 least_plot * u, plots_height - between - least_plot * u)
+                                       : plots_height;
+        parts.sweep = {parts.plots.x, plots_at + plots_height - sweep, right, sweep};
+        parts.plots.height = with_plots ? plots_height - sweep - between : 0.0F;
+        if (with_plots)
+            parts.splitters.push_back({"sweep",
+                                       {parts.plots.x, parts.sweep.y - between, right, between},
+                                       false,
+                                       double{top} + double{height} + 0.5 * double{between},
+                                       -double{m.height}});
+    }
     const float events_x = events_below ? edge : x;
     parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
 

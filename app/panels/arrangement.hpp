@@ -11,7 +11,7 @@
 namespace achilles {
 
 struct Arrangement {
-    Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, events,
+    Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, sweep, events,
         status;  // of no size: not shown
     // What a hand drags to resize a panel: the gap beside it.
     struct Splitter {

@@ -19,8 +19,8 @@ struct Shown {
     const char *what, *name;
     int key;
 };
-constexpr std::array<Shown, 3> panels{
-    {{"controls", "Controls", '1'}, {"plots", "Plots", '2'}, {"events", "Events", '3'}}};
+constexpr std::array<Shown, 4> panels{
+    {{"controls", "Controls", '1'}, {"plots", "Plots", '2'}, {"events", "Events", '3'}, {"sweep", "Sweep", '4'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
@@ -125,7 +125,7 @@ bool switch_button(const std::string& name, const std::string& about, PanelState
     return pressed;
 }
 
-// A little window whose left, right or lower part is filled where the panel is shown.
+// A little window whose left, right, lower or lower right part is filled where the panel is shown.
 void panel_switch(const Session& session, const Shown& panel, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows(panel.what);
     Rectangle r;
@@ -141,8 +141,8 @@ void panel_switch(const Session& session, const Shown& panel, PanelState& state,
     const float across = 0.38F * r.width, down = 0.4F * r.height, inset = units(2.5F);
     ImVec2 low{r.x + inset, r.y + inset}, high{r.x + r.width - inset, r.y + r.height - inset};
     if (panel.key == '1') high.x = r.x + across;
-    if (panel.key == '2') low.x = r.x + r.width - across;
-    if (panel.key == '3') low.y = r.y + r.height - down;
+    if (panel.key == '2' || panel.key == '4') low.x = r.x + r.width - across;
+    if (panel.key == '3' || panel.key == '4') low.y = r.y + r.height - down;
     list->AddRectFilled(low, high, packed(shown ? text_color() : faint_color(), shown ? 1.0F : 0.35F));
 }
 
@@ -183,7 +183,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     menu("Tours", state, [&] { show_tour_items(session, state, commands); });
     menu("Help", state, [&] { show_help_items(state, commands); });
     const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
-    const float width = 4.0F * size + 3.0F * space + edge;
+    const float width = 5.0F * size + 4.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;
     const float title_at = ImGui::GetCursorPosX() + units(16.0F);
     // Where no panel tells what runs, this line does.
@@ -195,7 +195,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     if (left < title_at) return ImGui::EndMenuBar();
     ImGui::SetCursorPosX(left);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {space, 0.0F});
-    for (const std::size_t i : {0U, 2U, 1U}) panel_switch(session, panels[i], state, commands);
+    for (const std::size_t i : {0U, 2U, 1U, 3U}) panel_switch(session, panels[i], state, commands);
     theme_switch(session, state, commands);
     ImGui::PopStyleVar();
     ImGui::EndMenuBar();

@@ -90,6 +90,7 @@ void parameters(const Session& session, const Run& file, PanelState& state, Comm
                       p.range[1],
                       file.parameters[i],
                       is_angle ? degrees(1.0) : 1.0};
+        slider.varies = p.name;
         if (moved(slider, state)) commands.emplace_back(command::Set{p.name, slider.value});
     }
 }
@@ -113,6 +114,7 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
                   range[1],
                   is_rate ? file.v[at] : file.q[at],
                   is_angle ? degrees(1.0) : 1.0};
+    slider.varies = name;
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
 }
 

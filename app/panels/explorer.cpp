@@ -142,9 +142,10 @@ bool escape_pressed() { return is_pressed(key::escape, false) && !is_covered() &
 // A frame around the panel that a tour's words are about.
 void show_highlight(const std::string& panel, const Arrangement& parts) {
     const std::pair<const char*, const Rectangle*> all[] = {
-        {"bar", &parts.bar},         {"controls", &parts.controls},   {"energy", &parts.energy},
-        {"events", &parts.events},   {"mechanism", &parts.mechanism}, {"plots", &parts.plots},
-        {"results", &parts.results}, {"status", &parts.status},       {"timeline", &parts.timeline}};
+        {"bar", &parts.bar},          {"controls", &parts.controls},   {"energy", &parts.energy},
+        {"events", &parts.events},    {"mechanism", &parts.mechanism}, {"plots", &parts.plots},
+        {"results", &parts.results},  {"status", &parts.status},       {"sweep", &parts.sweep},
+        {"timeline", &parts.timeline}};
     for (const auto& [name, area] : all) {
         if (panel != name || area->width < 1.0F || area->height < 1.0F || is_covered()) continue;
         // Inside the surface, and in the space between the panels where there is some.
@@ -203,6 +204,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
         else
             show_plots(session, state, commands);
     });
+    part("sweep", parts.sweep, still_window, [&] { show_sweep(session, state, commands); });
     part("events", parts.events, still_window, [&] {
         if (session.scene().shows("equations"))
             show_equations(session, state, commands);

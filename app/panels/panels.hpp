@@ -2,6 +2,7 @@
 // and for pictures, so both show the same bytes.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -158,6 +159,28 @@ struct PlaneView {
     bool is_wrong = false;     // it was refused
 };
 
+// The limits of an axis of the sweep, as they are typed.
+struct SweepMenu {
+    SweepAxis of;  // the axis that they are of
+    std::string low, high, wrong;
+};
+
+// The sweep's picture until other runs are there, and what was asked about it last.
+struct SweepState {
+    std::shared_ptr<const SweepData> of;
+    std::shared_ptr<const Panel> panel;
+    bool dark = false;
+    std::string problem;  // why it has no picture
+    std::array<SweepMenu, 2> menus;
+    std::string print, zero;  // as they are typed
+    std::optional<Run> measured_run;
+    std::vector<std::string> measured;  // the prints
+    std::optional<double> measure;      // of that run
+    const SweepData* told_of = nullptr;
+    std::uint64_t told_point = 0;
+    std::string told;
+};
+
 // Where a hand has moved the strip of results.
 struct ResultStrip {
     std::optional<std::size_t> begin;  // the first result that is shown; nothing: as the time has it
@@ -204,6 +227,7 @@ struct PanelState {
     PlotBox box;
     HeldMechanism held;
     PlaneView plane;
+    SweepState sweep;
     ResultStrip strip;
     bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
@@ -283,6 +307,8 @@ void show_plots(const Session& session, PanelState& state, Commands& commands);
 void show_grid_bar(const Session& session, PanelState& state, Commands& commands);
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state);
 void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands);
+// Many runs beside the present one.
+void show_sweep(const Session& session, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
 // In the same place: the equations of motion, each contact's, and the Zeno conditions with their present values.
 void show_equations(const Session& session, PanelState& state, Commands& commands);

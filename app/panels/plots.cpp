@@ -354,10 +354,14 @@ void show_plots(const Session& session, PanelState& state, Commands& commands) {
         return;
     }
     const float gap = units(8.0F);
-    const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(plots.rows());
+    // Above a sweep there is no room for all rows: so many as can be read.
+    const int rows_shown = session.scene().shows("sweep")
+                               ? std::clamp(static_cast<int>(area.height / units(120.0F)), 1, plots.rows())
+                               : plots.rows();
+    const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(rows_shown);
     const float width = std::floor((area.width - gap * (columns - 1.0F)) / columns);
     const float height = std::floor((area.height - gap * (rows - 1.0F)) / rows);
-    for (int i = 0; i < static_cast<int>(session.plots().size()); ++i) {
+    for (int i = 0; i < std::min(static_cast<int>(session.plots().size()), rows_shown * plots.columns()); ++i) {
         const int column = i % plots.columns(), row = i / plots.columns();
         const Rectangle cell{area.x + static_cast<float>(column) * (width + gap),
                              area.y + static_cast<float>(row) * (height + gap), width, height};

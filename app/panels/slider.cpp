@@ -12,6 +12,7 @@
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
 #include "panels/print.hpp"
+#include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
@@ -316,6 +317,11 @@ bool moved(Slider& slider, PanelState& state) {
     const bool is_changed = slider.value != slider.original;
     point_at(slider, state);
     label(slider.label, units(label_width));
+    if (!slider.varies.empty() && ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceAllowNullID)) {
+        ImGui::SetDragDropPayload(dragged_name, slider.varies.data(), slider.varies.size());
+        ImGui::TextUnformatted(("over " + slider.label).c_str());
+        ImGui::EndDragDropSource();
+    }
     tooltip(about);
     if (is_changed) mark_changed();
     const bool was_reset = clicked(slider, state);

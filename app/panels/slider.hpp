@@ -14,6 +14,7 @@ struct Slider {
     double original = 0.0;                      // as the file has it
     double factor = 1.0;                        // to the unit that is shown: 180/pi for an angle
     int digits = 4;                             // that are shown of it, and two more
+    std::string varies{};                       // its name along an axis of the sweep; empty: it cannot be there
 };
 
 // The number between two that is written with the fewest digits: 0, else a multiple of the largest 1, 2 or 5 times a power of

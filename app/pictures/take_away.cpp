@@ -294,6 +294,12 @@ std::string command_for(const Session& session, const std::string& what) {
     }
     Words words{what == "run" ? "simulate" : "explore", name};
     const Words options = run_options(session);
+    if (what == "sweep") {  // its text is a shell's already
+        Words rest = options;
+        rest.insert(rest.end(), {"--out", stem + "-sweep.svg"});
+        return shell_line({"sweep", name}) + " " + session.sweep_text() +
+               shell_line(rest).substr(std::string_view("achilles").size());
+    }
     words.insert(words.end(), options.begin(), options.end());
     if (what == "run")
         words.insert(words.end(), {"--json", stem + ".json"});

@@ -95,14 +95,14 @@ struct Save {
                                       Field(&Save::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> shown_things{
-    "accuracy", "contours", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery",
-    "help",     "lens",     "palette",  "plane",  "plots",  "runs",      "sides",  "strobe", "trail", "velocity"};
+    "accuracy", "contours", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery", "help",
+    "lens",     "palette",  "plane",    "plots",  "runs",   "sides",     "strobe", "sweep",  "trail", "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
                        // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
                        // events); the section accuracy of the controls; in place of the mechanism the configuration
-        // plane, with contours of the energy, or of a system in space two sides; help: the card of keys and words; runs: the table
-        // of the pinned ones beside the events; the gallery; the dialog of export
+    // plane, with contours of the energy, or of a system in space two sides; help: the card of keys and words; runs: the table
+    // of the pinned ones beside the events; the gallery; the dialog of export; under the plots the sweep
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -119,6 +119,12 @@ struct ShowPlane {
     static constexpr auto said =
         Said("plane", "write: plane X Y, expressions with spaces in double quotes, or: plane default", Change::view,
              &ShowPlane::x, &ShowPlane::y);
+};
+
+struct ShowSweep {
+    std::string text;  // as on the command line, but for --set and the options: these are what the session has
+    static constexpr auto said = Said("sweep", "write: sweep \"--over e=0:0.95:512 --print zeno_time(1)\"",
+                                      Change::view, Field(&ShowSweep::text, in_quotes));
 };
 
 struct Find {
@@ -267,7 +273,7 @@ struct Present {
     static constexpr auto said =
         Said("present", "write: present on, or: present off", Change::view, Field(&Present::on, on_off));
 };
-inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots"};
+inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots", "sweep"};
 struct Size {
     std::string panel;   // the editor in place of the controls has a width of its own
     double share = 0.0;  // of the window's width, for events of its height; 0: as it fits
@@ -310,11 +316,11 @@ struct Export {
         Field(&Export::pixels, {.after = "pixels", .complaint = "{} pixels are no width"}),
         Field(&Export::dark, {.yes = "dark", .may_lack = true}), Field(&Export::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> copied_things{"explorer", "figure", "run"};
+inline const std::vector<std::string> copied_things{"explorer", "figure", "run", "sweep"};
 struct Copy {
     std::string what;  // one of copied_things: the command line that makes it goes to the clipboard
     static constexpr auto said =
-        Said("copy", "write: copy explorer, or: copy figure, or: copy run", Change::view,
+        Said("copy", "write: copy explorer, copy figure, copy run, or: copy sweep", Change::view,
              Field(&Copy::what, {.one_of = &copied_things, .complaint = "'{}' has no command{}"}));
 };
 
@@ -330,8 +336,8 @@ struct Say {
     static constexpr auto said =
         Said("say", "write: say \"a sentence\", or: say \"\"", Change::view, Field(&Say::text, in_quotes));
 };
-inline const std::vector<std::string> highlighted_panels{"bar",  "controls", "energy",  "events", "mechanism",
-                                                         "none", "plots",    "results", "status", "timeline"};
+inline const std::vector<std::string> highlighted_panels{"bar",   "controls", "energy", "events", "mechanism", "none",
+                                                         "plots", "results",  "status", "sweep",  "timeline"};
 struct Highlight {
     std::string panel;  // that a tour's words are about: a frame stands around it until something else is said
     static constexpr auto said = Said("highlight", "write: highlight plots, or: highlight none", Change::view,
@@ -351,8 +357,8 @@ struct Replay {
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::DefaultPlane,
-                 command::ShowPlane, command::Find, command::Grid, command::PlotView, command::Zoom, command::Fit,
-                 command::Range, command::AxisScale, command::ShowCurve, command::Link, command::Start,
+                 command::ShowPlane, command::ShowSweep, command::Find, command::Grid, command::PlotView, command::Zoom,
+                 command::Fit, command::Range, command::AxisScale, command::ShowCurve, command::Link, command::Start,
                  command::LookAll, command::Look, command::Camera, command::Speed, command::Loop, command::Step,
                  command::Undo, command::Redo, command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned,
                  command::Recall, command::PlotDifference, command::Lens, command::UseTheme, command::Enlarge,

@@ -63,6 +63,7 @@ constexpr std::array keys{
     Shortcut{"Ctrl+1", "controls", "Controls"},
     Shortcut{"Ctrl+2", "plots", "Plots"},
     Shortcut{"Ctrl+3", "events", "Events"},
+    Shortcut{"Ctrl+4", "sweep: many runs beside this one", "Sweep"},
     Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
     Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
     Shortcut{"Ctrl+Minus", "smaller", "Smaller"},

@@ -41,6 +41,7 @@ void Scene::forget_place() {
     if (camera_ == CameraMode::fixed) camera_ = CameraMode::fit;
     lens_.reset();
     plane_.reset();
+    sweep_.reset();
 }
 
 void Scene::perform(const command::DefaultPlane&) {
@@ -51,6 +52,11 @@ void Scene::perform(const command::DefaultPlane&) {
 void Scene::perform(const command::ShowPlane& command) {
     plane_ = command;
     shown_.insert("plane");
+}
+
+void Scene::perform(const command::ShowSweep& command) {
+    sweep_ = command.text;
+    shown_.insert("sweep");
 }
 
 void Scene::perform(const command::Show& command) {
@@ -128,6 +134,8 @@ std::vector<Command> steps_to(const Scene& scene) {
         steps.emplace_back(command::Camera{std::string(to_text(scene.camera()))});
     Scene before;
     if (scene.plane()) before.perform(*scene.plane()), steps.emplace_back(*scene.plane());
+    if (scene.sweep())
+        before.perform(command::ShowSweep{*scene.sweep()}), steps.emplace_back(command::ShowSweep{*scene.sweep()});
     for (const std::string& thing : command::shown_things)
         if (thing != "export" && scene.shows(thing) != before.shows(thing))
             steps.emplace_back(command::Show{thing, scene.shows(thing)});
@@ -154,6 +162,7 @@ std::string to_text(const Scene& scene) {
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
     if (const auto& plane = scene.plane()) text += fmt::format("plane {} | {}\n", plane->x, plane->y);
+    if (scene.sweep()) text += fmt::format("sweep {}\n", *scene.sweep());
     for (const std::string& panel : command::sized_panels)
         if (const double share = scene.share(panel); share > 0.0) text += fmt::format("size {} {:.9g}\n", panel, share);
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());

@@ -25,6 +25,8 @@ class Scene {
     bool loops() const { return loops_; }
     // What the configuration plane shows; nothing: what it has by default.
     const std::optional<command::ShowPlane>& plane() const { return plane_; }
+    // The sweep that is shown, as its command has it; nothing: what it is by default.
+    const std::optional<std::string>& sweep() const { return sweep_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
     const std::string& finds() const { return finds_; }      // letters that the palette opens with
@@ -48,6 +50,7 @@ class Scene {
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
     void perform(const command::ShowPlane& command);  // of a system that has what it names
+    void perform(const command::ShowSweep& command);  // that can be one of the system
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
@@ -60,8 +63,9 @@ class Scene {
 
     // Another system: another world, but the same taste.
     void forget_place();
-    // Another text, which has not what the plane names.
+    // Another text, which has not what the plane or the sweep names.
     void forget_plane() { plane_.reset(); }
+    void forget_sweep() { sweep_.reset(); }
 
  private:
     CameraMode camera_ = CameraMode::fit;
@@ -71,6 +75,7 @@ class Scene {
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<command::ShowPlane> plane_;
+    std::optional<std::string> sweep_;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
     std::string caption_, highlight_, finds_;

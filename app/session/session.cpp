@@ -73,6 +73,7 @@ void Session::apply(const Command& command) {
         if (!changes_nothing) error_.clear();
         if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, moment());
+        follow_sweep();
     } catch (const Forbidden&) {
         throw;
     } catch (const InputError& problem) {
@@ -208,6 +209,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     system_ = system;
     plots_ = plots;
     keep_plane();
+    keep_sweep();
     simulated_.reset();
     rerun(run);
     if (simulated_ != nullptr) return;

@@ -21,6 +21,7 @@
 #include "session/plots.hpp"
 #include "session/run_table.hpp"
 #include "session/scene.hpp"
+#include "session/sweep_job.hpp"
 #include "session/worker.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
@@ -75,7 +76,10 @@ class Session {
     void update() {
         receive_pins(0.0);
         receive(0.0);
+        sweep_job_->update(0.0);
     }
+    // Waits for all that is under way: what a picture shows is finished.
+    void settle();
     // How far the run is that was asked for last; null if it is the one that is shown.
     const Watch* under_way() const { return watch_.get(); }
     // Until then nothing is shown but its start: it is the first of its system.
@@ -110,6 +114,10 @@ class Session {
     const RunTable& run_table() const { return run_table_; }
     // What a plot draws: the present run over the pinned ones that are shown, or the difference to them.
     const Panel& drawn(std::size_t plot) const { return drawn_.empty() ? plots()[plot] : drawn_[plot]; }
+    // What the sweep varies and asks about the present run, and as its command has it; and its runs, as far as they are made.
+    Sweep sweep() const;
+    std::string sweep_text() const;
+    const SweepJob& sweep_job() const { return *sweep_job_; }
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
 
@@ -188,6 +196,7 @@ class Session {
     void perform(const command::Select& command);
     void perform(const command::Lens& command);
     void perform(const command::ShowPlane& command);
+    void perform(const command::ShowSweep& command);
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
@@ -235,6 +244,8 @@ class Session {
     void begin_document(Document document);
     void read_document();
     void keep_plane();
+    void keep_sweep();
+    void follow_sweep();
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);
@@ -280,8 +291,12 @@ class Session {
     std::vector<PinUnderWay> pins_;                 // the first was asked for first
     std::vector<std::unique_ptr<Runner>> stopped_;  // until they have forgotten what nobody wants any more
     std::function<void()> ready_;
+    std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
 };
+
+// What a sweep of a system is at first: its restitution, or else the first parameter, over its range, and the first Zeno time.
+std::string default_sweep(const SystemDescription& description);
 
 // Lets so much time pass for a session that plays, at its speed. At the end it stops or begins again.
 void play_on(Session& session, double seconds);

@@ -27,7 +27,6 @@ std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
     std::vector<SweepHeading> headings;
     for (const SweepAxis& axis : table.sweep().axes)
         headings.push_back({axis.name, unit_of_axis(table.model().description(), axis.name)});
-    }
     if (table.is_section()) headings.insert(headings.end(), {{"t", "s"}, {"contact", ""}});
     for (const Column& column : table.measures().columns())
         if (column.kind != Column::Kind::outcome) headings.push_back({column.name, column.unit});

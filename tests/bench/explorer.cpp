@@ -1,6 +1,8 @@
 // How long the explorer's hand waits: medians, of the processor's time where one thread works, else by the clock.
 //     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 200 ms
 //     bench_explorer everything what is first of these alone: everything open at once, and a hand that changes values
+//     bench_explorer sweep      a map of 512 x 512 runs: its first picture, 64 x 64 of them (taskset -c 0: on one core), 100 ms;
+//                               all of it, 6 s on two cores
 //     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
 //                               of 100 000 impacts are made one after the other
 #include <fmt/format.h>
@@ -210,12 +212,42 @@ void window() {
     report("taking a finished run in", fed);
 }
 
+// A map from the change of a slider on, as the panel sees it grow.
+void sweep() {
+    const std::pair<const char*, const char*> maps[] = {
+        {"ball_on_sine", "--over x=0:6:512 --over x'=0:3:512 --print x"},
+        {"double_pendulum", "--over e=0.1:0.9:512 --over theta1=0.2:1:512 --print theta1"}};
+    for (const auto& [system, text] : maps) {
+        Session session = test::session(system);
+        std::vector<double> first;
+        double all = 0.0;
+        for (int round = 0; round < 5; ++round) {
+            Sweep sweep = read_sweep(text, session.description());
+            sweep.base.options.end_time += 1e-9 * round;  // another one
+            SweepJob job;
+            const double begin = wall_seconds();
+            job.ask(session.model(), sweep);
+            while (!job.data() || !job.is_current() || job.data()->count() < 4096) job.update(0.0005);
+            first.push_back(1e3 * (wall_seconds() - begin));
+            if (round > 0) continue;
+            job.update({});
+            all = 1e3 * (wall_seconds() - begin);
+        }
+        say(std::string(system) + ": a map's first 64 x 64", bench::median(first), 100.0);
+        say("    all 512 x 512", all, 6000.0);
+    }
+}
+
 }  // namespace
 }  // namespace achilles
 
 int main(int count, char** words) {
     if (count > 1 && std::string(words[1]) == "window") {
         achilles::window();
+        return 0;
+    }
+    if (count > 1 && std::string(words[1]) == "sweep") {
+        achilles::sweep();
         return 0;
     }
     achilles::everything();

@@ -1,0 +1,89 @@
+// Many runs beside the present one.
+#include <algorithm>
+
+#include "expression/parse.hpp"
+#include "session/refusal.hpp"
+#include "session/session.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr std::uint64_t points = 512;  // along an axis, of the finest picture
+
+// What varies is not what the values and options of the present run are for.
+Sweep sweep_of(const std::string& text, const SystemDescription& description) {
+    Sweep sweep = read_sweep(text, description);
+    if (sweep.base != default_run(description))
+        throw refusal("--set and the options do not stand here", "the sliders say what does not vary");
+    if (sweep.axes.size() > 2) throw refusal("two axes can be shown, and no more");
+    return sweep;
+}
+
+}  // namespace
+
+std::string default_sweep(const SystemDescription& description) {
+    std::vector<const ParameterDescription*> order;
+    for (const ParameterDescription& parameter : description.parameters) order.push_back(&parameter);
+    const auto restitutes = [&](const ParameterDescription* parameter) {
+        return std::any_of(description.constraints.begin(), description.constraints.end(), [&](const auto& constraint) {
+            const std::vector<std::string> names = names_in(constraint.restitution.text);
+            return std::find(names.begin(), names.end(), parameter->name) != names.end();
+        });
+    };
+    std::stable_partition(order.begin(), order.end(), restitutes);
+    Sweep sweep;
+    sweep.base = default_run(description);
+    if (!order.empty()) {
+        const ParameterDescription& first = *order.front();
+        sweep.axes.push_back({first.name, first.range[0], first.range[1], points, false});
+    } else {
+        const CoordinateDescription& first = description.coordinates.front();
+        sweep.axes.push_back({first.name + "'", first.rate_range[0], first.rate_range[1], points, false});
+    }
+    sweep.prints = {"zeno_time(1)"};
+    return to_text(sweep, description);
+}
+
+std::string Session::sweep_text() const { return scene_.sweep().value_or(default_sweep(description())); }
+
+Sweep Session::sweep() const {
+    Sweep sweep = sweep_of(sweep_text(), description());
+    sweep.base = asked_;
+    return sweep;
+}
+
+void Session::perform(const command::ShowSweep& command) {
+    try {
+        const RunMeasures measures(system_->model, sweep_of(command.text, description()));
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(command::ShowSweep::said.usage));
+    }
+    scene_.perform(command);
+}
+
+// Unless another system has not what it names.
+void Session::keep_sweep() {
+    if (!scene_.sweep()) return;
+    try {
+        const RunMeasures measures(system_->model, sweep_of(*scene_.sweep(), description()));
+    } catch (const InputError&) {
+        scene_.forget_sweep();
+    }
+}
+
+void Session::follow_sweep() {
+    if (scene_.shows("sweep"))
+        sweep_job_->ask(system_->model, sweep());
+    else
+        sweep_job_->ask(system_->model, {});
+    sweep_job_->update(0.0);
+}
+
+void Session::settle() {
+    receive_pins({});
+    receive({});
+    sweep_job_->update({});
+}
+
+}  // namespace achilles

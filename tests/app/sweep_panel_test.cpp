@@ -1,0 +1,179 @@
+// Many runs beside the present one: what is varied, their picture coarse to fine, and the hand in it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/hands.hpp"
+#include "journal/journal.hpp"
+#include "pictures/take_away.hpp"
+#include "session/recipe.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+std::string refused(Session& session, const std::string& text) {
+    session.apply(command::ShowSweep{text});
+    return session.error();
+}
+
+Session swept(const std::string& system, const std::string& text) {
+    Session session = test::session(system);
+    session.apply(command::ShowSweep{text});
+    EXPECT_EQ(session.error(), "");
+    session.settle();
+    return session;
+}
+
+TEST(SweepPanel, begins_with_the_restitution_and_the_first_zeno_time) {
+    Session session = test::session("ball_on_sine");
+    EXPECT_EQ(session.sweep_job().data(), nullptr);
+    session.apply(command::Show{"sweep", true});
+    EXPECT_EQ(session.sweep_text(), "--over e=0:1:512 --print \"zeno_time(1)\"");
+    session.settle();
+    ASSERT_NE(session.sweep_job().data(), nullptr);
+    EXPECT_EQ(session.sweep_job().data()->count(), 512U);
+    EXPECT_EQ(session.sweep_job().share(), 1.0);
+    session.apply(command::Show{"sweep", false});
+    EXPECT_FALSE(session.sweep_job().is_busy());
+}
+
+TEST(SweepPanel, shows_what_single_runs_say) {
+    Session session = swept("ball_on_sine", "--over x'=0:3:5 --over e=0.2:0.8:4 --print \"zeno_time(1)\" --print x");
+    const SweepData& data = *session.sweep_job().data();
+    ASSERT_EQ(data.count(), 20U);
+    for (const std::size_t row : {0U, 7U, 19U}) {
+        Session single = test::session("ball_on_sine");
+        single.apply(command::Start{{{"x'", data.value(0, row)}, {"e", data.value(1, row)}}});
+        const auto& events = single.trajectory().events;
+        const auto zeno = std::find_if(events.begin(), events.end(),
+                                       [](const Event& event) { return event.kind == Event::Kind::zeno; });
+        ASSERT_NE(zeno, events.end());
+        EXPECT_NEAR(data.number(row, 0), zeno->t, 1e-8) << row;
+    }
+}
+
+TEST(SweepPanel, goes_from_coarse_to_fine) {
+    const Session session = test::session("ball_on_sine");
+    const auto counts = [&](const std::string& text) {
+        std::vector<std::uint64_t> all;
+        Sweep sweep = read_sweep(text, session.description());
+        for (const Sweep& level : coarse_to_fine(sweep)) all.push_back(level.count());
+        return all;
+    };
+    using Counts = std::vector<std::uint64_t>;
+    EXPECT_EQ(counts("--over e=0:0.9:512 --over x=0:1:512 --print x"), (Counts{256, 4096, 65536, 262144}));
+    EXPECT_EQ(counts("--over e=0:0.9:512 --print x"), (Counts{32, 128, 512}));
+    EXPECT_EQ(counts("--over e=0:0.9:128 --print x"), (Counts{32, 128}));
+    EXPECT_EQ(counts("--over e=0:0.9:20 --print x"), (Counts{20}));
+    // A section of one run: of a longer and longer one.
+    std::vector<double> ends;
+    for (const Sweep& level : coarse_to_fine(read_sweep("--at impact --print x", session.description())))
+        ends.push_back(level.base.options.end_time);
+    EXPECT_EQ(ends, (std::vector<double>{0.3125, 1.25, 5.0, 20.0}));
+}
+
+TEST(SweepPanel, is_made_anew_where_something_else_changes) {
+    Session session = swept("ball_on_sine", "--over e=0:0.9:16 --print \"zeno_time(1)\"");
+    const auto before = session.sweep_job().data();
+    session.apply(command::Set{"e", 0.7});  // the cross hair moves, the picture stays
+    session.settle();
+    EXPECT_EQ(session.sweep_job().data(), before);
+    session.apply(command::Set{"g", 5.0});
+    session.settle();
+    EXPECT_NE(session.sweep_job().data(), before);
+    EXPECT_NE(session.sweep_job().data()->number(8, 0), before->number(8, 0));
+}
+
+TEST(SweepPanel, refuses_what_cannot_be_shown_and_keeps_what_there_is) {
+    Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print x");
+    EXPECT_NE(refused(session, "--over f=0:1:8 --print x").find("'f'"), std::string::npos) << session.error();
+    EXPECT_NE(refused(session, "--over e=0:0.9:8").find("nothing is asked"), std::string::npos) << session.error();
+    EXPECT_NE(refused(session, "--over e=0:0.9:8 --print nonsense").find("nonsense"), std::string::npos);
+    EXPECT_NE(refused(session, "--over e=0:0.9:8 --print x --set g=3").find("sliders"), std::string::npos);
+    EXPECT_NE(refused(session, "--over e=0:0.9:8 --over x=0:1:8 --over y=0:1:8 --print x").find("two axes"),
+              std::string::npos);
+    EXPECT_EQ(session.sweep_text(), "--over e=0:0.9:8 --print x");
+    // Another system knows no x: it has a sweep of its own.
+    session.apply(command::Open{"double_pendulum"});
+    session.settle();
+    EXPECT_EQ(session.sweep_text(), default_sweep(session.description()));
+    EXPECT_EQ(session.sweep_job().problem(), "");
+}
+
+TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
+    Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print \"zeno_time(1)\"");
+    session.apply(command::Set{"g", 5.0});
+    Session again = test::session("ball_on_sine");
+    for (const Command& command : recipe(session)) again.apply(command);
+    EXPECT_EQ(to_text(again), to_text(session));
+    EXPECT_EQ(command_for(session, "sweep"),
+              "achilles sweep ball_on_sine --over e=0:0.9:8 --print \"zeno_time(1)\" --set g=5 --out "
+              "ball_on_sine-sweep.svg");
+}
+
+TEST(SweepPanel, takes_the_hand_to_another_run) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::ShowSweep{"--over e=0.1:0.9:9 --over x'=0:2:9 --print \"zeno_time(1)\""});
+    hands.session.settle();
+    hands.rest(3);
+    hands.point("sweep picture", 0.25);
+    EXPECT_TRUE(hands.says("Zeno point at"));
+    hands.click("sweep picture", 0.25);
+    // A quarter of the way along x; in the middle along y. Cells reach half of their width beyond the limits.
+    EXPECT_NEAR(*hands.session.value("e"), 0.1 + (0.25 * 0.9 - 0.05), 0.005);
+    EXPECT_NEAR(*hands.session.value("x'"), 1.0, 0.02);
+}
+
+TEST(SweepPanel, shows_the_present_run_on_its_curve) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::ShowSweep{"--over e=0.1:0.9:9 --print \"zeno_time(1)\""});
+    hands.session.settle();
+    hands.rest(3);
+    ASSERT_TRUE(hands.state.sweep.measure);
+    const auto& events = hands.session.trajectory().events;
+    const auto zeno =
+        std::find_if(events.begin(), events.end(), [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    ASSERT_NE(zeno, events.end());
+    EXPECT_EQ(*hands.state.sweep.measure, zeno->t);
+}
+
+TEST(SweepPanel, is_chosen_from_menus) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::Show{"sweep", true});
+    hands.rest(2);
+    hands.click("sweep y");
+    hands.click("sweep y x'");
+    EXPECT_EQ(hands.session.sweep().axes.size(), 2U);
+    EXPECT_EQ(hands.session.sweep().axes[1].name, "x'");
+    hands.press(key::escape);
+    hands.click("sweep print");
+    hands.click("sweep print outcome");
+    EXPECT_EQ(hands.session.sweep().prints, std::vector<std::string>{"outcome"});
+    hands.click("hide sweep");
+    EXPECT_FALSE(hands.session.scene().shows("sweep"));
+}
+
+TEST(SweepPanel, takes_the_name_of_a_slider_onto_an_axis) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::Show{"sweep", true});
+    hands.session.settle();
+    hands.rest(3);
+    const Rectangle slider = hands.state.places.at("set g"), picture = hands.state.places.at("sweep picture");
+    hands.hand.mouse_x = slider.x - 30.0;  // its name stands at its left
+    hands.hand.mouse_y = slider.y + 0.5 * slider.height;
+    hands.rest(2);
+    hands.hand.left = true;
+    hands.rest(2);
+    hands.hand.mouse_x = picture.x + 0.5 * picture.width;
+    hands.hand.mouse_y = picture.y + picture.height + 8.0;
+    hands.rest(3);
+    hands.hand.left = false;
+    hands.rest(2);
+    EXPECT_EQ(hands.session.sweep().axes[0].name, "g");
+}
+
+}  // namespace
+}  // namespace achilles
