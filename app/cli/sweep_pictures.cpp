@@ -14,7 +14,13 @@ namespace achilles {
 
 SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job)
     : table_(table), asked_(asked), job_(job) {
-    if (asked_.files.empty()) return;
+    if (asked_.files.empty()) {
+        for (const auto& [is_given, option] :
+             {std::pair{asked_.look.dark, "--dark"}, std::pair{asked_.look.transparent, "--transparent"},
+              std::pair{asked_.page.width > 0.0, "--width-mm"}})
+            if (is_given) throw InputError(option, {}, "this needs --out F");
+        return;
+    }
     for (const std::string& file : asked_.files) {
         if (file == "-")
             throw InputError("--out -", {}, "a picture of a sweep is written into a file", "write --out F.png");

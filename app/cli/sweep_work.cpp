@@ -54,7 +54,7 @@ void RunFailures::tell(const SweepTable& table) const {
     for (const auto& [code, kind] : kinds_) {
         std::string where, why;
         for (std::size_t axis = 0; axis < table.sweep().axes.size(); ++axis)
-            where += fmt::format("{}{} = {}", axis == 0 ? "" : ", ", table.sweep().axes[axis].name,
+            where += fmt::format("{}{} = {}", axis == 0 ? "; the first has " : ", ", table.sweep().axes[axis].name,
                                  table.sweep().value(axis, kind.first));
         try {
             table.model().check(points.run(kind.first));
@@ -62,8 +62,7 @@ void RunFailures::tell(const SweepTable& table) const {
             why = ": " + error.message;
         }
         const std::string_view outcome = RunEnd::from(code).text();
-        print_clean(stderr, "achilles: warning: {} of the runs: {}; the first has {}{}\n", kind.count, outcome, where,
-                    why);
+        print_clean(stderr, "achilles: warning: {} of the runs: {}{}{}\n", kind.count, outcome, where, why);
     }
 }
 

@@ -234,9 +234,7 @@ bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, co
 float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     if (!panel.legend || !panel.legend_above) return 0.0F;
     const KeyLines keys(keys_of(panel), plot_width, m);
-    const float line = panel.title.empty() ? 0.55F : 1.35F;  // that is there already
-    const float spare =
-        title_beside(panel, keys, plot_width, m) ? m.text * line - (panel.title.empty() ? m.gap : 0.0F) : 0.0F;
+    const float spare = title_beside(panel, keys, plot_width, m) ? m.text * 1.35F : 0.0F;
     return std::max(keys.height(m) - spare, 0.0F);
 }
 
@@ -269,7 +267,12 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
 }
 
 Grid grid_of(const Figure& figure, Rectangle area, const Metrics& m) {
-    return {figure, area, m, [&](const Panel& panel, float width) { return room_of_legend(panel, width, m); }};
+    // The first line of a legend stands where a title would; in a card there is room for it.
+    const auto instead_of_title = [&](const Panel& panel) {
+        return panel.legend && panel.legend_above && panel.title.empty() ? 0.8F * m.text + m.gap : 0.0F;
+    };
+    return {figure, area, m,
+            [&](const Panel& panel, float width) { return room_of_legend(panel, width, m) + instead_of_title(panel); }};
 }
 
 // Takes the lines of the figure's own legend off the top of the area.

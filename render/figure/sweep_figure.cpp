@@ -49,6 +49,9 @@ void check_drawn(const SweepData& data, const SweepLook& look) {
         refuse("a diagram of a section needs a number along its axis", "--print an expression");
     if (axes > 2 || (axes == 0 && form != Form::section))
         refuse(fmt::format("a sweep over {} axes has no figure", axes), "one --over is drawn as curves, two as a map");
+    if (!data.is_section() && data.sweep.count() > most_drawn_rows)
+        refuse(fmt::format("{} runs are more rows than a figure has", data.sweep.count()),
+               fmt::format("at most {} are drawn", most_drawn_rows));
     if (form != Form::map) return;
     for (const SweepAxis& axis : data.sweep.axes)
         if (axis.count > most_map_side)

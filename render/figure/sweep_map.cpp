@@ -1,4 +1,6 @@
 // A sweep over two axes: a cell for each of its points.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -94,11 +96,33 @@ void add_contours(const SweepData& data, const Grid2& grid, const Theme& theme, 
 
 }  // namespace
 
+namespace {
+
+// The limits that colours are given to. A few numbers far from all others would take them from the rest: where the last in a
+// thousand at either end stretch what there is by more than a half, they are left beyond.
+std::array<double, 2> limits_of_colors(const SweepColumn& column) {
+    constexpr double share = 1e-3, stretch = 1.5;
+    const std::array<double, 2> all = column.range();
+    std::vector<double> numbers = column.numbers();
+    const auto few = static_cast<std::ptrdiff_t>(share * static_cast<double>(numbers.size()));
+    if (few < 1) return all;
+    std::nth_element(numbers.begin(), numbers.begin() + few, numbers.end());
+    const double low = numbers[static_cast<std::size_t>(few)];
+    std::nth_element(numbers.begin(), numbers.end() - 1 - few, numbers.end());
+    const double high = *(numbers.end() - 1 - few);
+    return high > low && all[1] - all[0] > stretch * (high - low) ? std::array<double, 2>{low, high} : all;
+}
+
+}  // namespace
+
 NumberColors::NumberColors(const SweepColumn& column, const SweepLook& look) : table(number_colors(256)) {
-    std::array<double, 2> range = look.range ? *look.range : column.range();
+    const std::array<double, 2> range = look.range ? *look.range : limits_of_colors(column);
     bar.axis.label = column.label();
     set_ticks(bar.axis, range[0], range[1], 0.0);
     bar.colors = table;
+    const std::array<double, 2> all = column.range();
+    if (all[0] < bar.axis.low) bar.axis.label += fmt::format(", least {:.4g}", all[0]);
+    if (all[1] > bar.axis.high) bar.axis.label += fmt::format(", greatest {:.4g}", all[1]);
 }
 
 Color NumberColors::operator()(double value) const {

@@ -54,15 +54,20 @@ std::string words_of(const std::string& print) {
 
 std::string SweepColumn::name() const { return kind_ == Kind::number ? words_of(name_) : name_; }
 
+std::vector<double> SweepColumn::numbers() const {
+    std::vector<double> all;
+    all.reserve(data_->count());
+    for (std::size_t row = 0; row < data_->count(); ++row)
+        if (const double x = number(row); std::isfinite(x)) all.push_back(x);
+    return all;
+}
+
 std::array<double, 2> SweepColumn::range() const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-    std::array<double, 2> range{nan, nan};
-    for (std::size_t row = 0; row < data_->count(); ++row) {
-        const double x = number(row);
-        if (!std::isfinite(x)) continue;
-        range = {std::fmin(range[0], x), std::fmax(range[1], x)};
-    }
-    return range;
+    const std::vector<double> all = numbers();
+    if (all.empty()) return {nan, nan};
+    const auto [low, high] = std::minmax_element(all.begin(), all.end());
+    return {*low, *high};
 }
 
 std::optional<std::uint64_t> SweepColumn::code(std::size_t row) const {

@@ -24,6 +24,8 @@ class SweepColumn {
     std::string label() const;
     const std::string& unit() const { return unit_; }
     double number(std::size_t row) const { return data_->number(row, *number_); }
+    // All that there are, in no order.
+    std::vector<double> numbers() const;
     // The least and the greatest number; [nan, nan] without any.
     std::array<double, 2> range() const;
     // Of a class, what is the same for rows of one; nothing: it has no value.

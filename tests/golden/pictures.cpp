@@ -10,6 +10,7 @@
 #include "cli/commands/commands.hpp"
 #include "figure/animation.hpp"
 #include "figure/compose.hpp"
+#include "figure/sweep_figure.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
@@ -114,6 +115,20 @@ std::vector<Layer> frame_layers(const fs::path& system) {
     return {{"figure.txt", to_text(animation.at(3.0 * step))}, {image_name, frames.image("frame_00003.png")}};
 }
 
+// The file's line is a system and what `achilles sweep` is asked of it.
+std::vector<Layer> sweep_layers(const fs::path& file) {
+    std::string line = test::content(file);
+    line.erase(line.find_last_not_of('\n') + 1);
+    const std::size_t space = line.find(' ');
+    const auto model = std::make_shared<const Model>(read_system(find_system(line.substr(0, space))));
+    const SweepTable table(model, read_sweep(line.substr(space + 1), model->description()));
+    SweepData data(table);
+    data.add(table.rows(0, table.sweep().count()));
+    const Made made(fmt::format("sweep {} --size {}x{} --scale {} --out {}", line, figure_width, figure_height,
+                                figure_size, image_name));
+    return {{"figure.txt", to_text(compose_sweep(data))}, {image_name, made.image(image_name)}};
+}
+
 template <class Make>
 void add_files(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder, const char* extension,
                Make make) {
@@ -131,6 +146,7 @@ std::vector<Picture> pictures() {
         all.push_back({"figure/" + system, [system] { return figure_layers(system); }});
     all.push_back({"paper", paper_layers});
     add_files(all, "frame", place().goldens / "frame", ".toml", frame_layers);
+    add_files(all, "sweep", place().goldens / "sweep", ".sweep", sweep_layers);
     add_files(all, "explorer", place().goldens / "explorer", ".journal", explorer_layers);
     add_files(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals", ".journal", explorer_layers);
     std::sort(all.begin(), all.end(), [](const Picture& a, const Picture& b) { return a.name < b.name; });

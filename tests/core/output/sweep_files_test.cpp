@@ -1,6 +1,7 @@
 // The rows of a sweep as bytes, and the log that they are kept in.
 #include "output/sweep_files.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -51,6 +52,21 @@ TEST_F(SweepFiles, KeepRowsAsBytes) {
             EXPECT_THROW(rows_from(bytes.substr(0, size), table), std::runtime_error) << size;
         EXPECT_THROW(rows_from(bytes + "x", table), std::runtime_error);
     }
+}
+
+// A section of one run: nothing varies.
+TEST_F(SweepFiles, MayHaveNoAxis) {
+    const auto model = test::load("ball_on_sine");
+    const std::string text = "--print x --at impact --end 3";
+    const SweepTable table(model, read_sweep(text, model->description()));
+    EXPECT_EQ(to_text(table.sweep(), model->description()), text);
+    EXPECT_EQ(table.sweep().count(), 1u);
+    EXPECT_EQ(sweep_csv_heading(table, true), "t,contact,x,outcome\ns,,m,\n");
+    const Rows rows = table.rows(0, 1);
+    ASSERT_GT(rows.count(), 1u);
+    EXPECT_EQ(sweep_csv(table, rows).rfind(fmt::format("{}", rows.times[0]), 0), 0u);
+    EXPECT_THROW(read_sweep("--print x", model->description()), InputError);
+    EXPECT_THROW(read_sweep("--print x --at impact --random 4", model->description()), InputError);
 }
 
 TEST_F(SweepFiles, AreReadBackFromTheLog) {

@@ -10,6 +10,7 @@
 #include "core/systems.hpp"
 #include "simulate/least_gap.hpp"
 #include "study/chunks.hpp"
+#include "study/sweep_data.hpp"
 
 namespace achilles {
 namespace {
@@ -113,6 +114,32 @@ TEST(SweepTable, IsTheSameInAnyChunks) {
         EXPECT_EQ(parts.ends, whole.ends);
         EXPECT_EQ(parts.signatures, whole.signatures);
         EXPECT_TRUE(same(parts.times, whole.times)) << text;
+    }
+}
+
+// Data filled by chunks or row by row is that of the whole table.
+TEST(SweepData, IsFilledByAndBy) {
+    for (const char* text : {"--over x=-3:3:5 --over y=-2:2:3 --print \"x'\" --print held --end 3",
+                             "--over x=-3:3:5 --over y=1:2:2 --print \"x'\" --print y --at impact --end 3"}) {
+        const SweepTable table = table_of("ball_on_sine", text);
+        const Rows whole = table.rows(0, table.sweep().count());
+        SweepData chunks(table), rows(table);
+        for (std::uint64_t i = 0; i < table.sweep().count(); ++i) chunks.add(table.rows(i, 1));
+        for (std::size_t row = 0; row < whole.count(); ++row) rows.add(whole, row);
+        for (const SweepData* data : {&chunks, &rows}) {
+            EXPECT_EQ(data->count(), whole.count());
+            EXPECT_EQ(data->rows.points, whole.points);
+            EXPECT_EQ(data->rows.held, whole.held);
+            EXPECT_EQ(data->rows.ends, whole.ends);
+            EXPECT_EQ(data->rows.signatures, whole.signatures);
+            EXPECT_EQ(data->rows.contacts, whole.contacts);
+            EXPECT_EQ(data->rows.times.size(), whole.times.size());
+            ASSERT_EQ(data->rows.numbers.size(), whole.numbers.size());
+            for (std::size_t i = 0; i < whole.numbers.size(); ++i)
+                EXPECT_TRUE(data->rows.numbers[i] == whole.numbers[i] || is_nan(whole.numbers[i]));
+        }
+        EXPECT_EQ(chunks.names, (std::vector<std::string>{"x(0)", "y(0)"}));
+        EXPECT_EQ(chunks.units, (std::vector<std::string>{"m", "m"}));
     }
 }
 

@@ -1,0 +1,300 @@
+// Figures of sweeps, in numbers and text: gaps, breaks, cells, contours, classes, dots, and what has no figure.
+#include "figure/sweep_figure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "figure/color_table.hpp"
+#include "figure/layout.hpp"
+#include "figure/palette.hpp"
+#include "figure/sweep_panels.hpp"
+#include "model/read_system.hpp"
+#include "render/support.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+namespace {
+
+constexpr double nothing_there = std::numeric_limits<double>::quiet_NaN();
+
+// Data of a table that nobody computed: one number and held, over a grid.
+SweepData grid(std::vector<SweepAxis> axes, const std::vector<double>& numbers,
+               const std::vector<std::uint64_t>& signatures) {
+    SweepData data;
+    for (const SweepAxis& axis : axes)
+        data.names.push_back(axis.name), data.units.push_back(axis.name == "e" ? "" : "m/s^2");
+    data.sweep.axes = std::move(axes);
+    data.columns = {{RunMeasures::Column::Kind::number, "zeno_time(2)", "s"},
+                    {RunMeasures::Column::Kind::held, "held", ""}};
+    data.numbers = 1;
+    data.contacts = {"floor", "wall"};
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        data.rows.points.push_back(i);
+        data.rows.numbers.push_back(numbers[i]);
+        data.rows.held.push_back(numbers[i] > 2.0 ? ContactSet::of(0) : ContactSet());
+        data.rows.ends.push_back(std::isnan(numbers[i]) ? RunEnd() : RunEnd(Outcome::Kind::end_time));
+        data.rows.signatures.push_back(signatures[i]);
+    }
+    return data;
+}
+
+SweepLook only(std::size_t column) {
+    SweepLook look;
+    look.columns = {column};
+    return look;
+}
+
+// Its pieces, as the x of their points.
+std::vector<std::vector<double>> pieces(const Curve& curve) {
+    std::vector<std::vector<double>> all(1);
+    for (const Point& p : curve.points) {
+        if (std::isnan(p.x))
+            all.emplace_back();
+        else
+            all.back().push_back(p.x);
+    }
+    std::erase_if(all, [](const auto& piece) { return piece.empty(); });
+    return all;
+}
+
+TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
+    const SweepData data =
+        grid({{"e", 0.0, 0.7, 8, false}}, {1, 2, 3, nothing_there, 5, 6, 9, 10}, {1, 1, 1, 1, 1, 1, 2, 2});
+    const Figure figure = compose_sweep(data, only(0));
+    ASSERT_EQ(figure.panels.size(), 1u);
+    const Panel& panel = figure.panels[0];
+    ASSERT_EQ(panel.curves.size(), 1u);
+    const auto found = pieces(panel.curves[0]);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].size(), 3u);
+    EXPECT_EQ(found[1].size(), 2u);
+    EXPECT_EQ(found[2].size(), 2u);
+    EXPECT_DOUBLE_EQ(found[2][0], 0.6);
+    EXPECT_EQ(panel.x.label, "\U0001D452");
+    EXPECT_EQ(panel.y.label, "Zeno time 2 (s)");
+    EXPECT_EQ(panel.x.low, 0.0);
+    EXPECT_EQ(panel.x.high, 0.7);
+    // One bar, in the middle between the two.
+    ASSERT_EQ(panel.markers.size(), 1u);
+    EXPECT_EQ(panel.markers[0].label, sequence_changes);
+    ASSERT_EQ(panel.markers[0].points.size(), 1u);
+    EXPECT_NEAR(panel.markers[0].points[0].x, 0.55, 1e-12);
+}
+
+TEST(SweepCurve, shows_a_point_that_stands_alone) {
+    const SweepData data = grid({{"e", 0.0, 0.4, 5, false}}, {1, nothing_there, 3, nothing_there, 5}, {1, 1, 1, 1, 1});
+    const Panel panel = compose_sweep(data, only(0)).panels[0];
+    ASSERT_EQ(panel.markers.size(), 1u);
+    EXPECT_EQ(panel.markers[0].points.size(), 3u);
+}
+
+TEST(SweepCurve, has_a_logarithmic_axis_where_the_sweep_has) {
+    const Panel panel = compose_sweep(grid({{"g", 1e-3, 1.0, 4, true}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(0)).panels[0];
+    EXPECT_TRUE(panel.x.logarithmic);
+    EXPECT_EQ(panel.x.label, "\U0001D454 (m/s\u00B2)");
+    EXPECT_NEAR(panel.curves[0].points[1].x, 1e-2, 1e-12);
+}
+
+TEST(SweepCurve, of_a_class_is_a_bar_for_each) {
+    const Panel panel = compose_sweep(grid({{"e", 0.0, 0.3, 4, false}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(1)).panels[0];
+    ASSERT_EQ(panel.curves.size(), 2u);
+    EXPECT_EQ(panel.y.ticks[0].label, "no contact");
+    EXPECT_EQ(panel.y.ticks[1].label, "floor");
+    EXPECT_NEAR(panel.curves[0].points[1].x, 0.15, 1e-12);
+    EXPECT_NEAR(panel.curves[1].points[0].x, 0.15, 1e-12);
+}
+
+// The first axis goes to the right, the second upwards; half of an outer cell is outside.
+TEST(SweepMap, has_a_cell_for_every_point) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 2.0, 0.0, 3, false}}, {0, 1, 2, 3, 4, nothing_there},
+                                {1, 1, 1, 1, 1, 2});
+    const Panel panel = compose_sweep(data, only(0)).panels[0];
+    ASSERT_NE(panel.raster.cells, nullptr);
+    const Cells& cells = *panel.raster.cells;
+    ASSERT_EQ(cells.columns, 2);
+    ASSERT_EQ(cells.rows, 3);
+    // The second axis runs downwards, so that its first value, 2, is at the top.
+    const std::vector<Color> table = number_colors(256);
+    EXPECT_EQ(cells.colors[0], table.front());
+    EXPECT_EQ(cells.colors[1], table[191]) << "three quarters of the way";
+    EXPECT_EQ(cells.colors[3], table.back());
+    EXPECT_EQ(cells.colors[2], table[64]);
+    EXPECT_EQ(cells.colors[4], table[128]);
+    EXPECT_EQ(cells.colors[5].a, 0) << "nothing is clear, and hatched";
+    EXPECT_EQ(panel.hatch.label, "no value");
+    EXPECT_EQ(panel.raster.left, -0.5);
+    EXPECT_EQ(panel.raster.right, 1.5);
+    EXPECT_EQ(panel.raster.bottom, -0.5);
+    EXPECT_EQ(panel.raster.top, 2.5);
+    EXPECT_EQ(panel.x.low, 0.0);
+    EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s)");
+    EXPECT_EQ(panel.color_bar.axis.low, 0.0);
+    EXPECT_EQ(panel.color_bar.axis.high, 4.0);
+    // The line between the last cell and its two neighbours.
+    ASSERT_EQ(panel.curves.size(), 2u);
+    const std::vector<Point>& line = panel.curves[1].points;
+    ASSERT_EQ(line.size(), 5u);
+    EXPECT_EQ(line[0].x, 0.5);
+    EXPECT_EQ(line[0].y, -0.5);
+    EXPECT_EQ(line[1].y, 0.5);
+    EXPECT_EQ(line[3].y, 0.5);
+    EXPECT_EQ(line[4].x, 1.5);
+}
+
+// Two of many that are far from the rest do not take the colours from them, and are told.
+TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
+    std::vector<double> numbers;
+    for (int i = 0; i < 2000; ++i) numbers.push_back(i % 100);
+    numbers[17] = 5000.0;
+    const SweepData data =
+        grid({{"e", 0.0, 1.0, 40, false}, {"g", 0.0, 2.0, 50, false}}, numbers, std::vector<std::uint64_t>(2000, 1));
+    Panel panel = compose_sweep(data, only(0)).panels[0];
+    EXPECT_EQ(panel.color_bar.axis.low, 0.0);
+    EXPECT_EQ(panel.color_bar.axis.high, 99.0);
+    EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s), greatest 5000");
+    SweepLook look = only(0);
+    look.range = std::array<double, 2>{0.0, 5000.0};
+    panel = compose_sweep(data, look).panels[0];
+    EXPECT_EQ(panel.color_bar.axis.high, 5000.0);
+    EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s)");
+}
+
+TEST(SweepMap, has_room_left_for_rows_that_are_not_there_yet) {
+    SweepData data =
+        grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 3, false}}, {0, 1, 2, 3, 4, 5}, {1, 1, 1, 1, 1, 1});
+    Rows rows = data.rows;
+    data.rows = {};
+    data.add(rows, 4);
+    data.add(rows, 1);
+    const Panel panel = compose_sweep(data, only(0)).panels[0];
+    EXPECT_EQ(panel.raster.cells->colors[3], number_color(1.0));
+    EXPECT_EQ(panel.raster.cells->colors[0], light_theme().background);
+    EXPECT_TRUE(panel.hatch.label.empty());
+}
+
+TEST(SweepMap, of_classes_has_the_hues_of_phases_and_names) {
+    const SweepData data =
+        grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, nothing_there}, {1, 1, 1, 1});
+    const Panel panel = compose_sweep(data, only(1)).panels[0];
+    const Theme theme = light_theme();
+    EXPECT_EQ(panel.raster.cells->colors[0], phase_color(theme, Phase::Kind::hybrid));
+    EXPECT_EQ(panel.raster.cells->colors[3], phase_color(theme, Phase::Kind::constrained));
+    EXPECT_EQ(panel.markers[0].label, "no contact");
+    EXPECT_EQ(panel.markers[1].label, "floor");
+    EXPECT_TRUE(panel.color_bar.colors.empty());
+}
+
+TEST(SweepMap, of_sequences_counts_them) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {7, 9, 9, 9});
+    const Panel panel = compose_sweep(data, only(sequence_column)).panels[0];
+    EXPECT_EQ(panel.markers[0].label, "1. (75 %)");
+    EXPECT_EQ(panel.markers[1].label, "2. (25 %)");
+}
+
+std::shared_ptr<const Model> model_of(const std::string& system) {
+    return std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + system + ".toml"));
+}
+
+SweepData data_of(const std::string& system, const std::string& text, bool with_rows = true) {
+    const auto model = model_of(system);
+    const SweepTable table(model, read_sweep(text, model->description()));
+    SweepData data(table);
+    if (with_rows) data.add(table.rows(0, table.sweep().count()));
+    return data;
+}
+
+TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {
+    const SweepData data = data_of("ball_on_vibrating_table", "--over a=0.07:0.1:60 --print y --at impact --end 30");
+    const Panel panel = compose_sweep(data).panels[0];
+    ASSERT_GT(data.count(), 3000u);
+    EXPECT_EQ(panel.dots.points.size(), data.count());
+    EXPECT_EQ(panel.dots.columns, 60);
+    EXPECT_EQ(panel.markers[0].label, "at every impact; darker where there are more (logarithm)");
+}
+
+TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
+    const SweepData data = data_of("ball_on_sine", "--print x --print \"x'\" --at impact --end 6");
+    ASSERT_GT(data.count(), 3u);
+    const Panel panel = compose_sweep(data).panels[0];
+    EXPECT_EQ(panel.x.label, "\U0001D465 (m)");
+    ASSERT_EQ(panel.markers.size(), 1u);
+    EXPECT_EQ(panel.markers[0].points.size(), data.count());
+    EXPECT_EQ(panel.markers[0].points[1].y, data.number(1, 1));
+}
+
+TEST(SweepSamples, stand_where_they_are) {
+    const SweepData data =
+        data_of("ball_on_sine", "--over x=-3:3 --over y=-1:2 --random 40 --print x --print held --end 3");
+    const Figure figure = compose_sweep(data);
+    ASSERT_EQ(figure.panels.size(), 2u);
+    std::size_t points = 0;
+    std::set<std::string> labels;
+    for (const Markers& markers : figure.panels[0].markers)
+        points += markers.points.size(), labels.insert(markers.label);
+    EXPECT_EQ(points, 40u);
+    EXPECT_EQ(figure.panels[0].x.label, "\U0001D465(0) (m)");
+    EXPECT_FALSE(figure.panels[0].color_bar.colors.empty());
+    EXPECT_TRUE(figure.panels[1].color_bar.colors.empty());
+}
+
+// A dot is darker the more points are in it, by the logarithm.
+TEST(SweepDots, are_shaded_by_the_logarithm_of_their_number) {
+    Panel panel;
+    panel.x.high = panel.y.high = 10.0;
+    panel.dots.ink = {0, 0, 0, 255};
+    panel.dots.points.push_back({1.0, 1.0});
+    panel.dots.points.insert(panel.dots.points.end(), 10, {5.0, 5.0});
+    panel.dots.points.insert(panel.dots.points.end(), 100, {9.0, 9.0});
+    panel.dots.points.push_back({nothing_there, 3.0});
+    panel.dots.points.push_back({11.0, 3.0});
+    Sheet sheet;
+    layout(
+        panel, Figure(), [](const std::string&, float) { return 10.0F; }, {0, 0, 300, 200}, 1.0, sheet);
+    std::multiset<int> alphas;
+    for (const auto& item : sheet)
+        if (const auto* tiles = std::get_if<Tiles>(&item))
+            for (const Color& c : tiles->cells->colors)
+                if (c.a > 0) alphas.insert(c.a);
+    EXPECT_EQ(alphas, (std::multiset<int>{128, 191, 255}));
+}
+
+TEST(SweepFigure, has_its_bar_inside_the_picture) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
+    const auto width = [](const std::string& label, float size) {
+        return 0.6F * size * static_cast<float>(label.size());
+    };
+    for (const Rectangle area : {Rectangle{0, 0, 1200, 800}, Rectangle{0, 0, 400, 300}}) {
+        float right = 0;
+        for (const auto& item : layout(compose_sweep(data, only(0)), width, area, 1.0))
+            if (const auto* tiles = std::get_if<Tiles>(&item))
+                right = std::max(right, tiles->clip.x + tiles->clip.width);
+        EXPECT_GT(right, 0.7F * area.width);
+        EXPECT_LT(right, area.width - 14.0F);
+    }
+}
+
+TEST(SweepFigure, says_what_has_none) {
+    const auto refusal = [](const std::string& text) -> std::string {
+        try {
+            check_drawn(data_of("ball_on_sine", text, false), {});
+        } catch (const InputError& error) {
+            return error.message;
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --over y=1:2:3 --print t"), "a sweep over 3 axes has no figure");
+    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --print t --at impact"), "a section over 2 axes has no figure");
+    EXPECT_EQ(refusal("--over e=0:1:3 --print held --at impact"),
+              "a diagram of a section needs a number along its axis");
+    EXPECT_EQ(refusal("--print t --at impact"), "a section without an axis is drawn as one print over another");
+    EXPECT_EQ(refusal("--over e=0:1:5000 --over x=0:1:3 --print t"),
+              "5000 values of e are more than a map has cells along a side");
+    EXPECT_EQ(refusal("--over e=0:1:5000 --print t"), "");
+    EXPECT_EQ(refusal("--over e=0:1 --over x=0:1 --random 9 --print t"), "");
+}
+
+}  // namespace
+}  // namespace achilles
