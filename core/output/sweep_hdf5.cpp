@@ -15,25 +15,13 @@
 
 namespace achilles {
 
-namespace {
-
-using Column = RunMeasures::Column;
-
-// The names of /values, in the order of the columns.
-std::vector<std::string> value_names(const SweepTable& table) {
-    std::vector<std::string> names;
-    if (table.is_section()) names = {"t", "contact"};
-    for (const Column& column : table.measures().columns())
-        if (column.kind != Column::Kind::outcome) names.push_back(column.name);
-    names.emplace_back("outcome");
-    return names;
-}
-
-}  // namespace
-
 // A print with '/' is a path: /values/y/2 is read as it was typed, and nothing else can stand at /values/y.
 std::string fault_of_hdf5(const SweepTable& table) {
-    const std::vector<std::string> names = value_names(table);
+    std::vector<std::string> names;  // of /values
+    if (table.is_section()) names = {"t", "contact"};
+    for (const auto& column : table.measures().columns())
+        if (column.kind != RunMeasures::Column::Kind::outcome) names.push_back(column.name);
+    names.emplace_back("outcome");
     for (std::size_t i = 0; i < names.size(); ++i)
         for (std::size_t k = 0; k < names.size(); ++k)
             if (i != k && (names[i] == names[k] || names[k].starts_with(names[i] + "/")))
@@ -55,6 +43,8 @@ void write_hdf5(const std::string&, const SweepTable&, const SweepOrigin&, const
 #else
 
 namespace {
+
+using Column = RunMeasures::Column;
 
 // What is used of the library.
 class Library {

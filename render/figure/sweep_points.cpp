@@ -37,7 +37,7 @@ void add_points(std::vector<Point> points, const Color& color, Panel& panel, con
     const bool are_few = points.size() <= most_markers;
     if (are_few) markers.points = std::move(points);
     if (!what.empty()) {
-        markers.label = are_few ? what : what + "; darker where there are more (logarithm)";
+        markers.label = are_few ? what : what + "; stronger where there are more (logarithm)";
         panel.legend = panel.legend_above = true;
     }
     if (!are_few) panel.dots = {std::move(points), {}, color, 0, 0.0, 0.0};

@@ -56,17 +56,16 @@ namespace {
 // The dots of a plot area: a raster as wide as the places of the points, or as fine as a pen.
 struct DotGrid {
     DotGrid(const Dots& dots, Rectangle plot, const PanelMap& map, const Metrics& m) {
-        // A dot of 0.7 points is the finest pen of a page 1200 pixels wide.
-        height = width = std::max(1.0, std::round(0.7 * m.scale));
+        // A dot of 0.7 points is the finest pen of a page 1200 pixels wide. Where places are far apart it is twice as large.
+        const double pen = std::max(1.0, std::round(0.7 * m.scale)), widest = 3.0 * pen;
+        const double from = map.x(dots.left),
+                     place = dots.columns > 0 ? (map.x(dots.right) - from) / dots.columns : 0.0;
         left = plot.x, top = plot.y;
+        width = height = place > widest ? 2.0 * pen : pen;
         columns = cells(plot.width / width), rows = cells(plot.height / height);
-        constexpr double widest = 3.0;  // dots
-        const double from = map.x(dots.left), to = map.x(dots.right);
-        if (dots.columns < 1 || !(to - from <= widest * width * dots.columns) || !(to - from >= width * dots.columns))
-            return;
-        left = from;
+        if (!(place >= pen && place <= widest)) return;
+        left = from, width = place;
         columns = static_cast<std::size_t>(dots.columns);
-        width = (to - from) / dots.columns;
     }
     // What is on the rim may miss it by rounding.
     std::optional<std::size_t> place(const Point& at) const {

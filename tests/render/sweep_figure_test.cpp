@@ -212,7 +212,7 @@ TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {
     ASSERT_GT(data.count(), 3000u);
     EXPECT_EQ(panel.dots.points.size(), data.count());
     EXPECT_EQ(panel.dots.columns, 60);
-    EXPECT_EQ(panel.markers[0].label, "at every impact; darker where there are more (logarithm)");
+    EXPECT_EQ(panel.markers[0].label, "at every impact; stronger where there are more (logarithm)");
 }
 
 TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
