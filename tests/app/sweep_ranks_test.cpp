@@ -135,7 +135,7 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
 // What other processes make of an order, from its text alone.
 TEST(SweepWork, IsTheSameFromItsOrder) {
     const auto description = read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
-    Run base = default_run(description);
+    auto base = default_run(description);
     for (const char* set : {"e=1/3", "x'=1.3", "y=2.1"}) assign(base, description, set);
     base.options.end_time = 7.0;
     base.options.tolerance = 1e-9;

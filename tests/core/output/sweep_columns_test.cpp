@@ -26,7 +26,7 @@ TEST(Library, SetsValuesByName) {
     NamedRun run(model->description());
     EXPECT_EQ(run, model->default_run());
     run.set("e", 0.3).set("x'", 1.2).set("x", -0.5);
-    Run by_hand = model->default_run();
+    auto by_hand = model->default_run();
     assign(by_hand, model->description(), "e=0.3");
     assign(by_hand, model->description(), "x'=1.2");
     assign(by_hand, model->description(), "x=-0.5");
