@@ -189,7 +189,8 @@ TEST(Data, HoldsTheInstantsThatWereAskedFor) {
     EXPECT_EQ(root["samples"][4]["q"], root["end"]["q"]);
     EXPECT_EQ(root["start"]["v"], (json{1.5, 0.0}));
     const std::string csv = content(folder.path() / "a.csv");
-    EXPECT_EQ(csv.rfind("t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j\n0,hybrid,0,2,1.5,0,", 0), 0u) << csv;
+    EXPECT_EQ(csv.rfind("t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j,event\n0,hybrid,0,2,1.5,0,", 0), 0u)
+        << csv;
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 6);
     folder.put("t.txt", "3\n1\n");
     const Answer answer = folder.run("simulate ball_on_sine --times t.txt --json -");

@@ -48,6 +48,20 @@ def test_a_map_has_the_shape_of_the_grid(program):
         assert all(other[name].tobytes() == many[name].tobytes() for name in many)
 
 
+def test_the_hdf5_of_the_program_has_the_same_arrays(program, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "map.h5"
+    program("sweep", "ball_on_sine", "--over", "x=-3:3:6", "--over", "e=0.1:0.9:5", "--print", "zeno_time(2)", "--print", "held",
+            "--hdf5", str(path))
+    many = achilles.sweep("ball_on_sine", {"x": (-3, 3, 6), "e": (0.1, 0.9, 5)}, ["zeno_time(2)", "held"])
+    with h5py.File(path) as file:
+        for name in many.axes:
+            assert np.array_equal(file["axes/" + name][:], many.axes[name])
+        assert np.array_equal(file["values/zeno_time(2)"][:], many["zeno_time(2)"], equal_nan=True)
+        for name in ("held", "outcome"):
+            assert file["values/" + name].asstr()[:].tolist() == many[name].tolist()
+
+
 def test_equal_distances_and_ratios_are_axes():
     by_array = achilles.sweep("ball_on_floor", {"e": np.linspace(0.1, 0.9, 5)}, "zeno_time")
     assert by_array.axes["e"].tolist() == achilles.sweep("ball_on_floor", "e=0.1:0.9:5", "zeno_time").axes["e"].tolist()

@@ -36,4 +36,5 @@ class Figure:
             file.write(content)
 
     def _repr_svg_(self) -> str:
-        return self.svg
+        svg = self.svg
+        return svg[svg.index("<svg") :]  # a page has no room for the head of a file
