@@ -101,24 +101,28 @@ std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const Sw
     return panels;
 }
 
-// What all panels say stands once above them.
+// What two panels say stands once above all.
 void share_keys(Figure& figure) {
-    const auto is_everywhere = [&](const std::string& label) {
-        return !label.empty() && std::all_of(figure.panels.begin(), figure.panels.end(), [&](const Panel& panel) {
+    const auto is_said_twice = [&](const std::string& label) {
+        const auto says = [&](const Panel& panel) {
             const auto has = [&](const auto& one) { return one.label == label; };
             return panel.hatch.label == label || std::any_of(panel.curves.begin(), panel.curves.end(), has) ||
                    std::any_of(panel.markers.begin(), panel.markers.end(), has);
-        });
+        };
+        return !label.empty() && std::count_if(figure.panels.begin(), figure.panels.end(), says) > 1;
     };
     std::vector<std::string> shared;
     const auto add = [&](const std::string& label, const auto& sign) {
-        if (!is_everywhere(label)) return;
+        if (!is_said_twice(label) || std::find(shared.begin(), shared.end(), label) != shared.end()) return;
         shared.push_back(label);
         figure.keys.push_back({label, sign});
     };
-    for (const Curve& curve : figure.panels.front().curves) add(curve.label, curve.stroke);
-    for (const Markers& markers : figure.panels.front().markers) add(markers.label, markers);
-    add(figure.panels.front().hatch.label, figure.panels.front().hatch);
+    for (const Panel& panel : figure.panels) {
+        for (const Curve& curve : panel.curves) add(curve.label, curve.stroke);
+        for (const Markers& markers : panel.markers)
+            if (!markers.points.empty() || panel.raster.cells == nullptr) add(markers.label, markers);
+        add(panel.hatch.label, panel.hatch);
+    }
     const auto clear = [&](auto& one) {
         if (std::find(shared.begin(), shared.end(), one.label) != shared.end()) one.label.clear();
     };

@@ -99,9 +99,13 @@ std::vector<std::pair<std::uint64_t, std::string>> SweepColumn::classes() const 
     if (kind_ == Kind::held)  // those of few contacts first
         std::stable_sort(sorted.begin(), sorted.end(),
                          [](const auto& a, const auto& b) { return std::popcount(a.first) < std::popcount(b.first); });
-    else
-        std::stable_sort(sorted.begin(), sorted.end(),
-                         [](const auto& a, const auto& b) { return a.second > b.second; });
+    else  // the end that was asked for before all others
+        std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
+            const auto is_whole = [&](std::uint64_t one) {
+                return kind_ == Kind::outcome && one == RunEnd(Outcome::Kind::end_time).code();
+            };
+            return std::pair(is_whole(a.first), a.second) > std::pair(is_whole(b.first), b.second);
+        });
     std::vector<std::pair<std::uint64_t, std::string>> classes;
     for (const auto& [one, count] : sorted)
         classes.emplace_back(one,

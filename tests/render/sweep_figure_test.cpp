@@ -276,6 +276,26 @@ TEST(SweepFigure, has_its_bar_inside_the_picture) {
     }
 }
 
+TEST(SweepFigure, says_once_what_several_panels_show) {
+    SweepData data =
+        grid({{"e", 0.0, 1.0, 3, false}, {"g", 0.0, 2.0, 3, false}},
+             {1, 2, 3, 4, nothing_there, 6, nothing_there, nothing_there, nothing_there}, {1, 1, 1, 1, 1, 1, 1, 1, 2});
+    data.columns.push_back({RunMeasures::Column::Kind::outcome, "outcome", ""});
+    const Figure figure = compose_sweep(data);
+    ASSERT_EQ(figure.panels.size(), 3u);
+    ASSERT_EQ(figure.keys.size(), 2u);
+    EXPECT_EQ(figure.keys[0].label, sequence_changes);
+    EXPECT_EQ(figure.keys[1].label, no_value);
+    for (const Panel& panel : figure.panels) {
+        EXPECT_TRUE(panel.hatch.label.empty());
+        for (const Curve& curve : panel.curves) EXPECT_TRUE(curve.label.empty());
+    }
+    EXPECT_EQ(figure.panels[2].markers[0].label, "end time") << "before what is as frequent";
+    EXPECT_EQ(figure.panels[2].markers[1].label, "cannot start");
+    EXPECT_EQ(figure.panels[2].title, "(c)\u00A0\u00A0outcome");
+    EXPECT_EQ(figure.columns, 2);
+}
+
 TEST(SweepFigure, says_what_has_none) {
     const auto refusal = [](const std::string& text) -> std::string {
         try {
