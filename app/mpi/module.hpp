@@ -10,9 +10,9 @@ struct AchillesMpi {
     void (*begin)(int* rank, int* size, int* cores);
     // Returns when the bytes may go. Waits asleep, not by asking again and again: others want the processor.
     void (*send)(int to, const void* bytes, int size);
-    // The size of the next message and whom it is from; -1: there is none.
+    // The size of a message that has come, and whom it is from; -1: there is none. Then its bytes.
     int (*next)(int* from);
-    void (*receive)(int from, void* bytes, int size);
+    void (*receive)(void* bytes);
     void (*end)(void);
 };
 constexpr int achilles_mpi_version = 1;

@@ -100,7 +100,7 @@ std::optional<Messages::Letter> Ranks::receive() {
     const int size = mpi_->next(&letter.from);
     if (size < 0) return {};
     letter.bytes.resize(static_cast<std::size_t>(size));
-    mpi_->receive(letter.from, letter.bytes.data(), size);
+    mpi_->receive(letter.bytes.data());
     return letter;
 }
 

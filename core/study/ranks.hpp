@@ -21,7 +21,7 @@ class Messages {
         int from = 0;
         std::string bytes;
     };
-    // One that has come. Those from one rank come in the order in which they were sent.
+    // One that has come, if there is one.
     virtual std::optional<Letter> receive() = 0;
     // All are being ended: this process ends without waiting for the others.
     virtual void leave() = 0;

@@ -74,28 +74,41 @@ TEST_F(SweepRanks, AreSilentButForTheFirst) {
     EXPECT_TRUE(folder_.files().empty());
 }
 
-// A rank is killed, then all are asked to stop; --resume goes on, with ranks and without.
+// Shares a sweep until its log has so many bytes more, and then ends it as the last command does.
+std::string interrupted(const std::string& sweep, const std::string& how) {
+    return "size=$(stat -c %s a.csv.part 2>/dev/null || echo 0)\n" + std::string(mpirun) +
+           "-n 2 sh -c 'echo $$ >pid$OMPI_COMM_WORLD_RANK; exec " + program + " " + sweep +
+           "--csv a.csv --resume' 2>err &\nm=$!\nfor i in $(seq 2000); do\n"
+           "  [ \"$(stat -c %s a.csv.part 2>/dev/null || echo 0)\" -gt $((size + 9000)) ] && break\n"
+           "  sleep 0.01\ndone\nkill -" +
+           how + "\nwait $m";
+}
+
+// A rank is killed, then rank 0 is asked to stop; --resume goes on, with ranks and without.
 TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
-    const std::string sweep = "sweep ball_on_sine --over x=-3:3:200000 --print x --print t ",
-                      ranks = std::string(mpirun) + "-n 2 sh -c 'echo $$ >pid$OMPI_COMM_WORLD_RANK; exec " + program +
-                              " " + sweep + "--csv a.csv --resume' 2>err &\nm=$!\n",
-                      wait = "  [ \"$(stat -c %s a.csv.part 2>/dev/null || echo 0)\" -gt ",
-                      go_on = " ] && break\n  sleep 0.01\ndone\n", loop = "for i in $(seq 2000); do\n";
-    EXPECT_EQ(script(ranks + loop + wait + "12000" + go_on + "kill -KILL $(cat pid1)\nwait $m"), 137);
-    EXPECT_EQ(count_of(" of 200000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
-        << file("err");
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:100000 --print x --print t ",
+                      told = " of 100000 runs: the same command with --resume goes on from a.csv.part\n";
+    EXPECT_EQ(script(interrupted(sweep, "KILL $(cat pid1)")), 137);
+    EXPECT_EQ(count_of(told, file("err")), 1) << file("err");
     ASSERT_TRUE(has("a.csv.part"));
-    EXPECT_NE(script("size=$(stat -c %s a.csv.part)\n" + ranks + loop + wait + "$((size + 12000))" + go_on +
-                     "kill -INT $m\nwait $m"),
-              0);
-    EXPECT_EQ(count_of(" of 200000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
-        << file("err");
+    EXPECT_EQ(script(interrupted(sweep, "INT $(cat pid0)")), 3);
+    EXPECT_EQ(count_of(told, file("err")), 1) << file("err");
     ASSERT_TRUE(has("a.csv.part"));
     EXPECT_FALSE(has("a.csv"));
     EXPECT_EQ(run(2, sweep + "--csv a.csv --resume").status, 0);
     EXPECT_EQ(folder_.run(sweep + "--csv whole.csv").status, 0);
     EXPECT_EQ(file("a.csv"), file("whole.csv"));
     EXPECT_FALSE(has("a.csv.part"));
+}
+
+// mpirun asks all to stop a second after Ctrl-C, and ends them one later.
+TEST_F(SweepRanks, StopWhenMpirunIsInterrupted) {
+    const std::string sweep = "sweep ball_on_sine --over x=-3:3:1e7 --print x ";
+    EXPECT_NE(script(interrupted(sweep, "INT $m")), 0);
+    EXPECT_EQ(count_of(" of 10000000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
+        << file("err");
+    const Answer again = folder_.run(sweep + "--csv a.csv");
+    EXPECT_NE(again.err.find("an unfinished sweep is here, with "), std::string::npos) << again.err;
 }
 
 // The limit would be one of memory that ranks share, too: they speak over the loopback.
