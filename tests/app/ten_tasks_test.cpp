@@ -12,6 +12,7 @@
 #include "figure/stage.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
+#include "panels/widgets.hpp"
 
 namespace achilles::ten_tasks {
 namespace {

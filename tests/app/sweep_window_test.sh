@@ -1,0 +1,29 @@
+#!/bin/bash
+# Many runs in a real window: Ctrl+4 shows them, a menu makes a map of the curve, a click in the map is another run, and the
+# picture of the record is drawn from it.
+#     sweep_window_test.sh BUILD_FOLDER
+. "$(dirname "$0")/window.sh"
+
+"$build/test_app" --gtest_filter=SweepPanel.tells_where_it_is > "$folder/places"
+place() { grep "^$1 " "$folder/places" | cut -d' ' -f2-; }
+recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
+
+open_window "" ball_on_sine --record "$folder/record"
+settle
+xdotool key ctrl+4
+recorded '^show sweep$' "Ctrl+4 shows no sweep"
+settle
+# shellcheck disable=SC2046
+xdotool mousemove --window "$window" $(place menu) sleep 0.3 click 1 sleep 0.5
+# shellcheck disable=SC2046
+xdotool mousemove --window "$window" $(place rate) sleep 0.3 click 1
+recorded "^sweep .*--over x'=" "the menu makes no map"
+xdotool key Escape
+settle
+# shellcheck disable=SC2046
+xdotool mousemove --window "$window" $(place picture) sleep 0.3 click 1
+recorded "^start e .* x' " "a click in the map is no other run"
+settle
+"$build/achilles" screenshot --journal "$folder/record" --size 1280x800 --out "$folder/record.png"
+[ -s "$folder/record.png" ] || fail "the record cannot be drawn"
+close_window
