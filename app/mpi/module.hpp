@@ -13,9 +13,9 @@ struct AchillesMpi {
     // The size of a message that has come, and whom it is from; -1: there is none. Then its bytes.
     int (*next)(int* from);
     void (*receive)(void* bytes);
-    void (*end)(void);
+    void (*end)();
 };
 constexpr int achilles_mpi_version = 1;
 
-const AchillesMpi* achilles_mpi(void);
+const AchillesMpi* achilles_mpi();
 }

@@ -18,7 +18,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 // How long nothing is looked for: long beside what looking costs, short beside a chunk.
-constexpr std::chrono::microseconds pause(500);
+constexpr std::chrono::microseconds pause(1000);
 
 // The first byte of a message. From rank 0: what the work is, a chunk of it, that nothing more is wanted.
 // To it: so many threads are there, what a chunk came to, what went wrong.

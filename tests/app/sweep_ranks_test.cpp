@@ -21,7 +21,8 @@ int count_of(const std::string& what, const std::string& text) {
 class SweepRanks : public testing::Test {
  protected:
     void SetUp() override {
-        if (std::system("command -v mpirun >/dev/null") != 0) GTEST_SKIP() << "mpirun is missing (openmpi-bin)";
+        if (std::system("mpirun --version 2>/dev/null | grep -q 'Open MPI'") != 0)
+            GTEST_SKIP() << "mpirun is missing, or not that of Open MPI (openmpi-bin)";
     }
     Answer run(int ranks, const std::string& arguments) const {
         return folder_.run(arguments, mpirun + ("-n " + std::to_string(ranks)));
