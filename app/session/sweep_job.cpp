@@ -18,7 +18,7 @@ namespace {
 
 // Points along one axis, of one level and the next: a first picture that comes at once, and each finer one costs so much
 // more that those before it do not count.
-constexpr std::uint64_t map_steps[] = {16, 64, 256}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
+constexpr std::uint64_t map_steps[] = {16, 64, 160}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
 constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // of one run
 
 struct Stopped {};

@@ -68,7 +68,7 @@ TEST(SweepPanel, goes_from_coarse_to_fine) {
         return all;
     };
     using Counts = std::vector<std::uint64_t>;
-    EXPECT_EQ(counts("--over e=0:0.9:512 --over x=0:1:512 --print x"), (Counts{256, 4096, 65536, 262144}));
+    EXPECT_EQ(counts("--over e=0:0.9:512 --over x=0:1:512 --print x"), (Counts{256, 4096, 25600, 262144}));
     EXPECT_EQ(counts("--over e=0:0.9:512 --print x"), (Counts{32, 128, 512}));
     EXPECT_EQ(counts("--over e=0:0.9:128 --print x"), (Counts{32, 128}));
     EXPECT_EQ(counts("--over e=0:0.9:20 --print x"), (Counts{20}));

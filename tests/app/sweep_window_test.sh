@@ -17,7 +17,7 @@ settle
 xdotool mousemove --window "$window" $(place menu) sleep 0.3 click 1 sleep 0.5
 # shellcheck disable=SC2046
 xdotool mousemove --window "$window" $(place rate) sleep 0.3 click 1
-recorded "^sweep .*--over x'=" "the menu makes no map"
+recorded "^sweep .*x'=" "the menu makes no map"
 xdotool key Escape
 settle
 # shellcheck disable=SC2046
