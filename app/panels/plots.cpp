@@ -20,7 +20,6 @@ namespace achilles {
 
 namespace {
 
-constexpr float inset = 8.0F;
 constexpr double click = 4.0;  // pixels that a hand may slip and still click
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
@@ -305,23 +304,16 @@ void show_head(const Session& session, std::size_t plot, const Rectangle& row, P
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_label(list, row.x, row.y + 0.5F * (row.height - 1.2F * size), title, text_color(), size);
     const float x = row.x + label_width(title, size) + units(5.0F), y = std::floor(row.y + 0.5F * row.height);
-    list->AddTriangleFilled({x, y - units(2.0F)}, {x + units(7.0F), y - units(2.0F)},
-                            {x + units(3.5F), y + units(3.0F)}, packed(lit ? text_color() : faint_color()));
+    paint_menu_arrow(x, y, lit);
     if (pressed) open_plot_menu(session, plot, state);
     show_plot_menu(session, plot, state, commands);
 }
 
 void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, PanelState& state, Commands& commands) {
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
-                        packed(session.theme().background), units(4.0F));
-    const float edge = units(inset), head = ImGui::GetTextLineHeight() + units(4.0F);
-    const Rectangle row{cell.x + edge, cell.y + units(4.0F), cell.width - 2.0F * edge, head};
-    const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
-                          cell.y + cell.height - edge - row.y - head};
+    const auto [row, inner] = paint_plot_card(cell);
     if (inner.width < 2.0F || inner.height < 2.0F) return;
     const Panel& panel = session.drawn(plot);
-    const Rectangle area = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
+    const Rectangle area = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
     const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};

@@ -21,8 +21,6 @@ namespace achilles {
 
 namespace {
 
-constexpr float inset = 8.0F;
-
 // What the session has along an axis.
 std::optional<double> present(const Session& session, const SweepAxis& axis) {
     if (const auto value = session.value(axis.name)) return value;
@@ -277,13 +275,7 @@ float show_progress(const Session& session, const Rectangle& row, PanelState& st
 
 void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle cell = remaining();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
-                        packed(session.theme().background), units(4.0F));
-    const float edge = units(inset), head = ImGui::GetTextLineHeight() + units(4.0F);
-    const Rectangle row{cell.x + edge, cell.y + units(4.0F), cell.width - 2.0F * edge, head};
-    const Rectangle inner{cell.x + edge, row.y + head, cell.width - 2.0F * edge,
-                          cell.y + cell.height - edge - row.y - head};
+    const auto [row, inner] = paint_plot_card(cell);
     if (inner.width < 2.0F || inner.height < 2.0F) return;
     const float right = show_progress(session, row, state, commands);
     show_sweep_menus(session, {row.x, row.y, right - row.x, row.height}, state, commands);
@@ -296,7 +288,7 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     if (!job.data()) return;
     const Panel& panel = composed(session, state.sweep);
     if (!state.sweep.problem.empty()) return message(state.sweep.problem);
-    const Rectangle area = paint(panel, screen_style(session.theme()), list, inner, units(1.0F));
+    const Rectangle area = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), inner, units(1.0F));
     if (area.width < 2.0F || area.height < 2.0F) return;
     const PanelMap map(panel, area);
     if (!job.data()->sweep.axes.empty()) show_cross_hair(session, *job.data(), area, map, state.sweep);

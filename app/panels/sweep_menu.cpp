@@ -47,8 +47,7 @@ float menu_button(const char* popup, const std::string& text, float x, const Rec
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_label(list, x, row.y + 0.5F * (row.height - 1.2F * size), shown, text_color(), size);
     const float at = x + width - arrow + units(4.0F), y = std::floor(row.y + 0.5F * row.height);
-    list->AddTriangleFilled({at, y - units(2.0F)}, {at + units(7.0F), y - units(2.0F)},
-                            {at + units(3.5F), y + units(3.0F)}, packed(lit ? text_color() : faint_color()));
+    paint_menu_arrow(at, y, lit);
     if (pressed) ImGui::OpenPopup(popup);
     return x + width + units(10.0F);
 }

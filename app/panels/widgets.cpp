@@ -232,4 +232,18 @@ std::string number_of_size(double value, double size, int decimals) {
     return number(value, fmt::format("{{:.{}{}}}", decimals, fits ? 'f' : 'e').c_str());
 }
 
+PlotCard paint_plot_card(const Rectangle& cell) {
+    ImGui::GetWindowDrawList()->AddRectFilled({cell.x, cell.y}, {cell.x + cell.width, cell.y + cell.height},
+                                              packed(current_theme().background), units(4.0F));
+    const float edge = units(8.0F), head = ImGui::GetTextLineHeight() + units(4.0F);
+    const Rectangle row{cell.x + edge, cell.y + units(4.0F), cell.width - 2.0F * edge, head};
+    return {row, {row.x, row.y + head, row.width, cell.y + cell.height - edge - row.y - head}};
+}
+
+void paint_menu_arrow(float x, float y, bool lit) {
+    ImGui::GetWindowDrawList()->AddTriangleFilled({x, y - units(2.0F)}, {x + units(7.0F), y - units(2.0F)},
+                                                  {x + units(3.5F), y + units(3.0F)},
+                                                  packed(lit ? text_color() : faint_color()));
+}
+
 }  // namespace achilles

@@ -64,6 +64,13 @@ bool dragged_to(double low, double high, float left, float width, double& value)
 void show_message(const std::string& message, float width);
 float message_height(const std::string& message, float width);
 void paint_error_card(const Rectangle& area);
+// The card of a plot on this part of the surface: the row of its head, and what is left for it.
+struct PlotCard {
+    Rectangle row, inner;
+};
+PlotCard paint_plot_card(const Rectangle& cell);
+// The sign of what opens a menu; x is its left end, y its middle.
+void paint_menu_arrow(float x, float y, bool lit);
 // How far from a marker, in pixels at scale 1, a click is meant for it.
 constexpr float marker_reach = 8.0F;
 // Of the events that are asked, the one whose sign a hand means: the nearest within reach, but over the sign of a Zeno

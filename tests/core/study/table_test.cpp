@@ -1,5 +1,5 @@
 // The rows of a sweep: what single runs give, by closed forms, at sections, whatever the chunks and threads.
-#include "study/table.hpp"
+#include "study/sweep_data.hpp"
 
 #include <gtest/gtest.h>
 
@@ -93,21 +93,14 @@ TEST(SweepTable, IsTheSameInAnyChunks) {
                              "--over x=-3:3:5 --over y=-2:2:3 --print \"x'\" --at impact --after 1 --end 6"}) {
         const SweepTable table = table_of("ball_on_sine", text);
         const Rows whole = table.rows(0, table.sweep().count());
-        Rows parts;
-        const auto append = [](auto& list, const auto& more) { list.insert(list.end(), more.begin(), more.end()); };
+        SweepData data(table);
         const auto same = [](const std::vector<double>& a, const std::vector<double>& b) {
             return a.size() == b.size() &&
                    (a.empty() || 0 == std::memcmp(a.data(), b.data(), a.size() * sizeof(double)));
         };
-        for (std::uint64_t first = 0; first < table.sweep().count(); first += 4) {
-            const Rows rows = table.rows(first, std::min<std::uint64_t>(4, table.sweep().count() - first));
-            append(parts.points, rows.points);
-            append(parts.numbers, rows.numbers);
-            append(parts.held, rows.held);
-            append(parts.ends, rows.ends);
-            append(parts.signatures, rows.signatures);
-            append(parts.times, rows.times);
-        }
+        for (std::uint64_t first = 0; first < table.sweep().count(); first += 4)
+            data.add(table.rows(first, std::min<std::uint64_t>(4, table.sweep().count() - first)));
+        const Rows& parts = data.rows;
         EXPECT_EQ(parts.points, whole.points);
         EXPECT_TRUE(same(parts.numbers, whole.numbers)) << text;
         EXPECT_EQ(parts.held, whole.held);
