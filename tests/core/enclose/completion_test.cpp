@@ -1,0 +1,105 @@
+// What one step and one completion claim, taken by themselves.
+#include "enclose/completion.hpp"
+
+#include "core/enclose/truth.hpp"
+#include "enclose/step.hpp"
+
+namespace achilles::test {
+
+namespace {
+
+Coordinates coordinates_of(const Model& model, const Claim& claim) {
+    Coordinates z;
+    z.dof = static_cast<std::size_t>(model.dof());
+    z.parameters = claim.parameters;
+    return z;
+}
+
+// The ball on the surface at x, sliding with that rate along x, about to land with speed w.
+Doubleton landing(double x, double rate, double w) {
+    const Interval at(x), slope = cos(at);
+    return Doubleton({Interval(3.0), at, sin(at), Interval(rate), slope * Interval(rate), Interval(0.0), Interval(-w)});
+}
+
+}  // namespace
+
+// a = sin(t): what is left behind order 20 is its tail, which the remainder holds and half of it does not.
+TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
+    const auto model = model_of({.potential = "a^2/2 + b", .b = 1.0, .a_rate = 1.0});
+    const Claim claim = achilles::claim_of(model->default_run());
+    const Coordinates z = coordinates_of(*model, claim);
+    Stepper stepper(*model, z, {});
+    const Doubleton start(
+        {Interval(0.0), Interval(0.0), Interval(1.0), Interval(1.0), Interval(0.0), Interval(1.0), Interval(0.0)});
+    const Step step = stepper.make(start, 1.0, KnownRoot::none);
+    const Real length = step.length();
+    Real term = length, tail = 0;
+    for (int k = 3; k < 60; k += 2) {
+        term *= -length * length / (k * (k - 1));
+        if (k > Stepper::order) tail += term;
+    }
+    const Interval remainder = step.remainder_at(Interval(step.length()))[z.q(0)];
+    EXPECT_GT(step.length(), 0.2);
+    EXPECT_TRUE(contains(remainder, tail)) << tail << " in " << remainder.lo() << " " << remainder.hi();
+    EXPECT_FALSE(contains(Interval(0.5) * remainder, tail));
+    EXPECT_TRUE(contains(step.box_over(start, Interval(0.0, step.length()))[z.q(0)], sin(length)));
+}
+
+// Signed bounds gain an order: the middle of the error falls with w^3, its radius with w^4.
+TEST(Completion, ItsErrorIsOfFourthOrder) {
+    const auto model = load("ball_on_sine");
+    const Claim claim = achilles::claim_of(model->default_run());
+    const Coordinates z = coordinates_of(*model, claim);
+    Completion completion(*model, z);
+    std::vector<double> middles, radii;
+    for (const double w : {4e-3, 2e-3, 1e-3}) {
+        const auto proof = completion.prove(landing(4.6, 0.7, w), Interval(0.5));
+        ASSERT_TRUE(proof) << w;
+        double middle = 0.0, radius = 0.0;
+        for (const Interval& error : proof->error) {
+            middle = std::max(middle, std::abs(mid(error)));
+            radius = std::max(radius, rad(error));
+        }
+        middles.push_back(middle);
+        radii.push_back(radius);
+    }
+    for (std::size_t i = 0; i + 1 < radii.size(); ++i) {
+        EXPECT_NEAR(middles[i] / middles[i + 1], 8.0, 0.4);
+        EXPECT_NEAR(radii[i] / radii[i + 1], 16.0, 1.5);
+    }
+}
+
+// Against the truth of single completions: the wait, and the difference from the constrained motion at its end.
+TEST(Completion, HoldsTheWaitAndTheShadow) {
+    const auto model = load("ball_on_sine");
+    const achilles::Run run = model->default_run();
+    const Coordinates z = coordinates_of(*model, achilles::claim_of(run));
+    Completion completion(*model, z);
+    TrueMotion motion(*model, run);
+    for (const double w : {0.05, 0.02, 1e-2, 1e-3})
+        for (const double x : {4.6, 11.2}) {
+            const Doubleton set = landing(x, 0.7, w);
+            const auto proof = completion.prove(set, Interval(0.5));
+            if (!proof) continue;
+            State before{Vector(2), Vector(2), 3.0};
+            for (std::size_t i = 0; i < 2; ++i) {
+                before.q[static_cast<Eigen::Index>(i)] = set.centre(z.q(i));
+                before.v[static_cast<Eigen::Index>(i)] = set.centre(z.v(i));
+            }
+            Point collision = motion.restart(motion.collision(before), Reinitialization::kinetic);
+            const Point restart = collision;
+            const auto contact = motion.contact(collision);
+            for (std::size_t i = 0; i < 2; ++i) collision.v[i] -= w * contact.n[i];
+            const auto zeno = motion.zeno(collision);
+            ASSERT_TRUE(zeno);
+            EXPECT_TRUE(contains(proof->wait, zeno->time)) << w;
+            const Point shadow = motion.constrained(restart, zeno->time, 1e-28);
+            for (std::size_t i = 0; i < 2; ++i) {
+                const Interval slack = Interval(-1e-14, 1e-14) * Interval(w);
+                EXPECT_TRUE(contains(proof->error[i] + slack, zeno->point.q[i] - shadow.q[i])) << w << " q " << i;
+                EXPECT_TRUE(contains(proof->error[2 + i] + slack, zeno->point.v[i] - shadow.v[i])) << w << " v " << i;
+            }
+        }
+}
+
+}  // namespace achilles::test
