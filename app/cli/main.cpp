@@ -67,6 +67,7 @@ int run(std::vector<std::string> words) {
     add_explore(program, status);
     add_simulate(program, status);
     add_sweep(program, status);
+    add_prove(program, status);
     PictureJob job(words);
     add_pictures(program, status, job);
     add_reproduce(program, status);

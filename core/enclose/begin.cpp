@@ -10,32 +10,39 @@ namespace achilles {
 
 // The gap and its rate become coordinates.
 void Prover::begin() {
+    const Intervals start = set_.hull();
     maps_->measure_gap(set_);
     const Interval h = set_.hull(z_.h());
     if (certainly_positive(h)) {
         gap_ = h;
         return;
     }
-    begin_on_surface(maps_->surface(set_.hull()));
+    begin_on_surface(start);
 }
 
 // A start that is on the surface to within rounding: the theorem is about the members with h = 0, and those with hdot = 0
 // where that is not told from 0. That there are such members is proved by a change of sign of h along n.
-void Prover::begin_on_surface(const Maps::Surface& surface) {
+void Prover::begin_on_surface(const Intervals& start) {
+    const Maps::Surface surface = maps_->surface(start);
     const Undecided doubt{"contact or flight at the start: the gap cannot be told from zero for all of the set"};
-    Intervals below = set_.hull(), above = below;
-    double size = 0.0;
-    for (std::size_t i = 0; i < z_.dof; ++i) size = std::max(size, mag(below[z_.q(i)]));
-    const double reach = std::ldexp(std::max(size, 1.0), -44);
+    // What roundings of the coordinates make of the gap; g n = 1, so that a way along n is as long as the gap it makes.
+    Intervals near = start;
     for (std::size_t i = 0; i < z_.dof; ++i) {
-        if (rad(below[z_.q(i)]) > reach) throw doubt;
+        const double ulps = 0x1p-48 * mag(near[z_.q(i)]);
+        near[z_.q(i)] = Interval(mid(near[z_.q(i)])) + Interval(-ulps, ulps);
+    }
+    const double error = rad(maps_->surface(near).h), off = mag(surface.h);
+    const double reach = 4.0 * error + 0x1p-200;  // where all are 0 to the last bit, too
+    if (!(off <= reach)) throw doubt;
+    Intervals below = start, above = start;
+    for (std::size_t i = 0; i < z_.dof; ++i) {
         const double n = mid(surface.n[i]);
-        below[z_.q(i)] = Interval(mid(below[z_.q(i)])) - Interval(n * reach);
-        above[z_.q(i)] = Interval(mid(above[z_.q(i)])) + Interval(n * reach);
+        below[z_.q(i)] = Interval(mid(below[z_.q(i)])) - Interval(n) * Interval(reach);
+        above[z_.q(i)] = Interval(mid(above[z_.q(i)])) + Interval(n) * Interval(reach);
     }
     if (!certainly_negative(maps_->surface(below).h) || !certainly_positive(maps_->surface(above).h)) throw doubt;
-    // All members that are meant lie within reach of these.
-    Intervals box = set_.hull();
+    // The members that are meant lie within reach of these.
+    Intervals box = start;
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.q(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * reach);
     box[z_.h()] = Interval(0.0);
     const Interval u = maps_->surface(box).hdot;

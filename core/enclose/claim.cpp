@@ -23,6 +23,7 @@ Claim claim_of(const Run& run) {
 }
 
 Interval as_written(double x) {
+    const Ground ground;
     Graph graph;
     const Constant shortest = graph.constant(graph.decimal(fmt::format("{}", std::abs(x))).id());
     if (shortest.low == shortest.high) return {x};
@@ -35,6 +36,13 @@ Claim claim_as_written(const Run& run) {
     for (Intervals* box : {&claim.q, &claim.v, &claim.parameters})
         for (Interval& entry : *box) entry = as_written(mid(entry));
     return claim;
+}
+
+void widen(Claim& claim, double half) {
+    if (half == 0.0) return;  // not even a rounding
+    const Ground ground;
+    for (Intervals* box : {&claim.q, &claim.v})
+        for (Interval& entry : *box) entry += Interval(-half, half);
 }
 
 namespace {

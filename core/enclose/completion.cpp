@@ -184,12 +184,13 @@ std::optional<Completion::Proof> Completion::prove(const Doubleton& set, const I
         box.r = box.a_max / box.a_min;
         const Interval one(1.0), kept = e * square(e) * box.r * sqrt(box.r);
         if (!certainly_less(square(e) * box.r, one) || !certainly_less(kept, one)) return std::nullopt;
-        box.T = Interval(wait_for_zeno(e, box.a_min, box.a_max, Interval(w)).latest.hi());
+        const Interval longest(wait_for_zeno(e, box.a_min, box.a_max, Interval(w)).latest.hi());
+        box.T = Interval((longest * Interval(1.0 + 0x1p-40)).hi());
         if (!contain(box, e)) continue;
         Proof proof;
         bound_time(proof, box, set, e);
         bound_error(proof, box, e);
-        proof.window = box.T.hi();
+        proof.window = longest.hi() * (1.0 + 0x1p-41);
         const Intervals all = variables(box);
         for (std::size_t i = 0; i < n; ++i) {
             proof.position.push_back(all[i]);

@@ -19,10 +19,12 @@ class Completion {
     struct Proof {
         // The wait until the Zeno point: in at_centre + by_u (u - c_u) for every member, and in `wait` (s).
         Interval wait, at_centre, by_u;
-        Interval time;                 // tau_inf itself
-        double half = 0.0;             // by how much the bounds leave the wait open, s
-        double own = 0.0;              // by how much the set does
-        double window = 0.0;           // T: no member waits longer, and none lets go before
+        Interval time;      // tau_inf itself
+        double half = 0.0;  // by how much the bounds leave the wait open, s
+        double own = 0.0;   // by how much the set does
+        // No member waits as long, and none lets go before, nor in the 2^-42nd part of it that follows: so many roundings may
+        // be in what it is stepped through by.
+        double window = 0.0;
         Intervals error;               // true less comparison motion at tau_inf and until T: q, then v
         Intervals position, velocity;  // on the way
     };

@@ -70,6 +70,8 @@ Claim claim_of(const Run& run);
 // What a person wrote: a double that no decimal is stands for those around it, 4 ulp either way, which hold pi/6 or 0.1.
 Claim claim_as_written(const Run& run);
 Interval as_written(double x);
+// All coordinates and rates of the start by so much either way.
+void widen(Claim& claim, double half);
 // What is impossible about a part of a claim's starts and parameters, where that is proved: a gap below zero, a restitution
 // outside [0, 1]. Throws InputErrors.
 void check(const Model& model, const Claim& claim);

@@ -129,6 +129,11 @@ void Prover::settle() {
 
 // ---- motion
 
+void Prover::count_step() {
+    if (++result_.statistics.steps > claim_.run.options.max_steps)
+        throw Undecided{fmt::format("more than {} steps", claim_.run.options.max_steps)};
+}
+
 void Prover::move() {
     Stepper& stepper = in_contact_ ? contact_motion_ : flight_;
     double most = longest();
@@ -138,7 +143,7 @@ void Prover::move() {
         if (a > 0.0) most = std::min(most, 1.5 * 2.0 * u / a);
     }
     const Step step = stepper.make(set_, most, known_, gap_);
-    ++result_.statistics.steps;
+    count_step();
     const FirstRoot root = first_root(step.watched(), step.length());
     if (root.kind == FirstRoot::Kind::one) {
         Doubleton there = set_;
@@ -208,8 +213,11 @@ void Prover::land(const Interval& time) {
     note_event(Event::Kind::impact, time, v_before, velocities(set_.hull()));
     Doubleton after = set_;
     set_ = before;
-    if (complete(time, v_before, e, radius)) return;
+    if (complete(time, e, radius)) return;
     set_ = after;
+    const double rise = set_.hull(z_.u()).hi(), a = mag(maps_->normal(set_.hull()).hddot);
+    if (2.0 * rise < 0x1p-50 * mag(time) * a)
+        throw Undecided{"the flights are below the resolution of time, and no completion is proved"};
     known_ = KnownRoot::landed;
     flight_.forget();
 }
@@ -235,9 +243,24 @@ void Prover::capture(const Interval& time, const Intervals& v_before) {
     flight_.forget();
 }
 
+// The states at the Zeno points of members that all reach them in this step, each after its own wait, without the error of the
+// comparison.
+Intervals Prover::zeno_box(const Step& step, const Interval& tau, const Completion::Proof& proof) const {
+    const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
+    Intervals box = step.box_over(set_, tau);
+    const Intervals point = step.centre_at(Interval(middle)), rho = step.remainder_at(tau),
+                    F = step.rate_at(hull(tau, Interval(middle)));
+    IntervalMatrix S = step.slope_at(tau);
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+        S(i, z_.u()) += F[i] * proof.by_u;
+        box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof.at_centre - Interval(middle)) + set_.along(S.row(i)));
+    }
+    return box;
+}
+
 // All members bounce to their Zeno points, if that is proved well enough. Then the set is that of the members in contact, so
 // much later than their collisions that all have reached them.
-bool Prover::complete(const Interval& time, const Intervals&, const Interval& e, double radius) {
+bool Prover::complete(const Interval& time, const Interval& e, double radius) {
     maps_->take_rate_out(set_);
     set_.set(z_.h(), 0.0);
     const auto proof = completion_.prove(set_, e);
@@ -257,37 +280,24 @@ bool Prover::complete(const Interval& time, const Intervals&, const Interval& e,
 
     cover(Interval(time.lo(), (Interval(time.hi()) + Interval(proof->window)).hi()), proof->position, proof->velocity);
     maps_->retract(set_);  // u is kept beside: the wait depends on it
-    double elapsed = 0.0;
+    Interval passed(0.0);
     std::optional<Intervals> zeno;
     contact_motion_.forget();
-    while (elapsed < proof->window) {
-        const Step step = contact_motion_.make(set_, proof->window - elapsed, KnownRoot::none);
-        ++result_.statistics.steps;
-        const double length = std::min(step.length(), proof->window - elapsed);
-        const Interval tau(std::max(0.0, (proof->wait - Interval(elapsed)).lo()),
-                           std::min(length, (proof->wait - Interval(elapsed)).hi()));
+    for (double left = proof->window; left > 0x1p-43 * proof->window;) {
+        const Step step = contact_motion_.make(set_, left, KnownRoot::none);
+        count_step();
+        const Interval wait = proof->wait - passed;
+        const Interval tau(std::max(0.0, wait.lo()), std::min(step.length(), wait.hi()));
         if (tau.is_defined()) {
-            Intervals box = step.box_over(set_, tau);
-            if (elapsed == 0.0 && (proof->wait - Interval(elapsed)).hi() <= length) {
-                const double middle = std::clamp(mid(proof->at_centre), 0.0, length);
-                const Interval around = hull(tau, Interval(middle));
-                Intervals point = step.centre_at(Interval(middle));
-                const Intervals F = step.rate_at(around), rho = step.remainder_at(tau);
-                IntervalMatrix S = step.slope_at(tau);
-                for (std::size_t i = 0; i < z_.size(); ++i) {
-                    S(i, z_.u()) += F[i] * proof->by_u;
-                    box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof->at_centre - Interval(middle)) +
-                                              set_.along(S.row(i)));
-                }
-            }
-            if (zeno)
-                for (std::size_t i = 0; i < box.size(); ++i) (*zeno)[i] = hull((*zeno)[i], box[i]);
-            else
-                zeno = box;
+            const bool is_all = passed.hi() == 0.0 && wait.hi() <= step.length();
+            const Intervals box = is_all ? zeno_box(step, tau, *proof) : step.box_over(set_, tau);
+            if (!zeno) zeno = box;
+            for (std::size_t i = 0; i < box.size(); ++i) (*zeno)[i] = hull((*zeno)[i], box[i]);
         }
-        step.advance(set_, length);
-        elapsed = length < proof->window - elapsed ? elapsed + length : proof->window;
-        if (elapsed < proof->window) maps_->retract(set_);
+        step.advance(set_, step.length());
+        passed += Interval(step.length());
+        left = step.length() < left ? proof->window - mid(passed) : 0.0;
+        if (left > 0x1p-43 * proof->window) maps_->retract(set_);
     }
     if (!zeno) throw Undecided{"the Zeno point has no enclosure"};
     Intervals centre = set_.centre();

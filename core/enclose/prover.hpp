@@ -29,11 +29,13 @@ class Prover {
         bool is_known = false;
     };
     void begin();
-    void begin_on_surface(const Maps::Surface& surface);
+    void begin_on_surface(const Intervals& start);
+    void count_step();
     void move();
     void land(const Interval& time);
     void capture(const Interval& time, const Intervals& v_before);
-    bool complete(const Interval& time, const Intervals& v_before, const Interval& e, double radius);
+    bool complete(const Interval& time, const Interval& e, double radius);
+    Intervals zeno_box(const Step& step, const Interval& tau, const Completion::Proof& proof) const;
     void release(const Interval& time);
     void note_event(Event::Kind kind, const Interval& t, const Intervals& v_before, const Intervals& v_after);
 

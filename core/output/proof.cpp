@@ -31,8 +31,8 @@ Json state(const EnclosedState& there) { return {{"t", number(there.t)}, {"q", b
 // A number and how far at most the truth is from it, to two digits: both ends are inside.
 std::string about(const Interval& x) {
     const double centre = mid(x);
+    if (x.lo() == x.hi() && width(as_written(centre)) == 0.0) return fmt::format("{}", centre + 0.0);
     const double radius = std::max(x.hi() - centre, centre - x.lo()) * (1.0 + 0x1p-50) + 0x1p-52 * std::abs(centre);
-    if (radius == 0.0) return fmt::format("{}", centre + 0.0);
     double shown = radius;
     for (int ulps = 0; std::stod(fmt::format("{:.1e}", shown)) < radius && ulps < 3; ++ulps) shown *= 1.05;
     return fmt::format("{} +- {:.1e}", centre + 0.0, shown);

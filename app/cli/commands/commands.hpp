@@ -22,6 +22,7 @@ void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_pictures(CLI::App& program, int& status, PictureJob& job);  // all of them
 void add_sweep(CLI::App& program, int& status);
+void add_prove(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new

@@ -249,6 +249,26 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
     }
 }
 
+// In contact from the trough; with sqrt 5 the contact force touches zero on the way up.
+TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
+    const auto model = load("ball_on_sine");
+    Claim claim = achilles::claim_of(model->default_run());
+    claim.q = {-Interval::pi() / Interval(2.0), Interval(-1.0)};
+    claim.run.options.end_time = 3.0;
+    for (const double half : {1e-10, 1e-8, 1e-6}) {
+        const auto with = [&](double shift) {
+            claim.v = {sqrt(Interval(5.0)) + Interval(shift - half, shift + half), Interval(0.0)};
+            return prove(model, claim);
+        };
+        const Enclosure on = with(0.0), below = with(-40.0 * half), above = with(40.0 * half);
+        EXPECT_FALSE(on.end) << half;
+        EXPECT_TRUE(below.end) << half << below.outcome.message;
+        EXPECT_TRUE(below.events.empty());
+        ASSERT_FALSE(above.events.empty()) << half << above.outcome.message;
+        EXPECT_EQ(above.events.front().kind, Event::Kind::release);
+    }
+}
+
 // A run stays where it is on its thread: another rounding, denormals as zero.
 TEST(Enclosure, StandsOnItsOwnGround) {
     const auto model = load("ball_on_floor");

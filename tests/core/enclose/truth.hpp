@@ -33,8 +33,7 @@ inline Claim claim_of(const Problem& problem, const Model& model) {
 // Of a run's numbers those around them.
 inline Claim widened(const Run& run, double half) {
     Claim claim = achilles::claim_of(run);
-    for (Intervals* box : {&claim.q, &claim.v})
-        for (Interval& entry : *box) entry = entry + Interval(-half, half);
+    widen(claim, half);
     return claim;
 }
 
