@@ -37,8 +37,8 @@ struct Jet {
     }
 
     // f(x) where f'(x) is given.
-    friend Jet chain(const Jet& x, const Number& value, const Number& by_x) {
-        Jet result(value);
+    friend Jet chain(const Jet& x, const Number& f, const Number& by_x) {
+        Jet result(f);
         for (std::size_t i = 0; i < N; ++i) result.slope[i] = times(by_x, x.slope[i]);
         return result;
     }

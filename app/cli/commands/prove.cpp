@@ -162,6 +162,12 @@ void add_prove(CLI::App& program, int& status) {
     command->add_option("--times", arguments->times, "the same for the instants in a file, one a line")->type_name("F");
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
     add_run_options(*command, arguments->settings, arguments->overrides);
+    command->get_option("--set")->description(
+        "a parameter, a coordinate x=0.3 or a rate x'=1.5, or an interval of it: x=0.1..0.2; may be given again");
+    // How a run is computed means nothing to a proof.
+    for (const char* idle : {"--tolerance", "--method", "--memory", "--simultaneous", "--conditions",
+                             "--reinitialization", "--eps", "--eps-q", "--eps-v"})
+        command->get_option(idle)->group("");
     command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -69,6 +69,34 @@ TEST(Completion, ItsErrorIsOfFourthOrder) {
     }
 }
 
+// b falls with 1 + a, which changes quickly, and pushes a by 2 b': so a is behind by 2 int h, and that is near the greatest or the
+// least integral, as the bounces begin with the least acceleration or the greatest.
+TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
+    const auto model =
+        model_of({.potential = "0*a", .a = 3.0, .a_rate = 50.0, .a_force = "2*b'", .b_force = "-(1 + a)"});
+    const achilles::Run run = model->default_run();
+    const Coordinates z = coordinates_of(*model, achilles::claim_of(run));
+    Completion completion(*model, z);
+    TrueMotion motion(*model, run);
+    const double w = 0.02;
+    for (const double rate : {50.0, -50.0}) {
+        const Doubleton set(
+            {Interval(0.0), Interval(3.0), Interval(0.0), Interval(rate), Interval(0.0), Interval(0.0), Interval(-w)});
+        const auto proof = completion.prove(set, Interval(0.5));
+        ASSERT_TRUE(proof);
+        const Point restart{{3, 0}, {rate, 0}, 0};
+        Point collision = restart;
+        collision.v[1] -= w;
+        const auto zeno = motion.zeno(collision);
+        ASSERT_TRUE(zeno);
+        const Point shadow = motion.constrained(restart, zeno->time, 1e-28);
+        EXPECT_TRUE(contains(proof->error[0], zeno->point.q[0] - shadow.q[0]))
+            << rate << ": " << zeno->point.q[0] - shadow.q[0] << " in " << proof->error[0].lo() << " "
+            << proof->error[0].hi();
+        EXPECT_TRUE(contains(proof->wait, zeno->time));
+    }
+}
+
 // Against the truth of single completions: the wait, and the difference from the constrained motion at its end.
 TEST(Completion, HoldsTheWaitAndTheShadow) {
     const auto model = load("ball_on_sine");
