@@ -84,7 +84,7 @@ InputError refusal(const Model& model, const std::string& why) {
 
 }  // namespace
 
-Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, std::stop_token stop) {
+Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch) {
     const auto clock = std::chrono::steady_clock::now();
     const Ground ground;
     if (model->contacts() > 1) throw refusal(*model, "it has several gaps, and a proof follows one");
@@ -109,7 +109,7 @@ Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, s
                 model->description().file, model->description().constraints[0].restitution.at,
                 fmt::format("the restitution must lie in [0, 1], but it may be in [{}, {}]", e.lo(), e.hi()),
                 "0 is plastic, 1 is elastic");
-        result = Prover(*model, claim, z, start, std::move(stop), ground).run();
+        result = Prover(*model, claim, z, start, watch, ground).run();
     } catch (const Undecided& doubt) {
         throw refusal(*model, doubt.reason);
     }

@@ -114,8 +114,7 @@ void join(Enclosure& a, const Enclosure& b) {
 
 }  // namespace
 
-Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts,
-                         std::stop_token stop) {
+Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts, ProofWatch* watch) {
     Claim whole = claim;
     const double count = std::pow(parts, static_cast<double>(sides_of(whole).size()));
     if (!(parts >= 1 && count <= 1e6))
@@ -123,10 +122,13 @@ Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim&
                          fmt::format("these are {:.0f} parts, and 1000000 are allowed", count));
     const auto clock = std::chrono::steady_clock::now();
     std::vector<Enclosure> all(static_cast<std::size_t>(count));
-    tbb::parallel_for(std::size_t{0}, all.size(),
-                      [&](std::size_t i) { all[i] = prove(model, part_of(claim, i, parts), stop); });
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        ProofWatch of_part{watch != nullptr ? watch->stop : std::stop_token{}};
+        all[i] = prove(model, part_of(claim, i, parts), &of_part);
+    });
     Enclosure result = all.front();
     for (std::size_t i = 1; i < all.size(); ++i) join(result, all[i]);
+    if (watch != nullptr) watch->time = result.proved_until;
     result.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
     return result;
 }

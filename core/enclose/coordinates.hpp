@@ -23,7 +23,7 @@ struct Coordinates {
     std::size_t parameter(std::size_t k) const { return 3 + 2 * dof + k; }
     std::size_t size() const { return 3 + 2 * dof + varied.size(); }
 
-    // The coordinates that the accelerations depend on, and those that maps do: u besides.
+    // The coordinates that the accelerations depend on, and those that maps do: h and u besides.
     std::vector<std::size_t> of_motion() const {
         std::vector<std::size_t> result;
         for (std::size_t i = 0; i < 2 * dof; ++i) result.push_back(q(i));
@@ -33,6 +33,7 @@ struct Coordinates {
     }
     std::vector<std::size_t> of_maps() const {
         std::vector<std::size_t> result = of_motion();
+        result.push_back(h());
         result.push_back(u());
         return result;
     }

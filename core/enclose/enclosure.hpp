@@ -2,6 +2,7 @@
 // starts and parameters, until the end time or until something cannot be decided.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -57,13 +58,19 @@ struct Enclosure {
     std::string assumptions;  // what the proof stands on
 };
 
+// A proof as another thread sees it.
+struct ProofWatch {
+    std::stop_token stop;           // once asked for, it ends at its next step, as "cancelled"
+    std::atomic<double> time{0.0};  // s, proved so far; of parts only once all are
+};
+
 // Throws InputError for a system or a claim that is not covered, which the message says.
-Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, std::stop_token stop = {});
+Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch = nullptr);
 
 // The same of the box cut into so many parts along each of its sides that has a width, on all cores: each part is a theorem, and
 // this is what they say together. Throws InputError for more than a million parts.
 Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts,
-                         std::stop_token stop = {});
+                         ProofWatch* watch = nullptr);
 
 // The doubles of a run by themselves.
 Claim claim_of(const Run& run);

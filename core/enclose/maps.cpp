@@ -46,11 +46,13 @@ class Programs {
         z[z_.u()] = -(e * z[z_.u()]);
     }
     void retract(std::vector<Number>& z) {
-        move_to_surface(z);
+        look(terms_, z);
+        shift(z, Number(terms_.h()));
         push(z, Number(terms_.hdot()));
     }
     void project(std::vector<Number>& z) {
-        move_to_surface(z);
+        look(terms_, z);
+        shift(z, terms_.h() - z[z_.h()]);
         push(z, terms_.hdot() - z[z_.u()]);
     }
 
@@ -74,9 +76,8 @@ class Programs {
         terms.clock() = z[Coordinates::t()];
         terms.run();
     }
-    void move_to_surface(std::vector<Number>& z) {
-        look(terms_, z);
-        const Number h = terms_.h();
+    // q -= n times that much, and the terms are those there.
+    void shift(std::vector<Number>& z, const Number& h) {
         for (std::size_t i = 0; i < z_.dof; ++i) z[z_.q(i)] = z[z_.q(i)] - terms_.impulse_direction(i) * h;
         look(terms_, z);
     }
@@ -143,7 +144,7 @@ class MapsOver : public Maps {
     }
 
  private:
-    // What is not a variable (h) has derivative 1 by itself where the map leaves it alone, and where it sets it none.
+    // What the map leaves alone has derivative 1 by itself.
     template <class Map>
     void apply(Doubleton& set, const Map& map) {
         std::vector<Value> centre = values_.numbers(set.centre());

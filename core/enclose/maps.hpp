@@ -18,10 +18,10 @@ class Maps {
     virtual void take_rate_out(Doubleton& set) = 0;
     // Newton's law for members with h = 0: v -= (1 + e) n u, u := -e u.
     virtual void impact(Doubleton& set) = 0;
-    // For members with h = 0: q -= n h(q), then v -= n (hdot(q, v) - u), the identity on all of them. It forgets what the set has
-    // gained across the surface.
+    // q -= n (h(q) - h), then v -= n (hdot(q, v) - u), the identity on all members. It forgets what the set has gained away from
+    // where h and u are the gap of (q, v).
     virtual void project(Doubleton& set) = 0;
-    // The same for members with h = hdot = 0, whatever u is: v -= n hdot(q, v).
+    // The same for members with h = hdot = 0, whatever u is: q -= n h(q), v -= n hdot(q, v).
     virtual void retract(Doubleton& set) = 0;
 
     // Over a box of all coordinates: hddot and its derivatives by them; h''' along the constrained motion; e.

@@ -17,10 +17,10 @@ Interval both(const Interval& a, const Interval& b) {
 }  // namespace
 
 Prover::Prover(const Model& model, const Claim& claim, const Coordinates& coordinates, const Intervals& start,
-               std::stop_token stop, const Ground&)
+               ProofWatch* watch, const Ground&)
     : claim_(claim),
       z_(coordinates),
-      stop_(std::move(stop)),
+      watch_(watch),
       flight_(model, coordinates, {}),
       contact_motion_(model, coordinates, ContactSet::of(0)),
       maps_(make_maps(model, coordinates)),
@@ -35,7 +35,7 @@ Enclosure Prover::run() {
     try {
         begin();
         while (!is_over()) {
-            if (stop_.stop_requested()) {
+            if (watch_ != nullptr && watch_->stop.stop_requested()) {
                 result_.outcome = {Enclosure::Outcome::Kind::cancelled, "stopped before its end"};
                 break;
             }
@@ -97,6 +97,7 @@ void Prover::cover(const Step& step, const Interval& elapsed) {
             const Intervals box = there.hull();
             asked.state = EnclosedState{asked.time, positions(box), velocities(box)};
             asked.is_known = true;
+            proved_until_ = std::max(proved_until_, asked.time);
             continue;
         }
         const Interval part(std::max(0.0, tau.lo()), std::min(tau.hi(), elapsed.hi()));
@@ -123,6 +124,7 @@ void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v
 // A hull is complete once every member has passed its time.
 void Prover::settle() {
     proved_until_ = std::max(proved_until_, now());
+    if (watch_ != nullptr) watch_->time.store(proved_until_, std::memory_order_relaxed);
     for (Asked& asked : asked_)
         if (!asked.is_known && asked.state && proved_until_ > asked.time) asked.is_known = true;
 }
@@ -158,6 +160,7 @@ void Prover::move() {
         cover(step, elapsed);
         if (is_over()) return;
         set_ = there;
+        settle();
         doubts_ = 0;
         stepper.forget();
         if (in_contact_)
@@ -185,7 +188,10 @@ void Prover::move() {
     }
     step.advance(set_, length);
     known_ = KnownRoot::none;
-    if (in_contact_) maps_->retract(set_);
+    if (in_contact_)
+        maps_->retract(set_);
+    else
+        project();
     settle();
 }
 
@@ -199,7 +205,7 @@ void Prover::note_event(Event::Kind kind, const Interval& t, const Intervals& v_
 void Prover::land(const Interval& time) {
     const Interval u = set_.hull(z_.u());
     if (!certainly_negative(u)) throw Undecided{"graze: the impact speed cannot be told from zero for all of the set"};
-    maps_->project(set_);
+    project();
     const Intervals v_before = velocities(set_.hull());
     const Interval e = maps_->restitution(set_.hull());
     if (e.lo() == 0.0 && e.hi() == 0.0) return capture(time, v_before);
@@ -220,6 +226,20 @@ void Prover::land(const Interval& time) {
         throw Undecided{"the flights are below the resolution of time, and no completion is proved"};
     known_ = KnownRoot::landed;
     flight_.forget();
+}
+
+// What the set has gained where no member is goes, unless the map's own bending costs more: it is of second order, but a wide
+// set pays it at once, and what goes would have grown later only.
+void Prover::project() {
+    const auto size = [&](const Doubleton& set) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 2 * z_.dof; ++i) sum += rad(set.hull(z_.q(i)));
+        return sum;
+    };
+    Doubleton projected = set_;
+    maps_->project(projected);
+    constexpr double hardly = 1.001;
+    if (size(projected) <= hardly * size(set_)) set_ = projected;
 }
 
 // A landing with e = 0 of every member.

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <stop_token>
 
 #include "enclose/completion.hpp"
 #include "enclose/enclosure.hpp"
@@ -18,7 +17,7 @@ namespace achilles {
 class Prover {
  public:
     Prover(const Model& model, const Claim& claim, const Coordinates& coordinates, const Intervals& start,
-           std::stop_token stop, const Ground& ground);
+           ProofWatch* watch, const Ground& ground);
     Enclosure run();
 
  private:
@@ -32,6 +31,7 @@ class Prover {
     void begin_on_surface(const Intervals& start);
     void count_step();
     void move();
+    void project();
     void land(const Interval& time);
     void capture(const Interval& time, const Intervals& v_before);
     bool complete(const Interval& time, const Interval& e, double radius);
@@ -52,7 +52,7 @@ class Prover {
 
     Claim claim_;
     Coordinates z_;
-    std::stop_token stop_;
+    ProofWatch* watch_;
     Stepper flight_, contact_motion_;
     std::unique_ptr<Maps> maps_;
     Completion completion_;

@@ -60,6 +60,20 @@ TEST(Claim, PartsSayWhatTheirBoxSaysAndMore) {
     EXPECT_THROW(prove_in_parts(model, claim, 1000), InputError);
 }
 
+TEST(Claim, MayBeStoppedAndSaysHowFarItIs) {
+    const auto model = load("ball_on_sine");
+    const Claim claim = achilles::claim_of(model->default_run());
+    std::stop_source source;
+    ProofWatch watch{source.get_token()};
+    EXPECT_TRUE(prove(model, claim, &watch).end);
+    EXPECT_GT(watch.time, 0.9 * claim.run.options.end_time);
+    source.request_stop();
+    for (const Enclosure& stopped : {prove(model, claim, &watch), prove_in_parts(model, claim, 2, &watch)}) {
+        EXPECT_EQ(stopped.outcome.kind, Enclosure::Outcome::Kind::cancelled);
+        EXPECT_FALSE(stopped.end);
+    }
+}
+
 TEST(Claim, OfRestitutionsHoldsAllOfThem) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();

@@ -228,7 +228,7 @@ TEST(Enclosure, PrintsNoStateAfterAnEarlyStop) {
     EXPECT_FALSE(proved.end);
     EXPECT_LT(proved.proved_until, 20.0);
     ASSERT_FALSE(proved.samples.empty());
-    for (const EnclosedState& sample : proved.samples) EXPECT_LT(sample.t, proved.proved_until);
+    for (const EnclosedState& sample : proved.samples) EXPECT_LE(sample.t, proved.proved_until);
     for (const EnclosedEvent& event : proved.events) EXPECT_LE(event.t.lo(), proved.proved_until);
 }
 
