@@ -47,10 +47,10 @@ int main(int argc, char** argv) {
             fmt::print("{:<24} refused: {}\n", name, refusal.message);
         }
     }
-    fmt::print("\n{} members of boxes of half width 1e-6\n", count);
+    fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
     for (const std::string& name : systems_of_one_gap()) {
         const auto model = load(name);
-        const Membership members = members_of(model, claim_around(*model, 20.0, 1e-6, 0.0), count, 1);
+        const Membership members = members_of(model, claim_around(*model, 20.0, 1e-6, 0.0, 5), count, 1);
         fmt::print("{:<24} {:>9} compared {:>3} outside, enclosed/observed {:.2f}, until {:.4g} s {}\n", name,
                    members.compared, members.outside, members.width_over_observed, members.proved.proved_until,
                    members.first);

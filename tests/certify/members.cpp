@@ -71,13 +71,20 @@ class Comparison {
 
 }  // namespace
 
-Claim claim_around(const Model& model, double end, double half, double of_parameters) {
-    Claim claim = claim_of(model.default_run());
+achilles::Claim claim_around(const Model& model, double end, double half, double of_parameters, unsigned seed) {
+    achilles::Claim claim = claim_of(model.default_run());
     claim.run.options.end_time = std::min(claim.run.options.end_time, end);
     auto gap = model.evaluator(model.gap(), claim.run.parameters);
     set_state(gap, claim.run.start());
     gap.run();
-    if (std::abs(gap.output(0)) > 1e-9) widen(claim, half);  // else most members would be no starts
+    if (std::abs(gap.output(0)) > 1e-9) {  // else most members would be no starts
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> uniform(0.99, 1.01);
+        for (Intervals* box : {&claim.q, &claim.v})
+            for (Interval& entry : *box)
+                if (seed != 0) entry = Interval(mid(entry) * uniform(random));
+        widen(claim, half);
+    }
     for (Interval& parameter : claim.parameters)
         parameter = parameter * Interval(1.0 - of_parameters, 1.0 + of_parameters);
     const double start = claim.run.options.start_time;
@@ -85,7 +92,8 @@ Claim claim_around(const Model& model, double end, double half, double of_parame
     return claim;
 }
 
-Membership members_of(const std::shared_ptr<const Model>& model, const Claim& claim, int count, unsigned seed) {
+Membership members_of(const std::shared_ptr<const Model>& model, const achilles::Claim& claim, int count,
+                      unsigned seed) {
     Membership result;
     result.proved = prove(model, claim);
     Run run = claim.run;

@@ -19,10 +19,11 @@ struct Membership {
 };
 
 // `count` members of the claim, a quarter of them at corners, by runs at a tolerance of 1e-13.
-Membership members_of(const std::shared_ptr<const Model>& model, const Claim& claim, int count, unsigned seed);
+Membership members_of(const std::shared_ptr<const Model>& model, const achilles::Claim& claim, int count,
+                      unsigned seed);
 
 // The default run of a system until `end` at most, every start within `half`, where it is in the air, and every parameter within
-// a part of itself.
-Claim claim_around(const Model& model, double end, double half, double of_parameters);
+// a part of itself. With a seed the start is moved at random before, by a hundredth of itself.
+achilles::Claim claim_around(const Model& model, double end, double half, double of_parameters, unsigned seed = 0);
 
 }  // namespace achilles::test

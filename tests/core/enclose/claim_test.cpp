@@ -6,7 +6,7 @@ namespace achilles::test {
 
 namespace {
 
-std::string refused(const Model& model, const Claim& claim) {
+std::string refused(const Model& model, const achilles::Claim& claim) {
     try {
         check(model, claim);
     } catch (const InputError& error) {
@@ -27,7 +27,7 @@ TEST(Claim, ADoubleThatNoDecimalIsStandsForThoseAroundIt) {
 
 TEST(Claim, SaysWhichPartOfItIsImpossible) {
     const auto model = load("ball_on_sine");
-    Claim claim = achilles::claim_of(model->default_run());
+    achilles::Claim claim = achilles::claim_of(model->default_run());
     EXPECT_EQ(refused(*model, claim), "");
     claim.parameters.back() = Interval(0.9, 1.1);
     EXPECT_NE(refused(*model, claim).find("in [0.9, 1.1]: the part above 1 is impossible"), std::string::npos);
@@ -42,7 +42,7 @@ TEST(Claim, PartsSayWhatTheirBoxSaysAndMore) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
     run.options.end_time = 5.0;
-    Claim claim = widened(run, 1e-6);
+    achilles::Claim claim = widened(run, 1e-6);
     claim.times = {2.0, 3.0};
     const Enclosure whole = prove(model, claim), parts = prove_in_parts(model, claim, 2);
     ASSERT_TRUE(whole.end && parts.end);
@@ -62,7 +62,7 @@ TEST(Claim, PartsSayWhatTheirBoxSaysAndMore) {
 
 TEST(Claim, MayBeStoppedAndSaysHowFarItIs) {
     const auto model = load("ball_on_sine");
-    const Claim claim = achilles::claim_of(model->default_run());
+    const achilles::Claim claim = achilles::claim_of(model->default_run());
     std::stop_source source;
     ProofWatch watch{source.get_token()};
     EXPECT_TRUE(prove(model, claim, &watch).end);
@@ -78,7 +78,7 @@ TEST(Claim, OfRestitutionsHoldsAllOfThem) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
     run.options.end_time = 2.65;
-    Claim claim = achilles::claim_of(run);
+    achilles::Claim claim = achilles::claim_of(run);
     claim.parameters.back() = Interval(0.4999, 0.5001);
     const Enclosure proved = prove(model, claim);
     ASSERT_GE(proved.events.size(), 3u) << proved.outcome.message;
@@ -98,7 +98,7 @@ TEST(Claim, IsWrittenWithEndsThatReadBack) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
     run.options.end_time = 4.0;
-    Claim claim = widened(run, 1e-9);
+    achilles::Claim claim = widened(run, 1e-9);
     claim.times = {1.0, 3.0};
     const Enclosure proved = prove(model, claim);
     const auto json = nlohmann::json::parse(to_json(*model, claim, proved));

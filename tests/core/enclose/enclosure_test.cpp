@@ -3,6 +3,10 @@
 
 #include <cfenv>
 
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 #include "number/ground.hpp"
 
 namespace achilles::test {
@@ -92,7 +96,7 @@ TEST(Enclosure, HoldsThemWhereverTheBouncingIsCut) {
         for (const Problem& problem : problems) {
             SCOPED_TRACE(fmt::format("{} {}", problem.key, eps_t));
             const auto model = load(problem.asset);
-            Claim claim = claim_of(problem, *model);
+            achilles::Claim claim = claim_of(problem, *model);
             claim.eps_t = eps_t;
             claim.cut_early = true;
             const Enclosure proved = prove(model, claim);
@@ -108,7 +112,7 @@ TEST(Enclosure, RunsTheBallAtAnyRestitution) {
     const nlohmann::json expected = reference("ball_restitution");
     for (const auto& [e, times] : expected.items()) {
         if (e == "about") continue;
-        Claim claim = claim_of(problems[0], *model);
+        achilles::Claim claim = claim_of(problems[0], *model);
         claim.parameters.back() = Interval(std::stod(e));
         const Enclosure proved = prove(model, claim);
         ASSERT_TRUE(proved.end) << e << ": " << proved.outcome.message;
@@ -120,7 +124,7 @@ TEST(Enclosure, RunsTheBallAtAnyRestitution) {
         EXPECT_EQ(at, 3u) << e;
     }
     for (const double e : {0.0, 0.9, 0.99, 1.0}) {
-        Claim claim = claim_of(problems[0], *model);
+        achilles::Claim claim = claim_of(problems[0], *model);
         claim.parameters.back() = Interval(e);
         EXPECT_TRUE(prove(model, claim).end) << e;
     }
@@ -177,7 +181,7 @@ TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
     const auto model = load("double_pendulum");
     achilles::Run run = model->default_run();
     run.options.end_time = 1.0;
-    Claim claim = achilles::claim_of(run);
+    achilles::Claim claim = achilles::claim_of(run);
     claim.times = {0.0, 0.1, 0.25, 0.5, 0.75};
     const Enclosure proved = prove(model, claim);
     ASSERT_TRUE(proved.end);
@@ -196,7 +200,7 @@ TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
 // On an impact both sides are in the box; in the window of a completion all of it; and after an early stop nothing.
 TEST(Enclosure, AtTheTimeOfAnEventHoldsBothSides) {
     const auto model = load("ball_on_sine");
-    Claim claim = claim_of(problems[0], *model);
+    achilles::Claim claim = claim_of(problems[0], *model);
     claim.run.options.end_time = 4.0;
     const double impact = number(reference("fig4")["problems"]["ball"]["impacts"][0][0]["t"]);
     const double zeno = number(reference("fig4")["problems"]["ball"]["zeno_times"][0]);
@@ -220,7 +224,7 @@ TEST(Enclosure, AtTheTimeOfAnEventHoldsBothSides) {
 
 TEST(Enclosure, PrintsNoStateAfterAnEarlyStop) {
     const auto model = load("ball_on_sine");
-    Claim claim = widened(model->default_run(), 1e-3);
+    achilles::Claim claim = widened(model->default_run(), 1e-3);
     claim.run.options.end_time = 20.0;
     for (int i = 1; i < 200; ++i) claim.times.push_back(0.1 * i);
     const Enclosure proved = prove(model, claim);
@@ -237,7 +241,7 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
     for (const double half : {1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
-        Claim claim = achilles::claim_of(run);
+        achilles::Claim claim = achilles::claim_of(run);
         claim.v[0] = Interval(5.64340560783886) + Interval(-half, half);
         EXPECT_EQ(prove(model, claim).outcome.kind, Enclosure::Outcome::Kind::undecided) << half;
         for (const double side : {-30.0, 30.0}) {
@@ -252,7 +256,7 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
 // In contact from the trough; with sqrt 5 the contact force touches zero on the way up.
 TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
     const auto model = load("ball_on_sine");
-    Claim claim = achilles::claim_of(model->default_run());
+    achilles::Claim claim = achilles::claim_of(model->default_run());
     claim.q = {-Interval::pi() / Interval(2.0), Interval(-1.0)};
     claim.run.options.end_time = 3.0;
     for (const double half : {1e-10, 1e-8, 1e-6}) {
@@ -272,12 +276,21 @@ TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
 // A run stays where it is on its thread: another rounding, denormals as zero.
 TEST(Enclosure, StandsOnItsOwnGround) {
     const auto model = load("ball_on_floor");
-    const Claim claim = achilles::claim_of(model->default_run());
+    const achilles::Claim claim = achilles::claim_of(model->default_run());
     const Enclosure plain = prove(model, claim);
     const int rounding = std::fegetround();
     std::fesetround(FE_UPWARD);
     const Enclosure upward = prove(model, claim);
     std::fesetround(rounding);
+#if defined(__SSE2__)
+    const unsigned control = _mm_getcsr();
+    _mm_setcsr(control | 0x8040u);  // denormals are zero
+    const Enclosure flushed = prove(model, claim);
+    EXPECT_EQ(_mm_getcsr() & 0x8040u, 0x8040u);
+    _mm_setcsr(control);
+    ASSERT_TRUE(flushed.end);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(plain.end->q[i].hi(), flushed.end->q[i].hi());
+#endif
     ASSERT_TRUE(plain.end && upward.end);
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(plain.end->q[i].lo(), upward.end->q[i].lo());
@@ -295,7 +308,7 @@ TEST(Enclosure, RefusesWhatItDoesNotCover) {
         EXPECT_NE(error.message.find("several gaps"), std::string::npos);
     }
     const auto model = load("ball_on_sine");
-    Claim claim = achilles::claim_of(model->default_run());
+    achilles::Claim claim = achilles::claim_of(model->default_run());
     claim.parameters.back() = Interval(0.9, 1.1);
     EXPECT_THROW(prove(model, claim), InputError);
 }

@@ -22,8 +22,8 @@ inline double widest(const Intervals& box) {
 }
 
 // The paper's problem as fig4.json starts it: the pendulum's angles are no doubles.
-inline Claim claim_of(const Problem& problem, const Model& model) {
-    Claim claim = achilles::claim_of(model.default_run());
+inline achilles::Claim claim_of(const Problem& problem, const Model& model) {
+    achilles::Claim claim = achilles::claim_of(model.default_run());
     claim.run.options.end_time = 20.0;
     if (problem.key == "double_pendulum")
         claim.q = {Interval::pi() / Interval(6.0), Interval::pi() * Interval(25.0) / Interval(180.0)};
@@ -31,8 +31,8 @@ inline Claim claim_of(const Problem& problem, const Model& model) {
 }
 
 // Of a run's numbers those around them.
-inline Claim widened(const Run& run, double half) {
-    Claim claim = achilles::claim_of(run);
+inline achilles::Claim widened(const Run& run, double half) {
+    achilles::Claim claim = achilles::claim_of(run);
     widen(claim, half);
     return claim;
 }
