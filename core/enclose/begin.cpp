@@ -1,6 +1,7 @@
 // How a proof begins: in flight, in contact, or taking off; and what no proof covers.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
