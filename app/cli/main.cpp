@@ -70,6 +70,7 @@ int run(std::vector<std::string> words, Messages* ranks) {
     int status = reached_end;
     add_explore(program, status);
     add_simulate(program, status);
+    add_prove(program, status);
     PictureJob job(words);
     add_pictures(program, status, job, ranks);
     add_reproduce(program, status);

@@ -31,8 +31,8 @@ Psi sizes_of_psi(const Trend& trend, const Interval& e, const Interval& per_a) {
 
 }  // namespace
 
-Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
-                          const Interval& a_max, const Interval& w, const Interval& latest) {
+Interval third_order_error(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
+                           const Interval& a_max, const Interval& w, const Interval& latest) {
     const Interval a(trend.a), one(1.0), two(2.0), T(latest.hi()), per_a = one / a, per_a_min = one / a_min;
     const Interval e2 = square(e), h_m = Interval(0.5) * square(e * w) * per_a_min, middle(mid(drift.Phi));
     const Interval rho = abs(drift.start - a) + abs(drift.by_sigma - Interval(trend.c)) * w +
@@ -44,7 +44,13 @@ Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval
     const Psi psi = sizes_of_psi(trend, e, per_a);
     const Interval S = T * psi.with_time + two * z_m * psi.without;
     const Interval doubled = two * per_a / (one - e);  // 2/(a (1 - e))
-    const Interval off = T * (doubled * rho + d_m * S), T0 = doubled * e * w;
+    return T * (doubled * rho + d_m * S);
+}
+
+Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
+                          const Interval& a_max, const Interval& w, const Interval& latest) {
+    const Interval one(1.0), two(2.0), per_a = one / Interval(trend.a), T0 = two * per_a / (one - e) * e * w;
+    const Interval off = third_order_error(trend, drift, e, a_min, a_max, w, latest);
     const Interval curving = (two * Interval(trend.b) * per_a + Interval(trend.c)) / Interval(6.0);
     const Interval centre = T0 - square(T0) * curving;
     if (!off.is_defined() || !centre.is_defined()) return Interval::undefined();

@@ -41,5 +41,8 @@ struct Drift {
 // z), continuous across impacts too, whose coefficients are cA to cG. Undefined where the enclosures are.
 Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
                           const Interval& a_max, const Interval& w, const Interval& latest);
+// That bound by itself, whose upper end counts: T (2 rho/(a (1-e)) + d_m S).
+Interval third_order_error(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
+                           const Interval& a_max, const Interval& w, const Interval& latest);
 
 }  // namespace achilles

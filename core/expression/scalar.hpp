@@ -10,9 +10,18 @@
 
 namespace achilles {
 
+// A number with its derivatives, which a constant has not (number/jet.hpp).
+template <class Scalar>
+concept HasDerivatives = requires {
+    typename Scalar::Component;
+};
+
 template <class Scalar>
 Scalar scalar_from(const Constant& constant) {
-    return Scalar(constant.numerator) / Scalar(constant.denominator);
+    if constexpr (HasDerivatives<Scalar>)
+        return Scalar(scalar_from<typename Scalar::Component>(constant));
+    else
+        return Scalar(constant.numerator) / Scalar(constant.denominator);
 }
 template <>
 inline double scalar_from<double>(const Constant& constant) {
@@ -26,7 +35,10 @@ inline Interval scalar_from<Interval>(const Constant& constant) {
 template <class Scalar>
 Scalar scalar_pi() {
     using std::acos;
-    return acos(Scalar(-1));
+    if constexpr (HasDerivatives<Scalar>)
+        return Scalar(scalar_pi<typename Scalar::Component>());
+    else
+        return acos(Scalar(-1));
 }
 template <>
 inline double scalar_pi<double>() {

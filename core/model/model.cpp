@@ -95,6 +95,11 @@ const Motion& Model::motion(ContactSet held) const {
     return derived(motions_, held, [&] { return make_motion(held_motions().of(held), equations_, layout_); });
 }
 
+const SeriesProgram& Model::hddot_series(ContactSet held) const {
+    return derived(hddot_series_, held,
+                   [&] { return make_hddot_series(held_motions().of(held), equations_, layout_); });
+}
+
 const Model::ContactPrograms& Model::programs_of(std::size_t contact, ContactSet held) const {
     if (held.empty()) return *free_[contact];
     return derived(programs_, {held, contact}, [&] { return compile_contact(held_motions().of(held), contact); });

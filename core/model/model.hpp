@@ -48,6 +48,8 @@ class Model {
     // The motion that holds these contacts, compiled when it is first asked for. Lives as long as the model.
     const Motion& motion(ContactSet held) const;
     LanePrograms lane_programs() const;
+    // The same motion with hddot of every contact as event functions, for proofs (make_hddot_series).
+    const SeriesProgram& hddot_series(ContactSet held) const;
 
     // What is asked of one contact while others are held, compiled when it is first asked for.
     struct ContactPrograms {
@@ -159,6 +161,7 @@ class Model {
     mutable std::mutex held_mutex_;                        // of what is derived when it is asked for
     mutable std::unique_ptr<HeldMotions> held_;
     mutable std::map<ContactSet, Motion> motions_;
+    mutable std::map<ContactSet, SeriesProgram> hddot_series_;
     mutable std::map<ContactSet, Program> powers_;
     mutable std::map<WhileHeld, ContactPrograms> programs_;
     mutable std::map<WhileHeld, Bouncing> bouncings_;

@@ -13,30 +13,51 @@ std::pair<Expressions, Expressions> accelerations(const HeldEquations& motion) {
     return {motion.f, {}};
 }
 
+// The pivots of M in a motion's graph.
+Expressions pivots_of(const Equations& equations, Graph& graph) {
+    Expressions pivots;
+    for (const Expression pivot : equations.pivots) pivots.push_back(graph.adopt(pivot));
+    return pivots;
+}
+
+// The motion with these event functions, in the way that takes fewer products.
+SeriesProgram series_of(const HeldEquations& motion, const Expressions& event_functions, const Expressions& pivots,
+                        const Layout& layout) {
+    const auto with = [&](const Expressions& acceleration) {
+        return SeriesProgram(Program(joined({acceleration, event_functions, pivots}), layout.slots()), layout.dof,
+                             event_functions.size());
+    };
+    const auto [f, by_force] = accelerations(motion);
+    SeriesProgram series = with(f);
+    if (!by_force.empty()) {
+        SeriesProgram other = with(by_force);
+        if (other.inner_sums() < series.inner_sums()) series = std::move(other);
+    }
+    return series;
+}
+
 }  // namespace
+
+SeriesProgram make_hddot_series(const HeldEquations& motion, const Equations& equations, const Layout& layout) {
+    Expressions hddot;
+    for (const ContactEquations& contact : motion.contacts) hddot.push_back(contact.hddot);
+    return series_of(motion, hddot, pivots_of(equations, motion.f.front().graph()), layout);
+}
 
 Motion make_motion(const HeldEquations& motion, const Equations& e, const Layout& layout) {
     const Slots slots = layout.slots();
     Graph& graph = motion.f.front().graph();
-    Expressions pivots, hddot, jerks, event_functions;
-    for (const Expression pivot : e.pivots) pivots.push_back(graph.adopt(pivot));
+    const Expressions pivots = pivots_of(e, graph);
+    Expressions hddot, jerks, event_functions;
     for (std::size_t i = 0; i < motion.contacts.size(); ++i) {
         const ContactEquations& c = motion.contacts[i];
         hddot.push_back(c.hddot);
         event_functions.push_back(motion.held.contains(i) ? c.hddot : c.gap);
         if (motion.held.contains(i)) jerks.push_back(jerk_of(c, layout));
     }
-    const auto series_of = [&](const Expressions& acceleration) {
-        return SeriesProgram(Program(joined({acceleration, event_functions, pivots}), slots), layout.dof,
-                             event_functions.size());
-    };
-    const auto [f, by_force] = accelerations(motion);
-    SeriesProgram series = series_of(f);
-    if (!by_force.empty()) {  // two ways to say the same; one takes fewer products
-        SeriesProgram other = series_of(by_force);
-        if (other.inner_sums() < series.inner_sums()) series = std::move(other);
-    }
-    return {motion.held, ProgramOf<MotionTerms>::of(slots, f, pivots, joined({hddot, jerks})), std::move(series)};
+    SeriesProgram series = series_of(motion, event_functions, pivots, layout);
+    return {motion.held, ProgramOf<MotionTerms>::of(slots, motion.f, pivots, joined({hddot, jerks})),
+            std::move(series)};
 }
 
 }  // namespace achilles

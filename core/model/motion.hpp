@@ -18,5 +18,8 @@ struct Motion {
 
 // Compiles a motion; `equations` has the graph of `motion`, or that it was copied from. Throws TooLarge.
 Motion make_motion(const HeldEquations& motion, const Equations& equations, const Layout& layout);
+// The series of a motion with hddot of every contact, open or held, for event functions: what proofs follow, in which the gap
+// is a coordinate by itself (theory-enclosure.md 1).
+SeriesProgram make_hddot_series(const HeldEquations& motion, const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

@@ -107,7 +107,7 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
             typename Some::Value { return Some::load(x + j * width) * Some::load(y + (k + 1 - j) * width); };
         Some::store(sums.template add_up<typename Some::Value>(k, product), totals + i);
     }
-    const double inverse = 1.0 / static_cast<double>(k + 1);
+    const Number inverse = Number(1.0) / Number(static_cast<double>(k + 1));
     for (std::size_t i = 0; i < plan.weighted; ++i) totals[i] = totals[i] * inverse;
 }
 
@@ -120,7 +120,7 @@ void make_motion_order(const SeriesPlan& plan, const InnerSums<Number>& sums, co
     Number* const now = tables.now;
     if (k > 1) {
         const Number* const below = row - plan.states();
-        const Number inverse = 1.0 / static_cast<double>(k);
+        const Number inverse = Number(1.0) / Number(static_cast<double>(k));
         for (std::size_t i = 0; i < n; ++i) {
             row[i] = inverse * below[n + i];
             row[n + i] = inverse * now[plan.outputs[i]];

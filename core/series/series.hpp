@@ -39,6 +39,8 @@ class SeriesProgram {
  private:
     template <class Number>
     friend class SeriesEvaluator;
+    template <class Number>
+    friend class SeriesOver;
     friend class SeriesCompiler;
     friend class LaneAccess;
 

@@ -25,6 +25,7 @@ void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks);
 // All of them.
 void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks = nullptr);
+void add_prove(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new

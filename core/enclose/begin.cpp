@@ -1,0 +1,126 @@
+// How a proof begins: in flight, in contact, or taking off; and what no proof covers.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "enclose/prover.hpp"
+
+namespace achilles {
+
+// The gap and its rate become coordinates.
+void Prover::begin() {
+    const Intervals start = set_.hull();
+    maps_->measure_gap(set_);
+    const Interval h = set_.hull(z_.h());
+    if (certainly_positive(h)) {
+        gap_ = h;
+        return;
+    }
+    begin_on_surface(start);
+}
+
+// A start that is on the surface to within rounding: the theorem is about the members with h = 0, and those with hdot = 0
+// where that is not told from 0. That there are such members is proved by a change of sign of h along n.
+void Prover::begin_on_surface(const Intervals& start) {
+    const Maps::Surface surface = maps_->surface(start);
+    const Undecided doubt{"contact or flight at the start: the gap cannot be told from zero for all of the set"};
+    // What roundings of the coordinates make of the gap; g n = 1, so that a way along n is as long as the gap it makes.
+    Intervals near = start;
+    for (std::size_t i = 0; i < z_.dof; ++i) {
+        const double ulps = 0x1p-48 * mag(near[z_.q(i)]);
+        near[z_.q(i)] = Interval(mid(near[z_.q(i)])) + Interval(-ulps, ulps);
+    }
+    const double error = rad(maps_->surface(near).h), off = mag(surface.h);
+    const double reach = 4.0 * error + 0x1p-200;  // where all are 0 to the last bit, too
+    if (!(off <= reach)) throw doubt;
+    Intervals below = start, above = start;
+    for (std::size_t i = 0; i < z_.dof; ++i) {
+        const double n = mid(surface.n[i]);
+        below[z_.q(i)] = Interval(mid(below[z_.q(i)])) - Interval(n) * Interval(reach);
+        above[z_.q(i)] = Interval(mid(above[z_.q(i)])) + Interval(n) * Interval(reach);
+    }
+    if (!certainly_negative(maps_->surface(below).h) || !certainly_positive(maps_->surface(above).h)) throw doubt;
+    // The members that are meant lie within reach of these.
+    Intervals box = start;
+    for (std::size_t i = 0; i < z_.dof; ++i) box[z_.q(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * reach);
+    box[z_.h()] = Interval(0.0);
+    const Interval u = maps_->surface(box).hdot;
+    if (certainly_positive(u)) {
+        box[z_.u()] = u;
+        set_ = Doubleton(box, z_.varied.size());
+        maps_->measure_gap(set_);
+        set_.set(z_.h(), 0.0);
+        known_ = KnownRoot::landed;
+        return;
+    }
+    double fast = 0.0;
+    for (std::size_t i = 0; i < z_.dof; ++i) fast = std::max(fast, mag(box[z_.v(i)]));
+    if (certainly_negative(u) || rad(u) > 0x1p-40 * std::max(fast, 1.0))
+        throw Undecided{"the start lands on the surface, or may: start a little before it"};
+    for (std::size_t i = 0; i < z_.dof; ++i) box[z_.v(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * mag(u));
+    box[z_.u()] = Interval(0.0);
+    set_ = Doubleton(box, z_.varied.size());
+    maps_->retract(set_);
+    const Interval hddot = maps_->normal(set_.hull()).hddot;
+    if (certainly_negative(hddot)) {
+        in_contact_ = true;
+    } else if (certainly_positive(hddot)) {
+        known_ = KnownRoot::at_rest;
+    } else {
+        throw Undecided{
+            "contact or flight at the start: the contact force cannot be told from zero for all of the set"};
+    }
+}
+
+namespace {
+
+// An interval that rounding alone may have made is no coordinate: what depends on it is enclosed for all of it at once.
+bool is_wide(const Interval& x) { return width(x) > 0x1p-47 * mag(x); }
+
+InputError refusal(const Model& model, const std::string& why) {
+    return {model.description().file, {}, "prove does not cover this system: " + why};
+}
+
+}  // namespace
+
+Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch) {
+    const auto clock = std::chrono::steady_clock::now();
+    const Ground ground;
+    if (model->contacts() > 1) throw refusal(*model, "it has several gaps, and a proof follows one");
+    Coordinates z;
+    z.dof = static_cast<std::size_t>(model->dof());
+    z.autonomous = model->equations().autonomous;
+    z.parameters = claim.parameters;
+    Intervals start{Interval(claim.run.options.start_time)};
+    start.insert(start.end(), claim.q.begin(), claim.q.end());
+    start.insert(start.end(), claim.v.begin(), claim.v.end());
+    start.insert(start.end(), {Interval(0.0), Interval(0.0)});
+    for (std::size_t i = 0; i < z.parameters.size(); ++i)
+        if (is_wide(z.parameters[i])) {
+            z.varied.push_back(i);
+            start.push_back(z.parameters[i]);
+        }
+    Enclosure result;
+    try {
+        const auto e = make_maps(*model, z)->restitution(start);
+        if (!(e.lo() >= -0x1p-50 && e.hi() <= 1.0 + 0x1p-50))
+            throw InputError(
+                model->description().file, model->description().constraints[0].restitution.at,
+                fmt::format("the restitution must lie in [0, 1], but it may be in [{}, {}]", e.lo(), e.hi()),
+                "0 is plastic, 1 is elastic");
+        result = Prover(*model, claim, z, start, watch, ground).run();
+    } catch (const Undecided& doubt) {
+        throw refusal(*model, doubt.reason);
+    }
+    result.assumptions = fmt::format(
+        "IEEE double arithmetic, rounded to nearest, with denormal numbers (set on this thread); errors of {} of at "
+        "most "
+        "2 ulp, 4 for hyperbolic functions; the derivation and compilation of the equations",
+        mathematical_library());
+    result.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return result;
+}
+
+}  // namespace achilles

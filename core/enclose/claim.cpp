@@ -1,0 +1,182 @@
+// What is claimed: a run's numbers as boxes, the parts of a box, and what is impossible about one.
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "enclose/enclosure.hpp"
+#include "expression/expression.hpp"
+#include "number/ground.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+Claim claim_of(const Run& run) {
+    Claim claim;
+    claim.run = run;
+    claim.q.assign(run.q.begin(), run.q.end());
+    claim.v.assign(run.v.begin(), run.v.end());
+    claim.parameters.assign(run.parameters.begin(), run.parameters.end());
+    return claim;
+}
+
+Interval as_written(double x) {
+    const Ground ground;
+    Graph graph;
+    const Constant shortest = graph.constant(graph.decimal(fmt::format("{}", std::abs(x))).id());
+    if (shortest.low == shortest.high) return {x};
+    const double around = 4.0 * rounding::epsilon * std::abs(x);
+    return Interval(x) + Interval(-around, around);
+}
+
+Claim claim_as_written(const Run& run) {
+    Claim claim = claim_of(run);
+    for (Intervals* box : {&claim.q, &claim.v, &claim.parameters})
+        for (Interval& entry : *box) entry = as_written(mid(entry));
+    return claim;
+}
+
+void widen(Claim& claim, double half) {
+    if (half == 0.0) return;  // not even a rounding
+    const Ground ground;
+    for (Intervals* box : {&claim.q, &claim.v})
+        for (Interval& entry : *box) entry += Interval(-half, half);
+}
+
+namespace {
+
+// The sides of a claim that a part may be cut from.
+std::vector<Interval*> sides_of(Claim& claim) {
+    std::vector<Interval*> sides;
+    for (Intervals* box : {&claim.q, &claim.v, &claim.parameters})
+        for (Interval& entry : *box)
+            if (width(entry) > 0x1p-47 * mag(entry)) sides.push_back(&entry);
+    return sides;
+}
+
+Claim part_of(const Claim& claim, std::size_t which, int parts) {
+    Claim result = claim;
+    for (Interval* side : sides_of(result)) {
+        const auto k = static_cast<double>(which % static_cast<std::size_t>(parts));
+        which /= static_cast<std::size_t>(parts);
+        const auto at = [&, whole = *side](double i) {  // neighbours share an end, to the last bit
+            if (i == 0.0) return whole.lo();
+            if (i == parts) return whole.hi();
+            return std::clamp(whole.lo() + i / parts * (whole.hi() - whole.lo()), whole.lo(), whole.hi());
+        };
+        *side = Interval(at(k), at(k + 1.0));
+    }
+    return result;
+}
+
+void join(Intervals& a, const Intervals& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] = hull(a[i], b[i]);
+}
+
+void join(EnclosedState& a, const EnclosedState& b) {
+    join(a.q, b.q);
+    join(a.v, b.v);
+}
+
+// What two parts say together.
+void join(Enclosure& a, const Enclosure& b) {
+    std::size_t same = 0;
+    while (same < a.events.size() && same < b.events.size() && a.events[same].kind == b.events[same].kind) {
+        EnclosedEvent &x = a.events[same], y = b.events[same++];
+        x.t = hull(x.t, y.t);
+        join(x.q, y.q);
+        join(x.v_before, y.v_before);
+        join(x.v_after, y.v_after);
+        x.impacts = std::max(x.impacts, y.impacts);
+    }
+    const bool both_begin_so = same == std::min(a.events.size(), b.events.size());
+    if (!both_begin_so || (a.end && b.end && a.events.size() != b.events.size())) a.events_differ = true;
+    a.events.resize(same);
+    std::vector<EnclosedState> samples;
+    for (EnclosedState& x : a.samples)
+        for (const EnclosedState& y : b.samples)
+            if (x.t == y.t) {
+                join(x, y);
+                samples.push_back(x);
+            }
+    a.samples = samples;
+    if (a.end && b.end) join(*a.end, *b.end);
+    if (!b.end) a.end.reset();
+    if (b.outcome.kind != Enclosure::Outcome::Kind::end_time &&
+        (a.outcome.kind == Enclosure::Outcome::Kind::end_time || b.proved_until < a.proved_until))
+        a.outcome = b.outcome;
+    a.proved_until = std::min(a.proved_until, b.proved_until);
+    a.statistics.steps += b.statistics.steps;
+    a.statistics.impacts += b.statistics.impacts;
+}
+
+}  // namespace
+
+Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts, ProofWatch* watch) {
+    Claim whole = claim;
+    const double count = std::pow(parts, static_cast<double>(sides_of(whole).size()));
+    if (!(parts >= 1 && count <= 1e6))
+        throw InputError(fmt::format("--split {}", parts), {},
+                         fmt::format("these are {:.0f} parts, and 1000000 are allowed", count));
+    const auto clock = std::chrono::steady_clock::now();
+    std::vector<Enclosure> all(static_cast<std::size_t>(count));
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        ProofWatch of_part{watch != nullptr ? watch->stop : std::stop_token{}};
+        all[i] = prove(model, part_of(claim, i, parts), &of_part);
+    });
+    Enclosure result = all.front();
+    for (std::size_t i = 1; i < all.size(); ++i) join(result, all[i]);
+    if (watch != nullptr) watch->time = result.proved_until;
+    result.statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    return result;
+}
+
+void check(const Model& model, const Claim& claim) {
+    const Ground ground;
+    const SystemDescription& description = model.description();
+    std::vector<InputError> told;
+    for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
+        const ConstraintDescription& constraint = description.constraints[contact];
+        Evaluator<Interval> e(model.restitution(contact)), gap(model.gap(contact));
+        for (std::size_t i = 0; i < claim.parameters.size(); ++i)
+            e.input(model.layout().parameter(i)) = gap.input(model.layout().parameter(i)) = claim.parameters[i];
+        e.fix();
+        e.run();
+        const Interval bound = e.output(0);
+        if (bound.hi() > 1.0 + 0x1p-40 || bound.lo() < -0x1p-40)
+            told.push_back(description.error(
+                constraint.restitution.at,
+                fmt::format(
+                    "the restitution must lie in [0, 1], but the claim's is in [{}, {}]: the part {} is impossible",
+                    bound.lo(), bound.hi(), bound.hi() > 1.0 ? "above 1" : "below 0"),
+                "0 is plastic, 1 is elastic"));
+        // At the corners: one that is below the surface by all parameters is no start.
+        gap.fix();
+        gap.clock() = Interval(claim.run.options.start_time);
+        const std::size_t n = claim.q.size();
+        for (std::size_t corner = 0; corner < std::size_t{1} << n; ++corner) {
+            std::string where;
+            double size = 0.0;
+            for (std::size_t i = 0; i < n; ++i) {
+                const double q = corner >> i & 1u ? claim.q[i].hi() : claim.q[i].lo();
+                gap.input(i) = Interval(q);
+                gap.input(n + i) = claim.v[i];
+                size = std::max(size, std::abs(q));
+                where += fmt::format("{}{} = {}", i > 0 ? ", " : "", description.coordinates[i].name, q);
+            }
+            gap.run();
+            if (!(gap.output(0).hi() < -0x1p-44 * std::max(1.0, size))) continue;
+            told.push_back(
+                description.error(constraint.gap.at,
+                                  fmt::format("the gap is negative for a part of the starts: h <= {:.3g} at {}",
+                                              gap.output(0).hi(), where),
+                                  "choose starts with h(q) >= 0"));
+            break;
+        }
+    }
+    if (!told.empty()) throw InputErrors(told);
+}
+
+}  // namespace achilles

@@ -1,0 +1,78 @@
+// Where the coordinates of a set of states stand (theory-enclosure.md 1): the member's own time, q, v, its gap h and the rate
+// u of that once more, and the parameters that are intervals.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "enclose/doubleton.hpp"
+
+namespace achilles {
+
+struct Coordinates {
+    std::size_t dof = 0;
+    bool autonomous = true;
+    Intervals parameters;             // all of the system's: those that are no coordinates are the same for all members
+    std::vector<std::size_t> varied;  // of them, which are coordinates
+
+    static constexpr std::size_t t() { return 0; }
+    std::size_t q(std::size_t i) const { return 1 + i; }
+    std::size_t v(std::size_t i) const { return 1 + dof + i; }
+    std::size_t h() const { return 1 + 2 * dof; }
+    std::size_t u() const { return 2 + 2 * dof; }
+    std::size_t parameter(std::size_t k) const { return 3 + 2 * dof + k; }
+    std::size_t size() const { return 3 + 2 * dof + varied.size(); }
+
+    // The coordinates that the accelerations depend on, and those that maps do: h and u besides.
+    std::vector<std::size_t> of_motion() const {
+        std::vector<std::size_t> result;
+        for (std::size_t i = 0; i < 2 * dof; ++i) result.push_back(q(i));
+        if (!autonomous) result.push_back(t());
+        for (std::size_t k = 0; k < varied.size(); ++k) result.push_back(parameter(k));
+        return result;
+    }
+    std::vector<std::size_t> of_maps() const {
+        std::vector<std::size_t> result = of_motion();
+        result.push_back(h());
+        result.push_back(u());
+        return result;
+    }
+    // The coordinates of a box as numbers with derivatives by these variables; all of the system's parameters likewise.
+    template <class Number>
+    std::vector<Number> numbers(const Intervals& box, const std::vector<std::size_t>& variables) const {
+        std::vector<Number> result;
+        for (const Interval& entry : box) result.emplace_back(entry);
+        mark(result, variables);
+        return result;
+    }
+    template <class Number>
+    std::vector<Number> parameter_numbers(const std::vector<Number>& state) const {
+        std::vector<Number> result;
+        for (const Interval& value : parameters) result.emplace_back(value);
+        for (std::size_t k = 0; k < varied.size(); ++k) result[varied[k]] = state[parameter(k)];
+        return result;
+    }
+
+ private:
+    template <class Number>
+    static void mark(std::vector<Number>& state, const std::vector<std::size_t>& variables) {
+        Number none;
+        if constexpr (sizeof(none.slope) >= sizeof(Interval))
+            for (std::size_t j = 0; j < variables.size(); ++j)
+                state[variables[j]] = Number::variable(state[variables[j]].value, j);
+    }
+};
+
+// Makes maker.template operator()<N>() for the least N that holds so many directions. Throws Undecided for too many.
+template <class Maker>
+auto with_directions(std::size_t count, const Maker& maker) {
+    if (count <= 4) return maker.template operator()<4>();
+    if (count <= 6) return maker.template operator()<6>();
+    if (count <= 8) return maker.template operator()<8>();
+    if (count <= 12) return maker.template operator()<12>();
+    if (count <= 18) return maker.template operator()<18>();
+    if (count <= 26) return maker.template operator()<26>();
+    throw Undecided{"there are more coordinates and interval parameters than a proof follows: 26 at most"};
+}
+
+}  // namespace achilles

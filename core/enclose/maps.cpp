@@ -1,0 +1,186 @@
+#include "enclose/maps.hpp"
+
+#include "number/jet.hpp"
+
+namespace achilles {
+
+namespace {
+
+// The programs of a contact over one number.
+template <class Number>
+class Programs {
+ public:
+    Programs(const Model& model, const Coordinates& coordinates, std::size_t contact)
+        : z_(coordinates),
+          layout_(model.layout()),
+          terms_(Evaluator<Number>(model.programs_of(contact).contact_terms), coordinates.dof),
+          release_(Evaluator<Number>(model.programs_of(contact).release_terms), coordinates.dof),
+          restitution_(model.restitution(contact)) {}
+
+    std::vector<Number> numbers(const Intervals& box) {
+        std::vector<Number> z = z_.numbers<Number>(box, z_.of_maps());
+        const std::vector<Number> parameters = z_.parameter_numbers(z);
+        for (std::size_t i = 0; i < parameters.size(); ++i)
+            terms_.input(layout_.parameter(i)) = release_.input(layout_.parameter(i)) =
+                restitution_.input(layout_.parameter(i)) = parameters[i];
+        terms_.fix();
+        release_.fix();
+        restitution_.fix();
+        return z;
+    }
+
+    void measure_gap(std::vector<Number>& z) {
+        look(terms_, z);
+        z[z_.h()] = terms_.h();
+        z[z_.u()] = terms_.hdot();
+    }
+    void take_rate_out(std::vector<Number>& z) {
+        look(terms_, z);
+        push(z, z[z_.u()]);
+    }
+    void impact(std::vector<Number>& z) {
+        look(terms_, z);
+        restitution_.run();
+        const Number e = restitution_.output(0);
+        push(z, (Number(1.0) + e) * z[z_.u()]);
+        z[z_.u()] = -(e * z[z_.u()]);
+    }
+    void retract(std::vector<Number>& z) {
+        look(terms_, z);
+        shift(z, Number(terms_.h()));
+        push(z, Number(terms_.hdot()));
+    }
+    void project(std::vector<Number>& z) {
+        look(terms_, z);
+        shift(z, terms_.h() - z[z_.h()]);
+        push(z, terms_.hdot() - z[z_.u()]);
+    }
+
+    const ContactTerms<Evaluator<Number>>& terms(const std::vector<Number>& z) {
+        look(terms_, z);
+        return terms_;
+    }
+    const ReleaseTerms<Evaluator<Number>>& release(const std::vector<Number>& z) {
+        look(release_, z);
+        return release_;
+    }
+    Interval restitution() {
+        restitution_.run();
+        return restitution_.output(0).value;
+    }
+
+ private:
+    template <class Terms>
+    void look(Terms& terms, const std::vector<Number>& z) {
+        for (std::size_t i = 0; i < 2 * z_.dof; ++i) terms.input(i) = z[z_.q(i)];
+        terms.clock() = z[Coordinates::t()];
+        terms.run();
+    }
+    // q -= n times that much, and the terms are those there.
+    void shift(std::vector<Number>& z, const Number& h) {
+        for (std::size_t i = 0; i < z_.dof; ++i) z[z_.q(i)] = z[z_.q(i)] - terms_.impulse_direction(i) * h;
+        look(terms_, z);
+    }
+    // v -= n times that much.
+    void push(std::vector<Number>& z, const Number& rate) {
+        for (std::size_t i = 0; i < z_.dof; ++i) z[z_.v(i)] = z[z_.v(i)] - terms_.impulse_direction(i) * rate;
+    }
+
+    Coordinates z_;
+    Layout layout_;
+    ContactTerms<Evaluator<Number>> terms_;
+    ReleaseTerms<Evaluator<Number>> release_;
+    Evaluator<Number> restitution_;
+};
+
+template <std::size_t N>
+class MapsOver : public Maps {
+    using Value = Jet<Interval, 0>;
+    using Gradient = Jet<Interval, N>;
+
+ public:
+    MapsOver(const Model& model, const Coordinates& coordinates, std::size_t contact)
+        : z_(coordinates),
+          variables_(coordinates.of_maps()),
+          values_(model, coordinates, contact),
+          gradients_(model, coordinates, contact) {}
+
+    void measure_gap(Doubleton& set) override {
+        apply(set, [](auto& programs, auto& z) { programs.measure_gap(z); });
+    }
+    void take_rate_out(Doubleton& set) override {
+        apply(set, [](auto& programs, auto& z) { programs.take_rate_out(z); });
+    }
+    void impact(Doubleton& set) override {
+        apply(set, [](auto& programs, auto& z) { programs.impact(z); });
+    }
+    void project(Doubleton& set) override {
+        apply(set, [](auto& programs, auto& z) { programs.project(z); });
+    }
+    void retract(Doubleton& set) override {
+        apply(set, [](auto& programs, auto& z) { programs.retract(z); });
+    }
+
+    Normal normal(const Intervals& box) override {
+        const std::vector<Gradient> z = gradients_.numbers(box);
+        const auto& terms = gradients_.release(z);
+        Normal result{terms.hddot().value, terms.jerk().value, Intervals(z_.size())};
+        for (std::size_t j = 0; j < variables_.size(); ++j) result.slope[variables_[j]] = terms.hddot().slope[j];
+        return result;
+    }
+    Interval restitution(const Intervals& box) override {
+        values_.numbers(box);
+        return values_.restitution();
+    }
+    Surface surface(const Intervals& box) override {
+        const std::vector<Value> z = values_.numbers(box);
+        const auto& terms = values_.terms(z);
+        Surface result{terms.h().value, terms.hdot().value, {}, {}};
+        for (std::size_t i = 0; i < z_.dof; ++i) {
+            result.n.push_back(terms.impulse_direction(i).value);
+            result.gradient.push_back(terms.gradient(i).value);
+        }
+        return result;
+    }
+
+ private:
+    // What the map leaves alone has derivative 1 by itself.
+    template <class Map>
+    void apply(Doubleton& set, const Map& map) {
+        std::vector<Value> centre = values_.numbers(set.centre());
+        std::vector<Gradient> over = gradients_.numbers(set.hull());
+        const std::vector<Gradient> before = over;
+        map(values_, centre);
+        map(gradients_, over);
+        Intervals at_centre;
+        for (const Value& value : centre) at_centre.push_back(value.value);
+        IntervalMatrix slope = IntervalMatrix::identity(z_.size());
+        for (std::size_t i = 0; i < z_.size(); ++i) {
+            if (is_same(over[i], before[i])) continue;
+            slope(i, i) = Interval(0.0);
+            for (std::size_t j = 0; j < variables_.size(); ++j) slope(i, variables_[j]) = over[i].slope[j];
+        }
+        set.map(at_centre, slope);
+    }
+    static bool is_same(const Gradient& a, const Gradient& b) {
+        const auto same = [](const Interval& x, const Interval& y) { return x.lo() == y.lo() && x.hi() == y.hi(); };
+        bool result = same(a.value, b.value);
+        for (std::size_t j = 0; j < N; ++j) result = result && same(a.slope[j], b.slope[j]);
+        return result;
+    }
+
+    Coordinates z_;
+    std::vector<std::size_t> variables_;
+    Programs<Value> values_;
+    Programs<Gradient> gradients_;
+};
+
+}  // namespace
+
+std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact) {
+    return with_directions(coordinates.of_maps().size(), [&]<std::size_t N>() -> std::unique_ptr<Maps> {
+        return std::make_unique<MapsOver<N>>(model, coordinates, contact);
+    });
+}
+
+}  // namespace achilles

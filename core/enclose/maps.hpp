@@ -1,0 +1,43 @@
+// What happens to a set between steps, as maps with their derivatives over the hull (theory-enclosure.md 5), and what a
+// contact is over a box of states.
+#pragma once
+
+#include <memory>
+
+#include "enclose/coordinates.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+class Maps {
+ public:
+    virtual ~Maps() = default;
+    // h := h(q), u := hdot(q, v).
+    virtual void measure_gap(Doubleton& set) = 0;
+    // v -= n u; u is kept.
+    virtual void take_rate_out(Doubleton& set) = 0;
+    // Newton's law for members with h = 0: v -= (1 + e) n u, u := -e u.
+    virtual void impact(Doubleton& set) = 0;
+    // q -= n (h(q) - h), then v -= n (hdot(q, v) - u), the identity on all members. It forgets what the set has gained away from
+    // where h and u are the gap of (q, v).
+    virtual void project(Doubleton& set) = 0;
+    // The same for members with h = hdot = 0, whatever u is: q -= n h(q), v -= n hdot(q, v).
+    virtual void retract(Doubleton& set) = 0;
+
+    // Over a box of all coordinates: hddot and its derivatives by them; h''' along the constrained motion; e.
+    struct Normal {
+        Interval hddot, jerk;
+        Intervals slope;
+    };
+    virtual Normal normal(const Intervals& box) = 0;
+    virtual Interval restitution(const Intervals& box) = 0;
+    struct Surface {
+        Interval h, hdot;
+        Intervals n, gradient;
+    };
+    virtual Surface surface(const Intervals& box) = 0;
+};
+
+std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact = 0);
+
+}  // namespace achilles

@@ -1,0 +1,70 @@
+#include "enclose/section.hpp"
+
+#include <algorithm>
+
+#include "number/jet.hpp"
+
+namespace achilles {
+
+namespace {
+
+Interval product(const Intervals& a, const Intervals& b) {
+    Interval sum(0.0);
+    for (std::size_t i = 0; i < a.size(); ++i) sum += times(a[i], b[i]);
+    return sum;
+}
+
+Intervals unit(std::size_t size, std::size_t i) {
+    Intervals result(size);
+    result[i] = Interval(1.0);
+    return result;
+}
+
+}  // namespace
+
+Section Section::of_gap(const Coordinates& z) {
+    return {[h = z.h()](const Intervals& box) { return box[h]; },
+            [h = z.h()](const Intervals& box) { return unit(box.size(), h); }, std::pair(z.h(), 0.0), false};
+}
+
+Section Section::of_time(const Coordinates&, double time) {
+    return {[time](const Intervals& box) { return box[Coordinates::t()] - Interval(time); },
+            [](const Intervals& box) { return unit(box.size(), Coordinates::t()); }, std::pair(Coordinates::t(), time),
+            true};
+}
+
+void cross(Doubleton& set, const Step& step, const Section& section, Interval& tau) {
+    for (int round = 0;; ++round) {
+        const Interval middle(mid(tau));
+        Intervals point = step.centre_at(middle), box = step.box_over(set, tau);
+        for (std::size_t i = 0; i < box.size(); ++i) box[i] = hull(box[i], point[i]);
+        const Intervals F = step.rate_at(tau), rho = step.remainder_at(tau), G = section.slope(box);
+        IntervalMatrix S = step.slope_at(tau);
+        const Interval rate = product(G, F), off = section.value(point) + product(G, rho);
+        if (!(section.rises ? certainly_positive(rate) : certainly_negative(rate)))
+            throw Undecided{"a surface is not crossed transversally by all of the set"};
+        Intervals across(set.size());  // G S
+        for (std::size_t i = 0; i < set.size(); ++i)
+            for (std::size_t j = 0; j < set.size(); ++j) across[j] += times(G[i], S(i, j));
+        const Interval th = -(off + set.along(across.data())) / rate;
+        const Interval narrowed = middle + th;
+        tau = {std::max(tau.lo(), narrowed.lo()), std::min(tau.hi(), narrowed.hi())};
+        if (!tau.is_defined()) throw Undecided{"the time of a crossing has no enclosure"};
+        if (round == 0) continue;
+        for (std::size_t i = 0; i < set.size(); ++i) {
+            if (section.exact && section.exact->first == i) {
+                point[i] = Interval(section.exact->second);
+                for (std::size_t j = 0; j < set.size(); ++j) S(i, j) = Interval(0.0);
+                continue;
+            }
+            const Interval a = F[i] / rate;
+            point[i] = point[i] + rho[i] - times(a, off);
+            for (std::size_t j = 0; j < set.size(); ++j) S(i, j) -= times(a, across[j]);
+        }
+        set.map(point, S);
+        if (section.exact) set.set(section.exact->first, section.exact->second);
+        return;
+    }
+}
+
+}  // namespace achilles

@@ -1,0 +1,264 @@
+#include "enclose/step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "number/jet.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr int K = Stepper::order;
+
+Interval power(const Interval& x, int n) { return integer_power(x, n); }
+
+// What lies in both; the first where rounding has parted them.
+Interval both(const Interval& a, const Interval& b) {
+    const double lo = std::max(a.lo(), b.lo()), hi = std::min(a.hi(), b.hi());
+    return lo <= hi ? Interval(lo, hi) : a;
+}
+
+}  // namespace
+
+// sum_k table_k tau^k, of every coordinate.
+Intervals Step::along(const Intervals& table, const Interval& tau) const {
+    Intervals result(table.end() - static_cast<std::ptrdiff_t>(size_), table.end());
+    for (int k = K - 1; k >= 0; --k) {
+        const Interval* const row = coefficients(table, k);
+        for (std::size_t i = 0; i < size_; ++i) result[i] = times(result[i], tau) + row[i];
+    }
+    return result;
+}
+
+Intervals Step::centre_at(const Interval& tau) const { return along(centre_, tau); }
+
+Intervals Step::rate_at(const Interval& tau) const {
+    Intervals result(size_);
+    for (int k = K; k >= 1; --k) {
+        const Interval* const row = coefficients(centre_, k);
+        for (std::size_t i = 0; i < size_; ++i)
+            result[i] = times(result[i], tau) + times(Interval(static_cast<double>(k)), row[i]);
+    }
+    return result;
+}
+
+IntervalMatrix Step::slope_at(const Interval& tau) const {
+    IntervalMatrix result = slopes_.back();
+    for (std::size_t k = slopes_.size() - 1; k-- > 0;)
+        for (std::size_t i = 0; i < size_; ++i)
+            for (std::size_t j = 0; j < size_; ++j) result(i, j) = times(result(i, j), tau) + slopes_[k](i, j);
+    return result;
+}
+
+Intervals Step::remainder_at(const Interval& tau) const {
+    Intervals result;
+    const Interval scale = power(tau, K + 1);
+    for (const Interval& entry : remainder_) result.push_back(times(entry, scale));
+    return result;
+}
+
+Intervals Step::box_over(const Doubleton& set, const Interval& tau) const {
+    const Interval middle(mid(tau));
+    Intervals plain = along(hull_, tau), sharp = centre_at(middle);
+    const Intervals rate = rate_at(tau), remainder = remainder_at(tau);
+    const IntervalMatrix slope = slope_at(tau);
+    for (std::size_t i = 0; i < size_; ++i) {
+        sharp[i] = sharp[i] + times(rate[i], tau - middle) + set.along(slope.row(i));
+        plain[i] = both(sharp[i], plain[i]) + remainder[i];
+    }
+    return plain;
+}
+
+void Step::advance(Doubleton& set, double tau) const {
+    const Interval at(tau);
+    Intervals centre = centre_at(at);
+    const Intervals remainder = remainder_at(at);
+    for (std::size_t i = 0; i < size_; ++i) centre[i] += remainder[i];
+    set.map(centre, slope_at(at));
+}
+
+Stepper::Stepper(const Model& model, const Coordinates& coordinates, ContactSet held, std::size_t contact)
+    : coordinates_(coordinates),
+      in_contact_(held.contains(contact)),
+      event_(2 * coordinates.dof + contact),
+      variables_(coordinates.of_motion()),
+      at_centre_(make_expansion(model.hddot_series(held), coordinates, false)),
+      over_hull_(make_expansion(model.hddot_series(held), coordinates, true)),
+      over_box_(make_expansion(model.hddot_series(held), coordinates, false)) {}
+
+// The size of each coordinate along a step: errors are measured by it. Of h and u that of the flight, since after an impact
+// they are as exact as they are small.
+std::vector<double> Stepper::scales(const Intervals& hull, double length) const {
+    const std::size_t n = coordinates_.dof;
+    std::vector<double> result(coordinates_.size(), 0.0);
+    double position = 0.0, velocity = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double v = mag(hull[coordinates_.v(i)]), a = std::abs(mid(at_centre_->value(1, n + i)));
+        position = std::max(position, result[coordinates_.q(i)] = mag(hull[coordinates_.q(i)]) + v * length);
+        velocity = std::max(velocity, result[coordinates_.v(i)] = v + a * length);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        result[coordinates_.q(i)] = std::max(result[coordinates_.q(i)], 0.01 * position);
+        result[coordinates_.v(i)] = std::max(result[coordinates_.v(i)], 0.01 * velocity);
+    }
+    const double a = std::abs(mid(at_centre_->value(0, event_)));
+    result[coordinates_.u()] = mag(hull[coordinates_.u()]) + a * length;
+    result[coordinates_.h()] = mag(hull[coordinates_.h()]) + result[coordinates_.u()] * length;
+    return result;
+}
+
+// To where the last two terms at the centre are small beside what is known anyway.
+double Stepper::first_length(const Doubleton&, const Intervals& hull, double longest) const {
+    const std::size_t n = coordinates_.dof;
+    double length = longest;
+    const auto limit = [&](double coefficient, double tolerance, int k) {
+        if (coefficient > 0.0 && tolerance > 0.0)
+            length = std::min(length, std::pow(tolerance / coefficient, 1.0 / static_cast<double>(k)));
+    };
+    const std::vector<double> scale = scales(hull, std::min(longest, last_ > 0.0 ? last_ : 1.0));
+    for (const int k : {K - 1, K}) {
+        for (std::size_t i = 0; i < 2 * n; ++i) {
+            const std::size_t row = coordinates_.q(i);
+            limit(std::abs(mid(at_centre_->value(k, i))), std::max(3e-18 * scale[row], 1e-6 * rad(hull[row])), k);
+        }
+        const double size =
+            std::abs(mid(at_centre_->value(0, event_))) + std::abs(mid(at_centre_->value(1, event_))) * length;
+        limit(std::abs(mid(at_centre_->value(k, event_))), 3e-18 * size + 1e-6 * rad(over_hull_->value(0, event_)), k);
+    }
+    return length;
+}
+
+// The a-priori box: the polynomial over [0, length] and +-eps, where the remainder over it is strictly inside that.
+bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
+    const std::size_t n = coordinates_.dof;
+    const Interval span(0.0, length), middle(0.5 * length), whole = power(Interval(length), K + 1);
+    Intervals box = hull;
+    box[Coordinates::t()] = hull[Coordinates::t()] + span;
+    std::vector<double> eps(2 * n);
+    const std::vector<double> scale = scales(hull, length);
+    Intervals base(2 * n);
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+        Interval plain = over_hull_->value(K, i), at = plain, rate = times(Interval(K), plain);
+        for (int k = K - 1; k >= 0; --k) {
+            const Interval c = over_hull_->value(k, i);
+            plain = times(plain, span) + c;
+            at = times(at, middle) + c;
+            if (k > 0) rate = times(rate, span) + times(Interval(k), c);
+        }
+        base[i] = both(plain, at + times(rate, span - middle));
+        eps[i] = 4.0 * mag(times(over_hull_->value(K + 1, i), whole)) + 0x1p-200 * scale[coordinates_.q(i)];
+        if (!std::isfinite(eps[i])) return false;
+    }
+    for (int round = 0; round < 6; ++round) {
+        for (std::size_t i = 0; i < 2 * n; ++i) box[coordinates_.q(i)] = base[i] + Interval(-eps[i], eps[i]);
+        over_box_->expand(box, K);
+        bool strict = over_box_->has_mass();
+        for (std::size_t i = 0; i < 2 * n; ++i) {
+            const double remainder = mag(times(over_box_->value(K + 1, i), whole));
+            if (!std::isfinite(remainder)) return false;
+            if (remainder < eps[i]) continue;
+            strict = false;
+            eps[i] = 2.0 * remainder;
+        }
+        if (!strict) continue;
+        step.length_ = length;
+        step.remainder_.assign(coordinates_.size(), Interval(0.0));
+        for (std::size_t i = 0; i < 2 * n; ++i) step.remainder_[coordinates_.q(i)] = over_box_->value(K + 1, i);
+        if (!in_contact_) {
+            step.remainder_[coordinates_.h()] = over_box_->value(K - 1, event_) / Interval(K * (K + 1));
+            step.remainder_[coordinates_.u()] = over_box_->value(K, event_) / Interval(K + 1);
+        }
+        return true;
+    }
+    return false;
+}
+
+// The coefficients of all coordinates: h'' = hddot in flight; in contact h and u stay.
+void Stepper::tabulate(Step& step, const Doubleton& set, KnownRoot known) {
+    const Coordinates& z = coordinates_;
+    const std::size_t size = z.size(), n = z.dof, h = z.h(), u = z.u();
+    step.size_ = size;
+    step.centre_.assign((K + 1) * size, Interval(0.0));
+    step.hull_.assign((K + 1) * size, Interval(0.0));
+    step.slopes_.assign(K + 1, IntervalMatrix(size, size));
+    const auto fill = [&](int k, std::size_t row, const Interval& centre, const Interval& hull) {
+        step.centre_[static_cast<std::size_t>(k) * size + row] = centre;
+        step.hull_[static_cast<std::size_t>(k) * size + row] = hull;
+    };
+    const auto copy = [&](int k, std::size_t row, int from, std::size_t i, const Interval& share) {
+        fill(k, row, times(at_centre_->value(from, i), share), times(over_hull_->value(from, i), share));
+        for (std::size_t j = 0; j < variables_.size(); ++j)
+            step.slopes_[static_cast<std::size_t>(k)](row, variables_[j]) = times(over_hull_->slope(from, i, j), share);
+    };
+    for (std::size_t i = 0; i < size; ++i) {
+        fill(0, i, Interval(set.centre(i)), set.hull(i));
+        step.slopes_[0](i, i) = Interval(1.0);
+    }
+    fill(1, Coordinates::t(), Interval(1.0), Interval(1.0));
+    for (int k = 1; k <= K; ++k)
+        for (std::size_t i = 0; i < 2 * n; ++i) copy(k, z.q(i), k, i, Interval(1.0));
+    if (in_contact_) return;
+    fill(1, h, Interval(set.centre(u)), set.hull(u));
+    step.slopes_[1](h, u) = Interval(1.0);
+    for (int k = known == KnownRoot::released ? 1 : 0; k < K; ++k) {
+        copy(k + 1, u, k, event_, Interval(1.0) / Interval(k + 1));
+        if (k + 2 <= K) copy(k + 2, h, k, event_, Interval(1.0) / Interval((k + 1) * (k + 2)));
+    }
+}
+
+void Stepper::watch(Step& step, const Doubleton& set, KnownRoot known, const Interval& gap) const {
+    step.watched_.clear();
+    const std::size_t size = coordinates_.size(), h = coordinates_.h();
+    if (in_contact_) {
+        Intervals row(size);
+        for (int k = 0; k < K; ++k) {
+            for (std::size_t j = 0; j < variables_.size(); ++j) row[variables_[j]] = over_hull_->slope(k, event_, j);
+            step.watched_.push_back(
+                -both(at_centre_->value(k, event_) + set.along(row.data()), over_hull_->value(k, event_)));
+        }
+        step.watched_.push_back(-over_box_->value(K, event_));
+        return;
+    }
+    for (int k = static_cast<int>(known); k <= K; ++k) {
+        const std::size_t at = static_cast<std::size_t>(k) * size + h;
+        const Interval sharp = step.centre_[at] + set.along(step.slopes_[static_cast<std::size_t>(k)].row(h));
+        step.watched_.push_back(both(sharp, step.hull_[at]));
+    }
+    step.watched_.push_back(step.remainder_[h]);
+    if (known == KnownRoot::none) step.watched_.front() = both(step.watched_.front(), gap);
+}
+
+Step Stepper::make(const Doubleton& set, double longest, KnownRoot known, const Interval& gap) {
+    const Intervals hull = set.hull();
+    at_centre_->expand(set.centre(), K);
+    over_hull_->expand(hull, K);
+    double length = first_length(set, hull, longest);
+    if (last_ > 0.0) length = std::min(length, 1.3 * last_);
+    const double least = 0x1p-50 * std::max(mag(hull[Coordinates::t()]), 0x1p-20 * longest);
+    const double fine = in_contact_ ? 1e-15 : 2e-17;
+    Step step;
+    tabulate(step, set, known);
+    for (int round = 0; round < 60 && length > least; ++round) {
+        if (!enclose(step, hull, length)) {
+            length *= 0.7;
+            continue;
+        }
+        const std::vector<double> scale = scales(hull, length);
+        const Intervals rho = step.remainder_at(Interval(length));
+        double excess = 0.0;
+        for (std::size_t i = 0; i < rho.size(); ++i) {
+            const double allowed = std::max(fine * scale[i], 1e-7 * rad(hull[i]));
+            if (mag(rho[i]) > 0.0) excess = std::max(excess, mag(rho[i]) / allowed);
+        }
+        if (!(excess > 1.0)) {
+            last_ = length;
+            watch(step, set, known, gap);
+            return step;
+        }
+        length *= std::clamp(std::pow(excess, -0.7 / (K + 1)), 0.5, 0.95);
+    }
+    throw Undecided{"no box is found that the motion stays in for even a short step"};
+}
+
+}  // namespace achilles

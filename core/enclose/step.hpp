@@ -1,0 +1,74 @@
+// One validated Taylor step of a set of states (theory-enclosure.md 2): for every member z and every tau in [0, length]
+//     z(tau) = T(tau, c) + S(tau) (z - c) + rho,    S in the derivatives of T over the hull,  rho in R tau^(K+1)
+#pragma once
+
+#include "enclose/expansion.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+// Which of the orders of h that lead are exactly 0 in every member: h and hdot after an impact or a take-off, hddot besides
+// after a release.
+enum class KnownRoot { none = 0, landed = 1, at_rest = 2, released = 3 };
+
+class Step {
+ public:
+    double length() const { return length_; }
+    // T, its derivative, S and rho of all coordinates; 0 <= tau <= length.
+    Intervals centre_at(const Interval& tau) const;
+    Intervals rate_at(const Interval& tau) const;
+    IntervalMatrix slope_at(const Interval& tau) const;
+    Intervals remainder_at(const Interval& tau) const;
+    // A box around all members at all these times.
+    Intervals box_over(const Doubleton& set, const Interval& tau) const;
+    // The members after exactly this time.
+    void advance(Doubleton& set, double tau) const;
+    // What must stay positive until the next event, over all members, the last coefficient the remainder's: in flight the
+    // gap with its known root divided out, in contact -hddot.
+    const Intervals& watched() const { return watched_; }
+
+ private:
+    friend class Stepper;
+    const Interval* coefficients(const Intervals& table, int k) const {
+        return table.data() + static_cast<std::size_t>(k) * size_;
+    }
+    Intervals along(const Intervals& table, const Interval& tau) const;
+
+    std::size_t size_ = 0;
+    double length_ = 0.0;
+    // By order: a row of each coordinate; at the centre, over the hull, and its derivatives by all coordinates over the hull.
+    Intervals centre_, hull_;
+    std::vector<IntervalMatrix> slopes_;
+    Intervals remainder_;  // R
+    Intervals watched_;
+};
+
+class Stepper {
+ public:
+    static constexpr int order = 20;  // K
+
+    // Of the motion that holds these contacts, and a contact that is watched.
+    Stepper(const Model& model, const Coordinates& coordinates, ContactSet held, std::size_t contact = 0);
+
+    // A step that is at most so long, from where the gap, with no known root, lies in `gap`, which may be narrower than what
+    // the set says. Throws Undecided where no a-priori box is found.
+    Step make(const Doubleton& set, double longest, KnownRoot known, const Interval& gap = Interval::everything());
+    // The next step may be as long as it likes.
+    void forget() { last_ = 0.0; }
+
+ private:
+    void tabulate(Step& step, const Doubleton& set, KnownRoot known);
+    void watch(Step& step, const Doubleton& set, KnownRoot known, const Interval& gap) const;
+    bool enclose(Step& step, const Intervals& hull, double length);
+    double first_length(const Doubleton& set, const Intervals& hull, double longest) const;
+    std::vector<double> scales(const Intervals& hull, double length) const;
+
+    Coordinates coordinates_;
+    bool in_contact_;
+    std::size_t event_;  // the row of its hddot
+    std::vector<std::size_t> variables_;
+    std::unique_ptr<Expansion> at_centre_, over_hull_, over_box_;
+    double last_ = 0.0;  // s
+};
+
+}  // namespace achilles

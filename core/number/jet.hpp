@@ -1,0 +1,187 @@
+// A value and its derivatives in N directions, over any number: forward differentiation, in which what runs over a Number
+// runs over a Jet. Without directions it is the number by itself, with products by an exact 0 left out.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <type_traits>
+
+#include "number/interval.hpp"
+
+namespace achilles {
+
+// a b. Of intervals: 0 times what is defined is 0, exactly; the general product would widen it by the least denormal, and
+// what is multiplied by that later costs a hundred times as much (theory-truncation.md 5).
+inline double times(double a, double b) { return a * b; }
+inline Interval times(const Interval& a, const Interval& b) {
+    if ((a.lo() == 0.0 && a.hi() == 0.0 && b.is_defined()) || (b.lo() == 0.0 && b.hi() == 0.0 && a.is_defined()))
+        return Interval(0.0);
+    return a * b;
+}
+
+template <class Number, std::size_t N>
+struct Jet {
+    using Component = Number;
+    Number value{};
+    [[no_unique_address]] std::array<Number, N> slope{};
+
+    Jet() = default;
+    Jet(const Number& x) : value(x) {}                                     // NOLINT: a constant
+    Jet(double x) requires(!std::is_same_v<Number, double>) : value(x) {}  // NOLINT
+    // The variable of direction i.
+    static Jet variable(const Number& x, std::size_t i) {
+        Jet result(x);
+        result.slope[i] = Number(1.0);
+        return result;
+    }
+
+    // f(x) where f'(x) is given.
+    friend Jet chain(const Jet& x, const Number& f, const Number& by_x) {
+        Jet result(f);
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = times(by_x, x.slope[i]);
+        return result;
+    }
+
+    friend Jet operator-(const Jet& a) {
+        Jet result(-a.value);
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = -a.slope[i];
+        return result;
+    }
+    friend Jet operator+(const Jet& a, const Jet& b) {
+        Jet result(a.value + b.value);
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = a.slope[i] + b.slope[i];
+        return result;
+    }
+    friend Jet operator-(const Jet& a, const Jet& b) {
+        Jet result(a.value - b.value);
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = a.slope[i] - b.slope[i];
+        return result;
+    }
+    friend Jet operator*(const Jet& a, const Jet& b) {
+        Jet result(times(a.value, b.value));
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = times(a.slope[i], b.value) + times(a.value, b.slope[i]);
+        return result;
+    }
+    friend Jet operator*(const Jet& a, double b) {
+        Jet result(times(a.value, Number(b)));
+        for (std::size_t i = 0; i < N; ++i) result.slope[i] = times(a.slope[i], Number(b));
+        return result;
+    }
+    friend Jet operator*(double a, const Jet& b) { return b * a; }
+    // (a/b)' = (a' - (a/b) b')/b
+    friend Jet operator/(const Jet& a, const Jet& b) {
+        Jet result(a.value / b.value);
+        for (std::size_t i = 0; i < N; ++i) {
+            const Number rise = a.slope[i] - times(result.value, b.slope[i]);
+            result.slope[i] = is_zero(rise) && is_defined(result.value) ? Number(0.0) : rise / b.value;
+        }
+        return result;
+    }
+    Jet& operator+=(const Jet& b) { return *this = *this + b; }
+    Jet& operator-=(const Jet& b) { return *this = *this - b; }
+    Jet& operator*=(const Jet& b) { return *this = *this * b; }
+
+ private:
+    static bool is_zero(double x) { return x == 0.0; }
+    static bool is_zero(const Interval& x) { return x.lo() == 0.0 && x.hi() == 0.0; }
+    static bool is_defined(double x) { return x == x; }
+    static bool is_defined(const Interval& x) { return x.is_defined(); }
+};
+
+// --- Functions: the value, and what it rises by
+
+inline double square(double x) { return x * x; }
+
+template <class Number, std::size_t N>
+Jet<Number, N> sqrt(const Jet<Number, N>& x) {
+    using std::sqrt;
+    const Number r = sqrt(x.value);
+    return chain(x, r, Number(0.5) / r);
+}
+template <class Number, std::size_t N>
+Jet<Number, N> exp(const Jet<Number, N>& x) {
+    using std::exp;
+    const Number r = exp(x.value);
+    return chain(x, r, r);
+}
+template <class Number, std::size_t N>
+Jet<Number, N> log(const Jet<Number, N>& x) {
+    using std::log;
+    return chain(x, log(x.value), Number(1.0) / x.value);
+}
+template <class Number, std::size_t N>
+Jet<Number, N> sin(const Jet<Number, N>& x) {
+    using std::cos, std::sin;
+    return chain(x, sin(x.value), cos(x.value));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> cos(const Jet<Number, N>& x) {
+    using std::cos, std::sin;
+    return chain(x, cos(x.value), -sin(x.value));
+}
+template <class Number, std::size_t N>
+void sine_and_cosine(const Jet<Number, N>& x, Jet<Number, N>& sine, Jet<Number, N>& cosine) {
+    using std::cos, std::sin;
+    const Number s = sin(x.value), c = cos(x.value);
+    const Jet<Number, N> angle = x;  // which may be where a result goes
+    sine = chain(angle, s, c);
+    cosine = chain(angle, c, -s);
+}
+template <class Number, std::size_t N>
+Jet<Number, N> tan(const Jet<Number, N>& x) {
+    using std::tan;
+    const Number r = tan(x.value);
+    return chain(x, r, Number(1.0) + square(r));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> asin(const Jet<Number, N>& x) {
+    using std::asin, std::sqrt;
+    return chain(x, asin(x.value), Number(1.0) / sqrt(Number(1.0) - square(x.value)));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> acos(const Jet<Number, N>& x) {
+    using std::acos, std::sqrt;
+    return chain(x, acos(x.value), Number(-1.0) / sqrt(Number(1.0) - square(x.value)));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> atan(const Jet<Number, N>& x) {
+    using std::atan;
+    return chain(x, atan(x.value), Number(1.0) / (Number(1.0) + square(x.value)));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> sinh(const Jet<Number, N>& x) {
+    using std::cosh, std::sinh;
+    return chain(x, sinh(x.value), cosh(x.value));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> cosh(const Jet<Number, N>& x) {
+    using std::cosh, std::sinh;
+    return chain(x, cosh(x.value), sinh(x.value));
+}
+template <class Number, std::size_t N>
+Jet<Number, N> tanh(const Jet<Number, N>& x) {
+    using std::tanh;
+    const Number r = tanh(x.value);
+    return chain(x, r, Number(1.0) - square(r));
+}
+
+inline double integer_power_of(double x, int n) { return std::pow(x, n); }
+inline Interval integer_power_of(const Interval& x, int n) { return integer_power(x, n); }
+template <class Number, std::size_t N>
+Jet<Number, N> integer_power(const Jet<Number, N>& x, int n) {
+    if (n == 0) return Jet<Number, N>(1.0);
+    return chain(x, integer_power_of(x.value, n), times(Number(n), integer_power_of(x.value, n - 1)));
+}
+// a^b, a > 0.
+template <class Number, std::size_t N>
+Jet<Number, N> pow(const Jet<Number, N>& a, const Jet<Number, N>& b) {
+    using std::log, std::pow;
+    const Number r = pow(a.value, b.value);
+    Jet<Number, N> result = chain(a, r, b.value * pow(a.value, b.value - Number(1.0)));
+    const Number by_b = log(a.value) * r;
+    for (std::size_t i = 0; i < N; ++i) result.slope[i] = result.slope[i] + times(by_b, b.slope[i]);
+    return result;
+}
+
+}  // namespace achilles

@@ -1,0 +1,76 @@
+// `achilles prove` as a user meets it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/program.hpp"
+
+namespace achilles::test {
+
+using nlohmann::json;
+
+TEST(Prove, TellsAWholeRunAsIntervals) {
+    const Answer answer = Folder().run("prove ball_on_sine --end 20 --samples 5 --json -");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.err, "");
+    const json proof = json::parse(answer.out);
+    for (const char* key : {"achilles", "system", "claim", "proved_until", "events", "end", "samples", "outcome",
+                            "statistics", "assumptions"})
+        EXPECT_TRUE(proof.contains(key)) << key;
+    EXPECT_EQ(proof["proved_until"], 20.0);
+    EXPECT_EQ(proof["outcome"]["kind"], "end time");
+    EXPECT_EQ(proof["samples"].size(), 5u);
+    int zenos = 0;
+    for (const json& event : proof["events"]) {
+        EXPECT_EQ(event.contains("v_before") && event.contains("v_after"), event["kind"] == "impact");
+        EXPECT_EQ(event.contains("v"), event["kind"] != "impact");
+        EXPECT_LE(event["t"][0].get<double>(), event["t"][1].get<double>());
+        zenos += event["kind"] == "zeno" ? 1 : 0;
+    }
+    EXPECT_EQ(zenos, 2);
+    EXPECT_LT(proof["end"]["q"][0][1].get<double>() - proof["end"]["q"][0][0].get<double>(), 6e-11);
+}
+
+TEST(Prove, TellsAPersonWhatIsProvedAndWhatItStandsOn) {
+    const Answer answer = Folder().run("prove ball_on_sine --end 4");
+    EXPECT_EQ(answer.status, 0);
+    for (const char* words :
+         {"For every start in", "is proved until t = 4", "zeno     t = 2.72514217273", "rounded to nearest"})
+        EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+}
+
+// Boxes, interval parameters, parts; and status 3 with no end where a box is too wide.
+TEST(Prove, TakesBoxesAndInterval) {
+    const Folder folder;
+    const json wide = json::parse(folder.run("prove ball_on_sine --end 4 --width 1e-6 --json -").out);
+    EXPECT_GT(wide["end"]["q"][0][1].get<double>() - wide["end"]["q"][0][0].get<double>(), 2e-6);
+    const json parameters = json::parse(
+        folder.run("prove ball_on_sine --end 4 --set e=0.4999999..0.5000001 --set x=-1e-7..1e-7 --json -").out);
+    EXPECT_LE(parameters["claim"]["q"][0][0].get<double>(), -1e-7);
+    EXPECT_GT(parameters["claim"]["q"][0][0].get<double>(), -1.0000001e-7);
+    EXPECT_TRUE(parameters["end"].is_object());
+    EXPECT_EQ(folder.run("prove ball_on_sine --end 4 --width 1e-6 --split 2").status, 0);
+    const Answer undecided = folder.run("prove ball_on_sine --end 20 --width 1e-3 --json -");
+    EXPECT_EQ(undecided.status, 3);
+    EXPECT_NE(undecided.err.find("undecided at t = "), std::string::npos);
+    EXPECT_TRUE(json::parse(undecided.out)["end"].is_null());
+}
+
+TEST(Prove, RefusesWhatItDoesNotCoverAndWhatIsImpossible) {
+    const Folder folder;
+    for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
+             {"ball_in_v", "prove does not cover this system: it has several gaps"},
+             {"ball_on_sine --set e=0.6..0.5", "the interval ends before it begins"},
+             {"ball_on_sine --set e=0.9..1.1", "the part above 1 is impossible"},
+             {"ball_on_sine --set y=-0.1..0.1", "the gap is negative for a part of the starts"},
+             {"ball_on_sine --set e=0.5..z", "--set e=z"},
+             {"ball_on_sine --width -1", "a half width is not negative"},
+             {"ball_on_sine --split 0", "a whole number from 1 to 1000"}}) {
+        const Answer answer = folder.run("prove " + arguments + " --json out.json");
+        EXPECT_EQ(answer.status, 2) << arguments;
+        EXPECT_NE(answer.err.find(told), std::string::npos) << arguments << "\n" << answer.err;
+    }
+    EXPECT_TRUE(folder.files().empty());
+}
+
+}  // namespace achilles::test

@@ -1,0 +1,60 @@
+// What proofs give and cost: every system of the gallery, its own run and boxes around it, with random members.
+// usage: bench_enclose [MEMBERS]    default 1000
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "certify/members.hpp"
+#include "core/systems.hpp"
+
+using namespace achilles;
+using namespace achilles::test;
+
+namespace {
+
+double widest(const Enclosure& proof) {
+    double result = 0.0;
+    for (const Intervals* box : {&proof.end->q, &proof.end->v})
+        for (const Interval& entry : *box) result = std::max(result, width(entry));
+    return result;
+}
+
+double widest_zeno(const Enclosure& proof) {
+    double result = 0.0;
+    for (const EnclosedEvent& event : proof.events)
+        if (event.kind == Event::Kind::zeno) result = std::max(result, width(event.t));
+    return result;
+}
+
+void tell(const std::string& name, const Enclosure& proof) {
+    fmt::print("{:<24} {:>7.4g} s {:>8.1e} {:>8.1e} {:>5} impacts {:>6} steps {:>6.3f} s  {}\n", name,
+               proof.proved_until, widest_zeno(proof), proof.end ? widest(proof) : 0.0, proof.statistics.impacts,
+               proof.statistics.steps, proof.statistics.seconds, proof.end ? "proved" : proof.outcome.message);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
+    long outside = 0;
+    fmt::print("own runs: proved until, widest Zeno time, widest end\n");
+    for (const std::string& name : all_systems()) {
+        const auto model = load(name);
+        try {
+            tell(name, prove(model, claim_as_written(model->default_run())));
+        } catch (const InputError& refusal) {
+            fmt::print("{:<24} refused: {}\n", name, refusal.message);
+        }
+    }
+    fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
+    for (const std::string& name : systems_of_one_gap()) {
+        const auto model = load(name);
+        const Membership members = members_of(model, claim_around(*model, 20.0, 1e-6, 0.0, 5), count, 1);
+        fmt::print("{:<24} {:>9} compared {:>3} outside, enclosed/observed {:.2f}, until {:.4g} s {}\n", name,
+                   members.compared, members.outside, members.width_over_observed, members.proved.proved_until,
+                   members.first);
+        outside += members.outside;
+    }
+    return outside == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,124 @@
+#include "certify/members.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "simulate/sampler.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles::test {
+
+namespace {
+
+class Comparison {
+ public:
+    explicit Comparison(Membership& result)
+        : result_(result), observed_(result.proved.events.size(), Interval::undefined()) {}
+
+    void add(const Trajectory& run) {
+        std::size_t at = 0;
+        for (std::size_t k = 0; k < observed_.size(); ++k) {
+            const EnclosedEvent& event = result_.proved.events[k];
+            while (at < run.events.size() && event.kind != Event::Kind::impact &&
+                   run.events[at].kind == Event::Kind::impact)
+                ++at;
+            if (at == run.events.size()) break;
+            if (event.kind == Event::Kind::impact && run.events[at].kind == Event::Kind::zeno) continue;  // cut earlier
+            if (run.events[at].kind != event.kind) {
+                compare(Interval(0.0), 1.0, 0.0, fmt::format("the kind of event {}", k));
+                return;
+            }
+            const Event& there = run.events[at++];
+            compare(event.t, there.t, 2e-11, fmt::format("time {}", k));
+            observed_[k] = observed_[k].is_defined() ? hull(observed_[k], Interval(there.t)) : Interval(there.t);
+            compare(event.q, there.q, 1e-9, fmt::format("q of event {}", k));
+        }
+        Sampler sampler(run);
+        const auto state = [&](const EnclosedState& box) {
+            if (box.t <= run.end_time) compare(box.q, sampler.at(box.t).state.q, 1e-9, fmt::format("q at {}", box.t));
+        };
+        for (const EnclosedState& sample : result_.proved.samples) state(sample);
+        if (result_.proved.end) state(*result_.proved.end);
+    }
+
+    void finish() const {
+        for (std::size_t k = 0; k < observed_.size(); ++k) {
+            if (!observed_[k].is_defined() || !(width(observed_[k]) > 1e-9)) continue;
+            result_.width_over_observed += width(result_.proved.events[k].t) / width(observed_[k]);
+            ++result_.widths;
+        }
+        if (result_.widths > 0) result_.width_over_observed /= result_.widths;
+    }
+
+ private:
+    // Slack: what the run itself may be wrong by.
+    void compare(const Interval& x, double y, double slack, const std::string& what) {
+        ++result_.compared;
+        const double allowed = slack + 1e-3 * width(x);
+        if (x.lo() - allowed <= y && y <= x.hi() + allowed) return;
+        if (result_.outside++ == 0) result_.first = fmt::format("{}: {} not in [{}, {}]", what, y, x.lo(), x.hi());
+    }
+    void compare(const Intervals& box, const Vector& q, double slack, const std::string& what) {
+        for (std::size_t i = 0; i < box.size(); ++i) compare(box[i], q[static_cast<Eigen::Index>(i)], slack, what);
+    }
+
+    Membership& result_;
+    Intervals observed_;
+};
+
+}  // namespace
+
+achilles::Claim claim_around(const Model& model, double end, double half, double of_parameters, unsigned seed) {
+    achilles::Claim claim = claim_of(model.default_run());
+    claim.run.options.end_time = std::min(claim.run.options.end_time, end);
+    auto gap = model.evaluator(model.gap(), claim.run.parameters);
+    set_state(gap, claim.run.start());
+    gap.run();
+    if (std::abs(gap.output(0)) > 1e-9) {  // else most members would be no starts
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> uniform(0.99, 1.01);
+        for (Intervals* box : {&claim.q, &claim.v})
+            for (Interval& entry : *box)
+                if (seed != 0) entry = Interval(mid(entry) * uniform(random));
+        widen(claim, half);
+    }
+    for (Interval& parameter : claim.parameters)
+        parameter = parameter * Interval(1.0 - of_parameters, 1.0 + of_parameters);
+    const double start = claim.run.options.start_time;
+    for (int i = 1; i < 20; ++i) claim.times.push_back(start + (claim.run.options.end_time - start) * i / 20.0);
+    return claim;
+}
+
+Membership members_of(const std::shared_ptr<const Model>& model, const achilles::Claim& claim, int count,
+                      unsigned seed) {
+    Membership result;
+    result.proved = prove(model, claim);
+    Run run = claim.run;
+    run.options.tolerance = 1e-13;
+    run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-12;
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    Comparison comparison(result);
+    for (int member = 0; member < count; ++member) {
+        const auto any_of = [&](const Interval& box) {
+            const double share = uniform(random), place = member % 4 == 0 ? std::copysign(1.0, share) : share;
+            return std::clamp(mid(box) + place * rad(box), box.lo(), box.hi());
+        };
+        for (std::size_t i = 0; i < claim.q.size(); ++i) {
+            run.q[static_cast<Eigen::Index>(i)] = any_of(claim.q[i]);
+            run.v[static_cast<Eigen::Index>(i)] = any_of(claim.v[i]);
+        }
+        for (std::size_t i = 0; i < claim.parameters.size(); ++i) run.parameters[i] = any_of(claim.parameters[i]);
+        try {
+            comparison.add(simulate(model, run));
+        } catch (const InputError&) {  // no start: below the surface
+        }
+    }
+    comparison.finish();
+    return result;
+}
+
+}  // namespace achilles::test

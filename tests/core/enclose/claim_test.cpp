@@ -1,0 +1,131 @@
+// What is claimed, its parts, and how a proof is written.
+#include "core/enclose/truth.hpp"
+#include "output/proof.hpp"
+
+namespace achilles::test {
+
+namespace {
+
+std::string refused(const Model& model, const achilles::Claim& claim) {
+    try {
+        check(model, claim);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST(Claim, ADoubleThatNoDecimalIsStandsForThoseAroundIt) {
+    for (const double exact : {0.0, 1.5, -2.0, 0.375, 1e10}) EXPECT_EQ(width(as_written(exact)), 0.0) << exact;
+    EXPECT_TRUE(contains(as_written(0.1), Real(1) / 10));
+    EXPECT_TRUE(contains(as_written(-0.1), Real(-1) / 10));
+    EXPECT_TRUE(contains(as_written(std::numbers::pi / 6), scalar_pi<Real>() / 6));
+    EXPECT_LT(width(as_written(0.1)), 1e-15);
+}
+
+TEST(Claim, SaysWhichPartOfItIsImpossible) {
+    const auto model = load("ball_on_sine");
+    achilles::Claim claim = achilles::claim_of(model->default_run());
+    EXPECT_EQ(refused(*model, claim), "");
+    claim.parameters.back() = Interval(0.9, 1.1);
+    EXPECT_NE(refused(*model, claim).find("in [0.9, 1.1]: the part above 1 is impossible"), std::string::npos);
+    claim.parameters.back() = Interval(0.5);
+    claim.q[1] = Interval(-0.1, 0.1);
+    EXPECT_NE(refused(*model, claim).find("negative for a part of the starts: h <= -0.1 at x = 0, y = -0.1"),
+              std::string::npos)
+        << refused(*model, claim);
+}
+
+TEST(Claim, PartsSayWhatTheirBoxSaysAndMore) {
+    const auto model = load("ball_on_sine");
+    achilles::Run run = model->default_run();
+    run.options.end_time = 5.0;
+    achilles::Claim claim = widened(run, 1e-6);
+    claim.times = {2.0, 3.0};
+    const Enclosure whole = prove(model, claim), parts = prove_in_parts(model, claim, 2);
+    ASSERT_TRUE(whole.end && parts.end);
+    EXPECT_FALSE(parts.events_differ);
+    std::size_t zeno = 0, of_parts = 0;
+    while (whole.events[zeno].kind != Event::Kind::zeno) ++zeno;
+    while (of_parts < parts.events.size() && parts.events[of_parts].kind == Event::Kind::impact) ++of_parts;
+    for (std::size_t i = 0; i < std::min(zeno, of_parts); ++i) {
+        EXPECT_LE(width(parts.events[i].t), 1.0001 * width(whole.events[i].t));
+        EXPECT_GT(width(parts.events[i].t), 0.5 * width(whole.events[i].t));
+    }
+    ASSERT_EQ(parts.samples.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(whole.samples[0].q[i].contains(parts.samples[0].q[i]));
+    // A box that is undecided as a whole may be proved in parts.
+    EXPECT_THROW(prove_in_parts(model, claim, 1000), InputError);
+}
+
+TEST(Claim, MayBeStoppedAndSaysHowFarItIs) {
+    const auto model = load("ball_on_sine");
+    const achilles::Claim claim = achilles::claim_of(model->default_run());
+    std::stop_source source;
+    ProofWatch watch{source.get_token()};
+    EXPECT_TRUE(prove(model, claim, &watch).end);
+    EXPECT_GT(watch.time, 0.9 * claim.run.options.end_time);
+    source.request_stop();
+    for (const Enclosure& stopped : {prove(model, claim, &watch), prove_in_parts(model, claim, 2, &watch)}) {
+        EXPECT_EQ(stopped.outcome.kind, Enclosure::Outcome::Kind::cancelled);
+        EXPECT_FALSE(stopped.end);
+    }
+}
+
+TEST(Claim, OfRestitutionsHoldsAllOfThem) {
+    const auto model = load("ball_on_sine");
+    achilles::Run run = model->default_run();
+    run.options.end_time = 2.65;
+    achilles::Claim claim = achilles::claim_of(run);
+    claim.parameters.back() = Interval(0.4999, 0.5001);
+    const Enclosure proved = prove(model, claim);
+    ASSERT_GE(proved.events.size(), 3u) << proved.outcome.message;
+    run.options.tolerance = 1e-13;
+    for (const double e : {0.4999, 0.5, 0.5001}) {
+        run.parameters.back() = e;
+        const Trajectory one = simulate(model, run);
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_TRUE((proved.events[i].t + Interval(-1e-11, 1e-11)).contains(one.events[i].t)) << e << " " << i;
+            EXPECT_TRUE((proved.events[i].v_after[1] + Interval(-1e-11, 1e-11)).contains(one.events[i].v_after[1]))
+                << e;
+        }
+    }
+}
+
+TEST(Claim, IsWrittenWithEndsThatReadBack) {
+    const auto model = load("ball_on_sine");
+    achilles::Run run = model->default_run();
+    run.options.end_time = 4.0;
+    achilles::Claim claim = widened(run, 1e-9);
+    claim.times = {1.0, 3.0};
+    const Enclosure proved = prove(model, claim);
+    const auto json = nlohmann::json::parse(to_json(*model, claim, proved));
+    EXPECT_EQ(json["proved_until"], 4.0);
+    ASSERT_EQ(json["events"].size(), proved.events.size());
+    EXPECT_EQ(json["events"][0]["t"][0].get<double>(), proved.events[0].t.lo());
+    EXPECT_EQ(json["events"][0]["v_after"][1][1].get<double>(), proved.events[0].v_after[1].hi());
+    EXPECT_FALSE(json["events"][0].contains("v"));
+    EXPECT_EQ(json["end"]["q"][0][1].get<double>(), proved.end->q[0].hi());
+    EXPECT_EQ(json["samples"].size(), 2u);
+    EXPECT_EQ(json["outcome"]["kind"], "end time");
+    EXPECT_EQ(json["claim"]["q"][0][0].get<double>(), claim.q[0].lo());
+    // In text both ends of every interval are inside what is told.
+    const std::string text = proof_text(*model, claim, proved);
+    EXPECT_NE(text.find("is proved until t = 4"), std::string::npos) << text;
+    const std::size_t at = text.find("zeno     t = ");
+    double centre = 0.0, radius = 0.0;
+    ASSERT_EQ(std::sscanf(text.c_str() + at, "zeno     t = %lf +- %lf", &centre, &radius), 2) << text;
+    for (const EnclosedEvent& event : proved.events) {
+        if (event.kind != Event::Kind::zeno) continue;
+        EXPECT_LE(centre - radius, event.t.lo());
+        EXPECT_GE(centre + radius, event.t.hi());
+    }
+    claim = widened(run, 1e-3);
+    const Enclosure undecided = prove(model, claim);
+    EXPECT_TRUE(nlohmann::json::parse(to_json(*model, claim, undecided))["end"].is_null());
+    EXPECT_NE(proof_text(*model, claim, undecided).find("Undecided from there: "), std::string::npos);
+}
+
+}  // namespace achilles::test

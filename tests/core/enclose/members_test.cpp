@@ -1,0 +1,44 @@
+// Random members of boxes are in the boxes' enclosures; bench_enclose asks a thousand of each.
+#include "certify/members.hpp"
+
+#include "core/enclose/truth.hpp"
+
+namespace achilles::test {
+
+TEST(Members, OfABoxAreInItsEnclosure) {
+    long compared = 0;
+    for (const std::string& name : systems_of_one_gap()) {
+        SCOPED_TRACE(name);
+        const auto model = load(name);
+        const double half = name == "triple_pendulum" ? 1e-10 : 1e-6;
+        const Membership members = members_of(model, claim_around(*model, 4.0, half, 0.0, 21), 50, 11);
+        EXPECT_EQ(members.outside, 0) << members.first;
+        compared += members.compared;
+    }
+    EXPECT_GT(compared, 20000);
+}
+
+// An enclosure that holds much more than its members would be no use, and hide mistakes.
+TEST(Members, OfABoxAreNotMuchFewerThanItsEnclosureHolds) {
+    for (const Problem& problem : problems) {
+        const auto model = load(problem.asset);
+        const Membership members = members_of(model, claim_around(*model, 20.0, 1e-6, 0.0), 50, 12);
+        EXPECT_EQ(members.outside, 0) << members.first;
+        EXPECT_TRUE(members.proved.end);
+        EXPECT_LT(members.width_over_observed, 2.0) << problem.asset;
+    }
+}
+
+// e and g included; the oscillator is driven, and all that it forgets each cycle its box must forget, too.
+TEST(Members, OfABoxWithParametersAreInItsEnclosure) {
+    for (const std::string name : {"ball_on_sine", "double_pendulum", "impact_oscillator"}) {
+        SCOPED_TRACE(name);
+        const auto model = load(name);
+        const Membership members = members_of(model, claim_around(*model, 8.0, 1e-7, 1e-7), 50, 13);
+        EXPECT_EQ(members.outside, 0) << members.first;
+        EXPECT_TRUE(members.proved.end) << members.proved.outcome.message;
+        EXPECT_LT(members.width_over_observed, 3.0);
+    }
+}
+
+}  // namespace achilles::test
