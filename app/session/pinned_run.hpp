@@ -13,7 +13,8 @@
 namespace achilles {
 
 struct PinnedRun {
-    int place = 1;  // from 1 to most_pinned: its colour
+    int place = 1;   // from 1 to most_pinned: its colour
+    int number = 0;  // of those that were asked for, so many before it: whichever run is there first
     bool shown = true;
     std::shared_ptr<const Trajectory> trajectory;
     std::shared_ptr<Sampler> sampler;

@@ -320,7 +320,7 @@ void Session::receive(Patience patience) {
     simulated_ = *motion;
     watch_.reset();
     try {
-        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), simulated_);
+        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pins_asked_, simulated_);
     } catch (const InputError& problem) {
         error_ = problem.what();
     }

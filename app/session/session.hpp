@@ -234,7 +234,7 @@ class Session {
     Moment moment() const { return {document_, system_, plots_, asked_, pinned_}; }
     void restore(Moment back);
     void compose_pinned();
-    void pin(int place, const std::shared_ptr<Simulated>& run);
+    void pin(int place, int number, const std::shared_ptr<Simulated>& run);
     bool waits_at(int place) const;
     void put_aside_pin();
     void let_pins_go();
@@ -281,10 +281,11 @@ class Session {
     RunTable run_table_;
     std::vector<Panel> drawn_;      // empty: the present run's plots
     std::optional<int> pin_waits_;  // the place that the run under way is to be pinned at
+    int pins_asked_ = 0;            // in all: that one is the last of them
     // A run that is made beside the present one, to be pinned at this place.
     using Runner = Worker<std::shared_ptr<Simulated>>;
     struct PinUnderWay {
-        int place;
+        int place, number;
         Run run;
         std::unique_ptr<Runner> worker;
     };

@@ -68,16 +68,17 @@ void Session::perform(const command::Pin& command) {
     if (place == 0)
         for (place = 1; is_taken(place);) ++place;
     scene_.perform(command::Show{"runs", true});
+    ++pins_asked_;
     if (watch_ != nullptr) {  // nothing is said of a run that is not there
         pin_waits_ = place;
         return;
     }
-    pin(place, simulated_);
+    pin(place, pins_asked_, simulated_);
     compose_pinned();
 }
 
 // Throws InputError where all of them would need more memory than one run may.
-void Session::pin(int place, const std::shared_ptr<Simulated>& all) {
+void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) {
     double bytes = bytes_of(all->trajectory);
     for (const PinnedRun& run : pinned_) bytes += bytes_of(*run.trajectory);
     if (const double most = all->trajectory.run.options.memory; bytes > most)
@@ -86,10 +87,13 @@ void Session::pin(int place, const std::shared_ptr<Simulated>& all) {
             fmt::format("let one go (unpin), or allow more: memory {:.1g}", 2.0 * bytes));
     PinnedRun run;
     run.place = place;
+    run.number = number;
     run.trajectory = {all, &all->trajectory};
     run.sampler = {all, &all->sampler};
     run.samples = {all, &all->samples};
-    pinned_.push_back(std::move(run));
+    const auto later =
+        std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& one) { return one.number > number; });
+    pinned_.insert(later, std::move(run));
 }
 
 bool Session::waits_at(int place) const {
@@ -116,7 +120,7 @@ void Session::put_aside_pin() {
     if (!pin_waits_) return;
     if (!patience_) receive(patience_);
     if (!pin_waits_) return;
-    pins_.push_back({*std::exchange(pin_waits_, std::nullopt), asked_, std::move(worker_)});
+    pins_.push_back({*std::exchange(pin_waits_, std::nullopt), pins_asked_, asked_, std::move(worker_)});
     worker_ = std::make_unique<Runner>();
     if (ready_) worker_->on_ready(ready_);
     watch_.reset();
@@ -129,7 +133,7 @@ void Session::receive_pins(Patience patience) {
         try {
             const std::optional<std::shared_ptr<Simulated>> run = pins_.front().worker->take(patience);
             if (!run) return;
-            pin(pins_.front().place, *run);
+            pin(pins_.front().place, pins_.front().number, *run);
         } catch (const InputError& problem) {
             error_ = problem.what();
         } catch (const std::bad_alloc&) {

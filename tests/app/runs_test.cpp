@@ -295,6 +295,23 @@ TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
     EXPECT_EQ(session.trajectory().run.parameters[2], 0.6);
 }
 
+// However long each takes: they stand in the order in which they were asked for.
+TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
+    Session session = test::session("ball_on_floor");
+    for (const char* line : {"set e 1", "end 20000"}) session.apply(parse_command(line));
+    session.set_patience(0.0);
+    session.apply(command::Set{"g", 8.0});
+    session.apply(command::Pin{});
+    session.set_patience(1.0);
+    session.apply(command::Start{{{"e", 0.5}, {"g", 9.0}}});  // this one is there at once
+    ASSERT_EQ(session.under_way(), nullptr);
+    session.apply(command::Pin{});
+    session.settle();
+    ASSERT_EQ(session.pinned().size(), 2U);
+    EXPECT_EQ(session.pinned()[0].place, 1);
+    EXPECT_EQ(session.pinned()[1].place, 2);
+}
+
 // A run that is to be pinned goes on beside the next one; no hand waits for it, and nothing is said of it meanwhile.
 TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
     Hands hands("ball_on_sine");
