@@ -1,4 +1,4 @@
-// The explorer's two surfaces: a window that lives by the clock, and a picture that knows no clock.
+// The explorer in a window, which lives by the clock.
 #include "cli/explore.hpp"
 
 #include <fmt/format.h>
@@ -13,21 +13,16 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/dropped.hpp"
-#include "cli/entries.hpp"
+#include "cli/explorer_setup.hpp"
 #include "cli/film_in_hand.hpp"
-#include "cli/manual.hpp"
-#include "image/png_notes.hpp"
 #include "journal/journal.hpp"
 #include "journal/preferences.hpp"
 #include "journal/recovery.hpp"
 #include "journal/tour.hpp"
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
-#include "panels/print.hpp"
-#include "pictures/picture_ending.hpp"
 #include "pictures/thumbnails.hpp"
 #include "session/open_session.hpp"
-#include "surface/offscreen.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {
@@ -37,46 +32,6 @@ namespace {
 // What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
 // hand; the others are shown when they are there.
 constexpr double frame_patience = 1.0 / 40.0;
-constexpr double largest_scale = 20.0;  // that a surface takes
-
-// What leads from the file alone to the session just opened: with it in front, a recorded journal needs no command
-// line.
-std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
-    std::vector<Command> commands{command::Open{session.system()}};
-    for (const auto group : options_by_command(session.description().options, session.run().options)) {
-        const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
-            return options.overrides.given(option) != nullptr;
-        });
-        if (is_given) commands.emplace_back(command::UseOption(group[0], session.run().options));
-    }
-    for (const std::string& setting : options.settings) {
-        std::string name = setting.substr(0, setting.find('='));
-        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
-        if (const auto value = session.value(name)) commands.emplace_back(command::Set{name, *value});
-    }
-    return commands;
-}
-
-SurfaceOptions surface_options(const ExploreOptions& options) {
-    SurfaceOptions surface;
-    surface.width = options.width;
-    surface.height = options.height;
-    surface.scale = options.scale;
-    surface.figure_text_size = screen_text_size;
-    surface.fonts = assets() / "fonts";
-    return surface;
-}
-
-PanelState panel_state(bool in_window) {
-    PanelState state;
-    state.systems = known_systems();
-    state.tours = known_tours();
-    for (const ManualTopic& topic : manual_topics()) state.manual.push_back({topic.name, topic.title});
-    state.manual_page = [](const std::string& topic) { return manual_page(topic); };
-    state.in_window = state.reads_folders = in_window;
-    state.thumbnails = std::make_shared<Thumbnails>(find_system, !in_window);
-    return state;
-}
 
 // Seconds since it was last asked, none the first time.
 class Clock {
@@ -359,43 +314,6 @@ int explore(const ExploreOptions& options) {
     window.run([&] { explorer.frame(); });
     explorer.finish();
     return reached_end;
-}
-
-int screenshot(const ScreenshotOptions& options, PictureJob& job) {
-    job.check_size(options.width, options.height);
-    format_for(options.out, "png", "; the plots alone are drawn as SVG and PDF, too: achilles figure");
-    job.add(options.out);
-    if (!options.record.empty() && !job.reproduces()) {
-        refuse_record(options.record);
-        job.add(options.record);
-    }
-    Inputs& inputs = job.inputs();
-    std::vector<Command> journal;
-    inputs.trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal}));
-    if (!options.journal.empty()) journal = inputs.journal(options.journal);
-    const std::string name = options.system     ? *options.system
-                             : job.reproduces() ? inputs.first_system()
-                                                : first_system();
-    Session session = open_session(name, inputs.system(name), options.settings, options.overrides, source_of(job), {});
-    std::vector<Command> record = opening(session, options);
-    const std::vector<Command> more = inputs.steps(options.steps);
-    journal.insert(journal.end(), more.begin(), more.end());
-    record.insert(record.end(), journal.begin(), journal.end());
-    apply_all(session, journal);
-    session.settle();
-    if (!options.record.empty()) job.put_text(options.record, journal_text(record));
-    PanelState state = panel_state(false);
-    job.put(options.out, "", {{session.system(), &session.trajectory()}}, [&](const Notes& notes) {
-        SurfaceOptions enlarged = surface_options(options);
-        enlarged.scale = std::min(
-            enlarged.scale * session.scene().text_scale(options.width / options.scale, options.height / options.scale),
-            largest_scale);
-        Offscreen surface(enlarged);
-        const Image image = surface.frame([&] { explorer(session, state); }, 3);
-        return with_notes(png_bytes(image), notes);
-    });
-    job.commit();
-    return session.trajectory().outcome.kind == Outcome::Kind::end_time ? reached_end : stopped_early;
 }
 
 }  // namespace achilles

@@ -5,8 +5,6 @@
 . "$(dirname "$0")/window.sh"
 
 "$build/test_app" --gtest_filter=CameraMenu.tells_where_it_is > "$folder/places"
-place() { grep "^$1 " "$folder/places" | cut -d' ' -f2-; }
-recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 
 open_window "" ball_on_sine --record "$folder/record"
 settle

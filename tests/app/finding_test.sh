@@ -7,7 +7,6 @@
 read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is | grep '^slider ')
 "$build/achilles" new "$folder/mine" > /dev/null
 
-recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 
 open_window "" ball_on_sine --record "$folder/record"
 settle

@@ -4,7 +4,6 @@
 #     taking_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 mkdir "$folder/papers"
 
 open_window "" ball_on_sine --record "$folder/record"

@@ -24,7 +24,6 @@ click() {
 # Letters and where they go in a text are no actions: what is typed is one with the key that enters it.
 letters() { xdotool type --delay 12 "$1"; }
 entered() { letters "$1"; act key Return; }
-recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 # done_with TASK MOST: it took that many actions at most; its screen is kept.
 done_with() {
     echo "$1: $actions actions of $2"

@@ -20,6 +20,10 @@ fail() { echo "$(basename "$0" .sh): $*" >&2; exit 1; }
 # Waits up to 30 s for a command to succeed.
 await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
 
+# Where a thing is, "X Y", as a test told it into $folder/places; and waits until the record has such a line.
+place() { grep "^$1 " "$folder/places" | cut -d' ' -f2-; }
+recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
+
 # open_window WHY ARGUMENTS: an explorer with these arguments; its process is $explorer, its window $window.
 open_window() {
     local why=$1
