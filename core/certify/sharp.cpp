@@ -163,14 +163,9 @@ void SharpConditions::find_shadow(const Time& time) {
     const ShadowTerms<Range>& x = hddot_;
     double lipschitz = 1.0, largest_c = 0.0, largest_d = 0.0;
     for (std::size_t i = 0; i < dof_; ++i) {
-        Interval drift = -x.Bdot(i), row(0.0);
-        for (std::size_t j = 0; j < dof_; ++j) {
-            drift = drift + x.dA_dq(i, j) * x.n(j) + x.dA_ds(i, j) * x.B(j);
-            row = row + abs(x.dA_dq(i, j)) + abs(x.dA_ds(i, j));
-        }
-        lipschitz = std::max(lipschitz, row.hi());
+        lipschitz = std::max(lipschitz, x.steepness(i).hi());
         const Interval c_q = abs(x.B(i) - x.ndot(i)) * gap_integral;
-        const Interval c_s = (abs(drift) + time.a_max * abs(x.D(i))) * gap_integral;
+        const Interval c_s = (abs(x.drift(i)) + time.a_max * abs(x.D(i))) * gap_integral;
         shadow_.E_q[i] = Interval(c_q.hi());
         shadow_.E_s[i] = Interval(c_s.hi());
         largest_c = std::max({largest_c, c_q.hi(), c_s.hi()});

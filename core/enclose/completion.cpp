@@ -136,12 +136,8 @@ void Completion::bound_error(Proof& proof, const Box& box, const Interval& e) {
     proof.error.assign(2 * n, Interval(0.0));
     double lipschitz = 1.0, largest = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-        Interval drift = -hddot_.Bdot(i), row(0.0);
-        for (std::size_t j = 0; j < n; ++j) {
-            drift = drift + hddot_.dA_dq(i, j) * hddot_.n(j) + hddot_.dA_ds(i, j) * hddot_.B(j);
-            row = row + abs(hddot_.dA_dq(i, j)) + abs(hddot_.dA_ds(i, j));
-        }
-        lipschitz = std::max(lipschitz, row.hi());
+        const Interval drift = hddot_.drift(i);
+        lipschitz = std::max(lipschitz, hddot_.steepness(i).hi());
         const Interval turning = hddot_.B(i) - hddot_.ndot(i), most(I.hi());
         proof.error[i] = turning * I;
         proof.error[n + i] = drift * I + hddot_.D(i) * J;

@@ -61,6 +61,18 @@ class ShadowTerms : public Terms<Base> {
     decltype(auto) P() const { return row(6 + 2 * this->dof_, 0); }
     decltype(auto) Phi() const { return row(6 + 2 * this->dof_, 1); }
     decltype(auto) Xi() const { return row(6 + 2 * this->dof_, 2); }
+    // dA/dq n + dA/ds B - Bdot: what the impulses change of the drift of s.
+    auto drift(std::size_t i) const {
+        auto sum = -Bdot(i);
+        for (std::size_t j = 0; j < this->dof_; ++j) sum = sum + dA_dq(i, j) * n(j) + dA_ds(i, j) * B(j);
+        return sum;
+    }
+    // How fast A_i may vary with q and s: the sum of |dA_i/dq_j| and |dA_i/ds_j|.
+    auto steepness(std::size_t i) const {
+        auto sum = abs(dA_dq(i, 0)) + abs(dA_ds(i, 0));
+        for (std::size_t j = 1; j < this->dof_; ++j) sum = sum + abs(dA_dq(i, j)) + abs(dA_ds(i, j));
+        return sum;
+    }
 
  private:
     decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(k * this->dof_ + i); }

@@ -3,6 +3,8 @@
 import os
 import pathlib
 import subprocess
+import threading
+import time
 
 import pytest
 
@@ -23,5 +25,32 @@ def program():
         done = subprocess.run([PROGRAM, *words], capture_output=True, text=True)
         assert done.returncode == status, done.stderr
         return done.stdout if status == 0 else done.stderr
+
+    return call
+
+
+@pytest.fixture
+def counting():
+    """How far another thread of Python counts, a thousand times a second, while something is done; and how long that takes."""
+
+    def call(work):
+        counted, done = 0, threading.Event()
+
+        def count():
+            nonlocal counted
+            while not done.is_set():
+                counted += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        begin = time.monotonic()
+        try:
+            work()
+            seconds = time.monotonic() - begin
+        finally:
+            done.set()
+            thread.join()
+        return seconds, counted
 
     return call

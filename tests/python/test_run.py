@@ -141,25 +141,12 @@ def test_the_same_bytes_twice():
     assert pickle.loads(pickle.dumps(one)).to_json() == one.to_json()
 
 
-def test_the_lock_is_released():
+def test_the_lock_is_released(counting):
     """Another thread counts while a run is made."""
-    counted, done = 0, threading.Event()
-
-    def count():
-        nonlocal counted
-        while not done.is_set():
-            counted += 1
-            time.sleep(0.001)
-
-    thread = threading.Thread(target=count)
-    thread.start()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        begin = time.monotonic()
-        achilles.simulate("ball_on_egg_crate", end=300, method="dopri5", tolerance=1e-12, memory=1e10)
-    seconds = time.monotonic() - begin
-    done.set()
-    thread.join()
+        seconds, counted = counting(
+            lambda: achilles.simulate("ball_on_egg_crate", end=300, method="dopri5", tolerance=1e-12, memory=1e10))
     assert seconds > 0.1 and counted > 5
 
 

@@ -92,23 +92,9 @@ def test_a_run_that_fails_is_a_point():
     assert below["outcome"][0] == "cannot start" and np.isnan(below["t"][0]) and below["outcome"][-1] == "end time"
 
 
-def test_the_lock_is_released():
+def test_the_lock_is_released(counting):
     """Another thread counts during a sweep, which calls nothing of Python."""
-    counted, done = 0, threading.Event()
-
-    def count():
-        nonlocal counted
-        while not done.is_set():
-            counted += 1
-            time.sleep(0.001)
-
-    thread = threading.Thread(target=count)
-    thread.start()
-    begin = time.monotonic()
-    achilles.sweep("ball_on_sine", {"e": (0.1, 0.9, 20000)}, "zeno_time(2)")
-    seconds = time.monotonic() - begin
-    done.set()
-    thread.join()
+    seconds, counted = counting(lambda: achilles.sweep("ball_on_sine", {"e": (0.1, 0.9, 20000)}, "zeno_time(2)"))
     assert seconds > 0.05 and counted > 5
 
 
