@@ -20,12 +20,13 @@ SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model
       execution(model, run, surfaces, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
       stepper(*model, run, surfaces) {}
 
-SideBySide::SideBySide(const std::shared_ptr<const Model>& model)
+SideBySide::SideBySide(const std::shared_ptr<const Model>& model, Vectors vectors)
     : step_(static_cast<std::size_t>(model->dof())),
       end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
       has_lanes_(model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
-                 !model->motion(ContactSet::of(0)).series.is_partial()) {
+                 !model->motion(ContactSet::of(0)).series.is_partial()),
+      vectors_(vectors) {
     result_.starts.resize(1);
 }
 
@@ -143,7 +144,9 @@ LaneStepper& SideBySide::prepare() {
     const double tolerance = members_.front()->execution.run().options.tolerance;
     auto found = steppers_.find(tolerance);
     if (found == steppers_.end())
-        found = steppers_.emplace(tolerance, Prepared{make_lane_stepper(model_->lane_programs(), tolerance), {}}).first;
+        found =
+            steppers_.emplace(tolerance, Prepared{make_lane_stepper(model_->lane_programs(), tolerance, vectors_), {}})
+                .first;
     Prepared& prepared = found->second;
     std::array<std::size_t, Eight::count> sets{};
     for (std::size_t lane = 0; lane < Eight::count; ++lane) sets[lane] = member_in(lane).set;

@@ -16,7 +16,8 @@ namespace achilles {
 // the run's own stepper.
 class SideBySide {
  public:
-    explicit SideBySide(const std::shared_ptr<const Model>& model);
+    // The results are the same whatever the vectors.
+    explicit SideBySide(const std::shared_ptr<const Model>& model, Vectors vectors = possible_vectors().front());
 
     // For 0 <= i < count, as next.fetch_add(1) gives them: take(i, what run_of(i) came to).
     struct Share {
@@ -64,7 +65,8 @@ class SideBySide {
     StepResult result_;
     Line members_;  // of the step that is made: a lane each
     std::shared_ptr<const Model> model_;
-    bool has_lanes_;                // the model can be stepped in lanes
+    bool has_lanes_;                // the model can be stepped in lanes,
+    Vectors vectors_;               // which are these
     const Share* share_ = nullptr;  // while it works
     std::vector<std::unique_ptr<Member>> all_;
     Line flying_, staying_, spare_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "bench/engine.hpp"
@@ -12,6 +13,7 @@
 #include "certify/execution.hpp"
 #include "model/read_system.hpp"
 #include "simulate/many.hpp"
+#include "simulate/side_by_side.hpp"
 
 namespace achilles::bench {
 namespace {
@@ -34,9 +36,21 @@ struct Ensemble {
     std::vector<Values> ends;
 };
 
-// One by one, or eight at a time. The runs say themselves how long their certificates took.
+std::string name_of(Vectors vectors) {
+    switch (vectors) {
+        case Vectors::portable:
+            return ", by portable eight";
+        case Vectors::avx512:
+            return ", by AVX-512";
+        case Vectors::avx512_with_machine_code:
+            return ", and machine code";
+    }
+    return "";
+}
+
+// One by one, or eight at a time by these vectors. The runs say themselves how long their certificates took.
 Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, const std::vector<Values>& from,
-                     Setting setting, bool side_by_side) {
+                     Setting setting, std::optional<Vectors> vectors = {}) {
     const auto run_of = [=, &from](std::size_t i) {
         Run run = run_with(*model, method, setting);
         run.q << from[i][0], from[i][1];
@@ -52,14 +66,15 @@ Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, c
             if (trajectory.outcome.kind != Outcome::Kind::end_time)
                 ends[i].fill(std::numeric_limits<double>::quiet_NaN());
         };
-        if (side_by_side) {
-            simulate_ends(model, ends.size(), run_of, take, 1);
+        if (vectors) {
+            std::atomic<std::size_t> next = 0;
+            SideBySide(model, *vectors).work({ends.size(), next, run_of, take});
         } else {
             simulate_many(model, ends.size(), run_of, take, 1, Keep::end);
         }
         return certifying;
     };
-    return {fmt::format("engine {}{}", to_text(method), side_by_side ? ", by eight" : ""), all, {}, {}, {}};
+    return {fmt::format("engine {}{}", to_text(method), vectors ? name_of(*vectors) : std::string()), all, {}, {}, {}};
 }
 
 Ensemble ensemble_of(const std::string& name, std::shared_ptr<Program> program, const std::vector<Values>& from,
@@ -97,8 +112,9 @@ void measure_ensemble(int count, int rounds) {
     const std::vector<Values> from = starts(count);
     const std::vector<Values> truth = truths(*model, from, 200);
     std::vector<Ensemble> all;
-    for (const Method method : methods(model)) all.push_back(ensemble_of(model, method, from, {1e-9, 1e-9}, false));
-    all.push_back(ensemble_of(model, Method::taylor, from, {1e-9, 1e-9}, true));
+    for (const Method method : methods(model)) all.push_back(ensemble_of(model, method, from, {1e-9, 1e-9}));
+    for (const Vectors vectors : possible_vectors())
+        all.push_back(ensemble_of(model, Method::taylor, from, {1e-9, 1e-9}, vectors));
     all.push_back(ensemble_of("Boost.Odeint", by_odeint<Ball>(), from, {1e-9, 1e-3, 20.0}));
     all.push_back(ensemble_of("ARKODE", by_arkode<Ball>(), from, {1e-9, 1e-3, 20.0}));
     for (int round = 0; round < rounds; ++round) {
@@ -118,7 +134,7 @@ void measure_ensemble(int count, int rounds) {
         for (std::size_t i = 0; i < truth.size(); ++i) errors.push_back(error_of(one.ends[i], truth[i]));
         for (double& error : errors) error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
         std::sort(errors.begin(), errors.end());
-        fmt::print("  {:<24} {:8.0f} runs/s  {}   error: median {:.1e}, 95 percent below {:.1e}; lost {}", one.name,
+        fmt::print("  {:<33} {:8.0f} runs/s  {}   error: median {:.1e}, 95 percent below {:.1e}; lost {}", one.name,
                    count / median(one.whole), ratio(reference, one.whole), errors[errors.size() / 2],
                    errors[errors.size() * 95 / 100], count_lost(one.ends));
         if (median(one.net) < median(one.whole))
