@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "enclose/doubleton.hpp"
+#include "expression/scalar.hpp"
 
 namespace achilles {
 
@@ -56,8 +57,7 @@ struct Coordinates {
  private:
     template <class Number>
     static void mark(std::vector<Number>& state, const std::vector<std::size_t>& variables) {
-        Number none;
-        if constexpr (sizeof(none.slope) >= sizeof(Interval))
+        if constexpr (HasDerivatives<Number>)
             for (std::size_t j = 0; j < variables.size(); ++j)
                 state[variables[j]] = Number::variable(state[variables[j]].value, j);
     }

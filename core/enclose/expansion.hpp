@@ -1,4 +1,4 @@
-// The Taylor coefficients of a motion over a box of states, alone or with their derivatives.
+// The Taylor coefficients of a motion at a point, over a box of states, or with their derivatives.
 #pragma once
 
 #include <memory>
@@ -21,8 +21,9 @@ class Expansion {
     virtual bool has_mass() = 0;
 };
 
+// At a point the numbers are Fine, so that what a step loses there is the rounding of its end alone.
+enum class Expanded { at_a_point, over_a_box, with_derivatives };
 // `series` is that of Model::hddot_series() and outlives the result.
-std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates,
-                                          bool with_derivatives);
+std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates, Expanded what);
 
 }  // namespace achilles

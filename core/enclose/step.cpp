@@ -83,9 +83,9 @@ Stepper::Stepper(const Model& model, const Coordinates& coordinates, ContactSet 
       in_contact_(held.contains(contact)),
       event_(2 * coordinates.dof + contact),
       variables_(coordinates.of_motion()),
-      at_centre_(make_expansion(model.hddot_series(held), coordinates, false)),
-      over_hull_(make_expansion(model.hddot_series(held), coordinates, true)),
-      over_box_(make_expansion(model.hddot_series(held), coordinates, false)) {}
+      at_centre_(make_expansion(model.hddot_series(held), coordinates, Expanded::at_a_point)),
+      over_hull_(make_expansion(model.hddot_series(held), coordinates, Expanded::with_derivatives)),
+      over_box_(make_expansion(model.hddot_series(held), coordinates, Expanded::over_a_box)) {}
 
 // The size of each coordinate along a step: errors are measured by it. Of h and u that of the flight, since after an impact
 // they are as exact as they are small.
