@@ -36,6 +36,11 @@ std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, c
     return others;
 }
 
+Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i) {
+    const std::size_t bouncing = neighbours.bouncing.size();
+    return program.output(bouncing + i * (2 + bouncing) + 2);
+}
+
 OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held) {
     if (model.contacts() == 1) return;
     neighbours_ = &model.neighbours(contact, held);

@@ -12,6 +12,9 @@ namespace achilles {
 // What the program of these neighbours proves, which has run. Nothing where one is not proved pressed, or open.
 std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program);
 
+// kappa of held contact i of these for the one that bounces, of a program that has run.
+Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i);
+
 class OthersStay {
  public:
     OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held);

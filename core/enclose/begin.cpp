@@ -9,22 +9,33 @@
 
 namespace achilles {
 
-// The gap and its rate become coordinates.
+// Every gap and its rate become coordinates.
 void Prover::begin() {
     const Intervals start = set_.hull();
-    maps_->measure_gap(set_);
-    const Interval h = set_.hull(z_.h());
-    if (certainly_positive(h)) {
-        gap_ = h;
-        return;
+    measure_others({});
+    std::optional<std::size_t> on_surface;
+    for (std::size_t i = 0; i < z_.contacts; ++i) {
+        if (certainly_positive(openings_[i].gap)) continue;
+        if (on_surface) throw Undecided{"it starts on several surfaces at once, or may"};
+        on_surface = i;
     }
-    begin_on_surface(start);
+    if (on_surface) begin_on_surface(start, *on_surface);
+}
+
+void Prover::measure_others(ContactSet but) {
+    for (std::size_t i = 0; i < z_.contacts; ++i) {
+        if (but.contains(i)) continue;
+        maps(i).measure_gap(set_);
+        openings_[i] = {KnownRoot::none, set_.hull(z_.h(i))};
+    }
 }
 
 // A start that is on the surface to within rounding: the theorem is about the members with h = 0, and those with hdot = 0
 // where that is not told from 0. That there are such members is proved by a change of sign of h along n.
-void Prover::begin_on_surface(const Intervals& start) {
-    const Maps::Surface surface = maps_->surface(start);
+void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
+    Maps& maps = this->maps(contact);
+    const std::size_t h = z_.h(contact), u_place = z_.u(contact);
+    const Maps::Surface surface = maps.surface(start);
     const Undecided doubt{"contact or flight at the start: the gap cannot be told from zero for all of the set"};
     // What roundings of the coordinates make of the gap; g n = 1, so that a way along n is as long as the gap it makes.
     Intervals near = start;
@@ -32,7 +43,7 @@ void Prover::begin_on_surface(const Intervals& start) {
         const double ulps = 0x1p-48 * mag(near[z_.q(i)]);
         near[z_.q(i)] = Interval(mid(near[z_.q(i)])) + Interval(-ulps, ulps);
     }
-    const double error = rad(maps_->surface(near).h), off = mag(surface.h);
+    const double error = rad(maps.surface(near).h), off = mag(surface.h);
     const double reach = 4.0 * error + 0x1p-200;  // where all are 0 to the last bit, too
     if (!(off <= reach)) throw doubt;
     Intervals below = start, above = start;
@@ -41,18 +52,19 @@ void Prover::begin_on_surface(const Intervals& start) {
         below[z_.q(i)] = Interval(mid(below[z_.q(i)])) - Interval(n) * Interval(reach);
         above[z_.q(i)] = Interval(mid(above[z_.q(i)])) + Interval(n) * Interval(reach);
     }
-    if (!certainly_negative(maps_->surface(below).h) || !certainly_positive(maps_->surface(above).h)) throw doubt;
+    if (!certainly_negative(maps.surface(below).h) || !certainly_positive(maps.surface(above).h)) throw doubt;
     // The members that are meant lie within reach of these.
     Intervals box = start;
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.q(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * reach);
-    box[z_.h()] = Interval(0.0);
-    const Interval u = maps_->surface(box).hdot;
+    box[h] = Interval(0.0);
+    const Interval u = maps.surface(box).hdot;
     if (certainly_positive(u)) {
-        box[z_.u()] = u;
+        box[u_place] = u;
         set_ = Doubleton(box, z_.varied.size());
-        maps_->measure_gap(set_);
-        set_.set(z_.h(), 0.0);
-        known_ = KnownRoot::landed;
+        maps.measure_gap(set_);
+        set_.set(h, 0.0);
+        openings_[contact].known = KnownRoot::landed;
+        measure_others(ContactSet::of(contact));
         return;
     }
     double fast = 0.0;
@@ -60,14 +72,15 @@ void Prover::begin_on_surface(const Intervals& start) {
     if (certainly_negative(u) || rad(u) > 0x1p-40 * std::max(fast, 1.0))
         throw Undecided{"the start lands on the surface, or may: start a little before it"};
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.v(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * mag(u));
-    box[z_.u()] = Interval(0.0);
+    box[u_place] = Interval(0.0);
     set_ = Doubleton(box, z_.varied.size());
-    maps_->retract(set_);
-    const Interval hddot = maps_->normal(set_.hull()).hddot;
+    maps.retract(set_);
+    measure_others(ContactSet::of(contact));
+    const Interval hddot = maps.normal(set_.hull()).hddot;
     if (certainly_negative(hddot)) {
-        in_contact_ = true;
+        hold(ContactSet::of(contact));
     } else if (certainly_positive(hddot)) {
-        known_ = KnownRoot::at_rest;
+        openings_[contact].known = KnownRoot::at_rest;
     } else {
         throw Undecided{
             "contact or flight at the start: the contact force cannot be told from zero for all of the set"};
@@ -88,15 +101,15 @@ InputError refusal(const Model& model, const std::string& why) {
 Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch) {
     const auto clock = std::chrono::steady_clock::now();
     const Ground ground;
-    if (model->contacts() > 1) throw refusal(*model, "it has several gaps, and a proof follows one");
     Coordinates z;
     z.dof = static_cast<std::size_t>(model->dof());
     z.autonomous = model->equations().autonomous;
     z.parameters = claim.parameters;
+    z.contacts = model->contacts();
     Intervals start{Interval(claim.run.options.start_time)};
     start.insert(start.end(), claim.q.begin(), claim.q.end());
     start.insert(start.end(), claim.v.begin(), claim.v.end());
-    start.insert(start.end(), {Interval(0.0), Interval(0.0)});
+    start.resize(z.parameter(0));
     for (std::size_t i = 0; i < z.parameters.size(); ++i)
         if (is_wide(z.parameters[i])) {
             z.varied.push_back(i);
@@ -104,12 +117,14 @@ Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, P
         }
     Enclosure result;
     try {
-        const auto e = make_maps(*model, z)->restitution(start);
-        if (!(e.lo() >= -0x1p-50 && e.hi() <= 1.0 + 0x1p-50))
-            throw InputError(
-                model->description().file, model->description().constraints[0].restitution.at,
-                fmt::format("the restitution must lie in [0, 1], but it may be in [{}, {}]", e.lo(), e.hi()),
-                "0 is plastic, 1 is elastic");
+        for (std::size_t i = 0; i < z.contacts; ++i) {
+            const auto e = make_maps(*model, z, i)->restitution(start);
+            if (!(e.lo() >= -0x1p-50 && e.hi() <= 1.0 + 0x1p-50))
+                throw InputError(
+                    model->description().file, model->description().constraints[i].restitution.at,
+                    fmt::format("the restitution must lie in [0, 1], but it may be in [{}, {}]", e.lo(), e.hi()),
+                    "0 is plastic, 1 is elastic");
+        }
         result = Prover(*model, claim, z, start, watch, ground).run();
     } catch (const Undecided& doubt) {
         throw refusal(*model, doubt.reason);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "certify/others.hpp"
 #include "number/jet.hpp"
 
 namespace achilles {
@@ -39,14 +40,45 @@ struct Completion::Box {
     Trend trend;
 };
 
-Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact)
-    : z_(coordinates), layout_(model.layout()) {
-    const Bouncing& bouncing = model.bouncing(contact);
+Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
+    : z_(coordinates), layout_(model.layout()), u_(coordinates.u(contact)) {
+    const Bouncing& bouncing = model.bouncing(contact, held);
     hddot_ = {Range(with_parameters<Interval>(bouncing.hddot, layout_, z_.parameters),
                     with_parameters<Interval>(bouncing.shadow, layout_, z_.parameters), bouncing.variables),
               z_.dof};
     trend_ = {with_parameters<double>(bouncing.trend, layout_, z_.parameters), z_.dof};
     rates_ = {with_parameters<double>(bouncing.rates, layout_, z_.parameters), z_.dof};
+    if (model.contacts() == 1) return;
+    neighbours_ = &model.neighbours(contact, held);
+    neighbours_program_ = with_parameters<Interval>(neighbours_->program, layout_, z_.parameters);
+    neighbours_variables_ = bouncing.variables;
+}
+
+// Over a box of the variables of Bouncing.
+void Completion::look(const Intervals& box) {
+    for (std::size_t i = 0; i < box.size(); ++i) neighbours_program_.input(neighbours_variables_[i]) = box[i];
+    neighbours_program_.run();
+}
+
+// An impulse that may press a held contact no more, but by rounding, is no proof.
+bool Completion::others_stay(const Intervals& box) {
+    if (neighbours_ == nullptr) return true;
+    look(box);
+    const auto others = others_proved(*neighbours_, neighbours_program_);
+    return others && !others->rounded_zero;
+}
+
+std::map<std::size_t, Interval> Completion::passed_on(const Doubleton& set) {
+    Intervals box;
+    for (std::size_t i = 0; i < 2 * z_.dof; ++i) box.push_back(set.hull(z_.q(i)));
+    const double w = mag(set.hull(u_));
+    box.emplace_back(-w, w);
+    if (!z_.autonomous) box.push_back(set.hull(Coordinates::t()));
+    look(box);
+    std::map<std::size_t, Interval> result;
+    for (std::size_t i = 0; i < neighbours_->held.size(); ++i)
+        result[neighbours_->held[i]] = transmission(*neighbours_, neighbours_program_, i);
+    return result;
 }
 
 Intervals Completion::variables(const Box& box) const {
@@ -82,13 +114,13 @@ bool Completion::contain(Box& box, const Interval& e) {
 
 // The wait as a function of the state at the collision: by the attained bounds A w, and to third order.
 void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, const Interval& e) {
-    const Interval one(1.0), two(2.0), c_w = -Interval(set.centre(z_.u()));
+    const Interval one(1.0), two(2.0), c_w = -Interval(set.centre(u_));
     const Wait per_speed = wait_for_zeno(e, box.a_min, box.a_max, one);
     const Interval A(per_speed.earliest.lo(), per_speed.latest.hi()), middle(mid(A));
     Intervals row(z_.size());
     row[Coordinates::t()] = one;
     const auto time_of = [&](const Interval& at_centre, const Interval& by_u) {
-        row[z_.u()] = by_u;
+        row[u_] = by_u;
         return Interval(set.centre(Coordinates::t())) + at_centre + set.along(row.data());
     };
     proof.by_u = -middle;
@@ -158,7 +190,7 @@ std::optional<Completion::Proof> Completion::prove(const Doubleton& set, const I
         trend_.input(layout_.v(i)) = rates_.input(layout_.v(i)) = set.centre(z_.v(i));
     }
     box.t0 = set.hull(Coordinates::t());
-    box.w = -set.hull(z_.u());
+    box.w = -set.hull(u_);
     trend_.clock() = rates_.clock() = set.centre(Coordinates::t());
     trend_.run();
     box.trend = {-trend_.hddot(), -trend_.rate(), -trend_.by_sigma()};
@@ -183,11 +215,12 @@ std::optional<Completion::Proof> Completion::prove(const Doubleton& set, const I
         const Interval longest(wait_for_zeno(e, box.a_min, box.a_max, Interval(w)).latest.hi());
         box.T = Interval((longest * Interval(1.0 + 0x1p-40)).hi());
         if (!contain(box, e)) continue;
+        const Intervals all = variables(box);
+        if (!others_stay(all)) return std::nullopt;
         Proof proof;
         bound_time(proof, box, set, e);
         bound_error(proof, box, e);
         proof.window = longest.hi() * (1.0 + 0x1p-41);
-        const Intervals all = variables(box);
         for (std::size_t i = 0; i < n; ++i) {
             proof.position.push_back(all[i]);
             proof.velocity.push_back(all[n + i] + hddot_.n(i) * all[2 * n]);

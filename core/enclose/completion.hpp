@@ -2,6 +2,7 @@
 // (theory-enclosure.md 6).
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "certify/range.hpp"
@@ -13,7 +14,8 @@ namespace achilles {
 
 class Completion {
  public:
-    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0);
+    // Of a contact while others are held.
+    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, ContactSet held = {});
 
     // What is proved of the bouncing of all members from a collision on.
     struct Proof {
@@ -31,6 +33,8 @@ class Completion {
     // Of a set whose v is the tangential velocity and whose u < 0 is the rate at the collision. Nothing where it cannot be
     // proved that all of them bounce to the end.
     std::optional<Proof> prove(const Doubleton& set, const Interval& e);
+    // Of such a set: whether what an impact passes on to each held contact, by contact, presses it (theory-gaps.md 2.1): kappa.
+    std::map<std::size_t, Interval> passed_on(const Doubleton& set);
 
  private:
     struct Box;
@@ -39,11 +43,19 @@ class Completion {
     void bound_error(Proof& proof, const Box& box, const Interval& e);
     Intervals variables(const Box& box) const;
 
+    bool others_stay(const Intervals& box);
+    void look(const Intervals& box);  // at the others
+
     Coordinates z_;
     Layout layout_;
+    std::size_t u_;
     ShadowTerms<Range> hddot_;
     TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> rates_;
+    // What the other contacts do, of a system that has any.
+    const Neighbours* neighbours_ = nullptr;
+    Evaluator<Interval> neighbours_program_;
+    std::vector<std::uint32_t> neighbours_variables_;
 };
 
 }  // namespace achilles

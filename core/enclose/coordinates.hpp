@@ -1,5 +1,5 @@
-// Where the coordinates of a set of states stand (theory-enclosure.md 1): the member's own time, q, v, its gap h and the rate
-// u of that once more, and the parameters that are intervals.
+// Where the coordinates of a set of states stand (theory-enclosure.md 1): the member's own time, q, v, of every contact its gap h
+// and the rate u of that once more, and the parameters that are intervals.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +15,15 @@ struct Coordinates {
     bool autonomous = true;
     Intervals parameters;             // all of the system's: those that are no coordinates are the same for all members
     std::vector<std::size_t> varied;  // of them, which are coordinates
+    std::size_t contacts = 1;
 
     static constexpr std::size_t t() { return 0; }
     std::size_t q(std::size_t i) const { return 1 + i; }
     std::size_t v(std::size_t i) const { return 1 + dof + i; }
-    std::size_t h() const { return 1 + 2 * dof; }
-    std::size_t u() const { return 2 + 2 * dof; }
-    std::size_t parameter(std::size_t k) const { return 3 + 2 * dof + k; }
-    std::size_t size() const { return 3 + 2 * dof + varied.size(); }
+    std::size_t h(std::size_t contact = 0) const { return 1 + 2 * dof + 2 * contact; }
+    std::size_t u(std::size_t contact = 0) const { return 2 + 2 * dof + 2 * contact; }
+    std::size_t parameter(std::size_t k) const { return 1 + 2 * dof + 2 * contacts + k; }
+    std::size_t size() const { return parameter(varied.size()); }
 
     // The coordinates that the accelerations depend on, and those that maps do: h and u besides.
     std::vector<std::size_t> of_motion() const {
@@ -34,8 +35,7 @@ struct Coordinates {
     }
     std::vector<std::size_t> of_maps() const {
         std::vector<std::size_t> result = of_motion();
-        result.push_back(h());
-        result.push_back(u());
+        for (std::size_t i = 0; i < contacts; ++i) result.insert(result.end(), {h(i), u(i)});
         return result;
     }
     // The coordinates of a box as numbers with derivatives by these variables; all of the system's parameters likewise.

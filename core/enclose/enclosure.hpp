@@ -29,6 +29,8 @@ struct Claim {
 
 struct EnclosedEvent {
     Event::Kind kind = Event::Kind::impact;
+    std::size_t contact = 0;
+    ContactSet held, opened;  // after it, and by it
     Interval t;
     Intervals q, v_before, v_after;  // v_after = v_before but at impacts
     int impacts = 0;                 // zeno: of the bouncing that it ends

@@ -6,23 +6,34 @@ namespace achilles {
 
 namespace {
 
-// The programs of a contact over one number.
+// The programs of a contact while others are held, over one number.
 template <class Number>
 class Programs {
  public:
-    Programs(const Model& model, const Coordinates& coordinates, std::size_t contact)
+    Programs(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
         : z_(coordinates),
           layout_(model.layout()),
-          terms_(Evaluator<Number>(model.programs_of(contact).contact_terms), coordinates.dof),
-          release_(Evaluator<Number>(model.programs_of(contact).release_terms), coordinates.dof),
-          restitution_(model.restitution(contact)) {}
+          h_(coordinates.h(contact)),
+          u_(coordinates.u(contact)),
+          terms_(Evaluator<Number>(model.programs_of(contact, held).contact_terms), coordinates.dof),
+          release_(Evaluator<Number>(model.programs_of(contact, held).release_terms), coordinates.dof),
+          restitution_(model.restitution(contact)) {
+        for (std::size_t i = 0; i < model.contacts(); ++i)
+            if (i != contact && !held.contains(i))
+                others_.push_back(
+                    {coordinates.u(i), ContactTerms<Evaluator<Number>>(
+                                           Evaluator<Number>(model.programs_of(i).contact_terms), coordinates.dof)});
+    }
 
     std::vector<Number> numbers(const Intervals& box) {
         std::vector<Number> z = z_.numbers<Number>(box, z_.of_maps());
         const std::vector<Number> parameters = z_.parameter_numbers(z);
-        for (std::size_t i = 0; i < parameters.size(); ++i)
+        for (std::size_t i = 0; i < parameters.size(); ++i) {
             terms_.input(layout_.parameter(i)) = release_.input(layout_.parameter(i)) =
                 restitution_.input(layout_.parameter(i)) = parameters[i];
+            for (Other& other : others_) other.terms.input(layout_.parameter(i)) = parameters[i];
+        }
+        for (Other& other : others_) other.terms.fix();
         terms_.fix();
         release_.fix();
         restitution_.fix();
@@ -31,19 +42,19 @@ class Programs {
 
     void measure_gap(std::vector<Number>& z) {
         look(terms_, z);
-        z[z_.h()] = terms_.h();
-        z[z_.u()] = terms_.hdot();
+        z[h_] = terms_.h();
+        z[u_] = terms_.hdot();
     }
     void take_rate_out(std::vector<Number>& z) {
         look(terms_, z);
-        push(z, z[z_.u()]);
+        strike(z, z[u_]);
     }
     void impact(std::vector<Number>& z) {
         look(terms_, z);
         restitution_.run();
         const Number e = restitution_.output(0);
-        push(z, (Number(1.0) + e) * z[z_.u()]);
-        z[z_.u()] = -(e * z[z_.u()]);
+        strike(z, (Number(1.0) + e) * z[u_]);
+        z[u_] = -(e * z[u_]);
     }
     void retract(std::vector<Number>& z) {
         look(terms_, z);
@@ -52,8 +63,8 @@ class Programs {
     }
     void project(std::vector<Number>& z) {
         look(terms_, z);
-        shift(z, terms_.h() - z[z_.h()]);
-        push(z, terms_.hdot() - z[z_.u()]);
+        shift(z, terms_.h() - z[h_]);
+        push(z, terms_.hdot() - z[u_]);
     }
 
     const ContactTerms<Evaluator<Number>>& terms(const std::vector<Number>& z) {
@@ -86,8 +97,27 @@ class Programs {
         for (std::size_t i = 0; i < z_.dof; ++i) z[z_.v(i)] = z[z_.v(i)] - terms_.impulse_direction(i) * rate;
     }
 
+    // v -= n times that much, and what that does to the rates of the other open gaps.
+    void strike(std::vector<Number>& z, const Number& rate) {
+        push(z, rate);
+        for (Other& other : others_) {
+            look(other.terms, z);
+            Number passed(0.0);
+            for (std::size_t i = 0; i < z_.dof; ++i)
+                passed = passed + other.terms.gradient(i) * terms_.impulse_direction(i);
+            z[other.u] = z[other.u] - passed * rate;
+        }
+    }
+
+    // Of another contact that is open.
+    struct Other {
+        std::size_t u;
+        ContactTerms<Evaluator<Number>> terms;
+    };
     Coordinates z_;
     Layout layout_;
+    std::size_t h_, u_;
+    std::vector<Other> others_;
     ContactTerms<Evaluator<Number>> terms_;
     ReleaseTerms<Evaluator<Number>> release_;
     Evaluator<Number> restitution_;
@@ -99,11 +129,11 @@ class MapsOver : public Maps {
     using Gradient = Jet<Interval, N>;
 
  public:
-    MapsOver(const Model& model, const Coordinates& coordinates, std::size_t contact)
+    MapsOver(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
         : z_(coordinates),
           variables_(coordinates.of_maps()),
-          values_(model, coordinates, contact),
-          gradients_(model, coordinates, contact) {}
+          values_(model, coordinates, contact, held),
+          gradients_(model, coordinates, contact, held) {}
 
     void measure_gap(Doubleton& set) override {
         apply(set, [](auto& programs, auto& z) { programs.measure_gap(z); });
@@ -177,9 +207,10 @@ class MapsOver : public Maps {
 
 }  // namespace
 
-std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact) {
+std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact,
+                                ContactSet held) {
     return with_directions(coordinates.of_maps().size(), [&]<std::size_t N>() -> std::unique_ptr<Maps> {
-        return std::make_unique<MapsOver<N>>(model, coordinates, contact);
+        return std::make_unique<MapsOver<N>>(model, coordinates, contact, held);
     });
 }
 

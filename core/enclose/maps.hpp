@@ -14,9 +14,9 @@ class Maps {
     virtual ~Maps() = default;
     // h := h(q), u := hdot(q, v).
     virtual void measure_gap(Doubleton& set) = 0;
-    // v -= n u; u is kept.
+    // v -= n u; this contact's u is kept.
     virtual void take_rate_out(Doubleton& set) = 0;
-    // Newton's law for members with h = 0: v -= (1 + e) n u, u := -e u.
+    // Newton's law for members with h = 0: v -= (1 + e) n u, u := -e u, and the rates of other open gaps follow.
     virtual void impact(Doubleton& set) = 0;
     // q -= n (h(q) - h), then v -= n (hdot(q, v) - u), the identity on all members. It forgets what the set has gained away from
     // where h and u are the gap of (q, v).
@@ -38,6 +38,8 @@ class Maps {
     virtual Surface surface(const Intervals& box) = 0;
 };
 
-std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact = 0);
+// Of a contact while others are held: n leaves these held.
+std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact = 0,
+                                ContactSet held = {});
 
 }  // namespace achilles

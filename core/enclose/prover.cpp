@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace achilles {
 
@@ -18,14 +19,13 @@ Interval both(const Interval& a, const Interval& b) {
 
 Prover::Prover(const Model& model, const Claim& claim, const Coordinates& coordinates, const Intervals& start,
                ProofWatch* watch, const Ground&)
-    : claim_(claim),
+    : model_(&model),
+      claim_(claim),
       z_(coordinates),
       watch_(watch),
-      flight_(model, coordinates, {}),
-      contact_motion_(model, coordinates, ContactSet::of(0)),
-      maps_(make_maps(model, coordinates)),
-      completion_(model, coordinates),
       set_(start, coordinates.varied.size()),
+      openings_(coordinates.contacts),
+      bounces_(coordinates.contacts),
       proved_until_(claim.run.options.start_time) {
     for (const double time : claim.times) asked_.push_back({time, {}, false});
     asked_.push_back({claim.run.options.end_time, {}, false});
@@ -136,143 +136,252 @@ void Prover::count_step() {
         throw Undecided{fmt::format("more than {} steps", claim_.run.options.max_steps)};
 }
 
-void Prover::move() {
-    Stepper& stepper = in_contact_ ? contact_motion_ : flight_;
+Stepper& Prover::motion() {
+    auto& known = motions_[held_];
+    if (!known) known = std::make_unique<Stepper>(*model_, z_, held_);
+    return *known;
+}
+
+Maps& Prover::maps(std::size_t contact) {
+    const ContactSet others = held_.without(contact);
+    auto& known = maps_[{others, contact}];
+    if (!known) known = make_maps(*model_, z_, contact, others);
+    return *known;
+}
+
+Completion& Prover::completion(std::size_t contact) {
+    auto& known = completions_[{held_, contact}];
+    if (!known) known = std::make_unique<Completion>(*model_, z_, contact, held_);
+    return *known;
+}
+
+void Prover::hold(ContactSet contacts) {
+    held_ = contacts;
+    motion().forget();
+}
+
+// To the end, and after impacts not much farther than the flights.
+double Prover::longest_step() {
     double most = longest();
-    if (!in_contact_ && known_ == KnownRoot::landed) {
-        const Maps::Normal normal = maps_->normal(set_.hull());
-        const double a = -mid(normal.hddot), u = set_.hull(z_.u()).hi();
+    for (std::size_t i = 0; i < z_.contacts; ++i) {
+        if (held_.contains(i) || openings_[i].known != KnownRoot::landed) continue;
+        const double a = -mid(maps(i).normal(set_.hull()).hddot), u = set_.hull(z_.u(i)).hi();
         if (a > 0.0) most = std::min(most, 1.5 * 2.0 * u / a);
     }
-    const Step step = stepper.make(set_, most, known_, gap_);
+    return most;
+}
+
+// The one event that comes before all others in every member, if there is any.
+Prover::Next Prover::next_in(const Step& step) const {
+    std::vector<FirstRoot> roots;
+    Next next{{}, {}, step.length(), {}};
+    for (std::size_t i = 0; i < z_.contacts; ++i) {
+        const FirstRoot& root = roots.emplace_back(first_root(step.watched(i), step.length()));
+        if (root.kind == FirstRoot::Kind::none) continue;
+        next.clear = std::min(next.clear, root.at.lo());
+        const bool is_first = !next.contact || root.at.hi() < next.elapsed.hi();
+        if (root.kind == FirstRoot::Kind::one && is_first) {
+            next.contact = i;
+            next.elapsed = root.at;
+        }
+        if (root.kind == FirstRoot::Kind::doubt)
+            next.doubt = held_.contains(i)
+                             ? "release or none: the contact force cannot be told from zero for all of the set"
+                             : "impact or none: the gap cannot be told from zero for all of the set";
+    }
+    for (std::size_t i = 0; i < z_.contacts && next.contact; ++i) {
+        if (i == *next.contact || roots[i].kind == FirstRoot::Kind::none || roots[i].at.lo() > next.elapsed.hi())
+            continue;
+        if (next.doubt.empty()) next.doubt = "the events of two contacts cannot be told apart for all of the set";
+        next.contact.reset();
+    }
+    return next;
+}
+
+// What is known of the open gaps after a step that ends without an event of theirs.
+void Prover::pass(const Step& step, const Interval& elapsed) {
+    for (std::size_t i = 0; i < z_.contacts; ++i) {
+        if (held_.contains(i)) continue;
+        const Interval factor = integer_power(elapsed, static_cast<int>(openings_[i].known));
+        openings_[i] = {KnownRoot::none, value_over(step.watched(i), elapsed) * factor};
+    }
+}
+
+void Prover::move() {
+    const Step step = motion().make(set_, longest_step(), openings_);
     count_step();
-    const FirstRoot root = first_root(step.watched(), step.length());
-    if (root.kind == FirstRoot::Kind::one) {
+    const Next next = next_in(step);
+    if (next.contact) {
+        const std::size_t contact = *next.contact;
         Doubleton there = set_;
-        Interval elapsed = root.at;
-        Section section = Section::of_gap(z_);
-        if (in_contact_)
-            section = {[this](const Intervals& box) { return maps_->normal(box).hddot; },
-                       [this](const Intervals& box) { return maps_->normal(box).slope; },
+        Interval elapsed = next.elapsed;
+        const bool is_held = held_.contains(contact);
+        Section section = Section::of_gap(z_, contact);
+        if (is_held)
+            section = {[&](const Intervals& box) { return maps(contact).normal(box).hddot; },
+                       [&](const Intervals& box) { return maps(contact).normal(box).slope; },
                        {},
                        true};
         cross(there, step, section, elapsed);
         cover(step, elapsed);
         if (is_over()) return;
+        pass(step, elapsed);
         set_ = there;
         settle();
         doubts_ = 0;
-        stepper.forget();
-        if (in_contact_)
-            release(set_.hull(Coordinates::t()));
+        last_ = contact;
+        motion().forget();
+        if (is_held)
+            release(contact, set_.hull(Coordinates::t()));
         else
-            land(set_.hull(Coordinates::t()));
+            land(contact, set_.hull(Coordinates::t()));
         settle();
         return;
     }
     double length = step.length();
-    if (root.kind == FirstRoot::Kind::doubt) {
-        length = 0.9 * root.at.lo();
-        if (!(length > 0.0) || ++doubts_ > 12)
-            throw Undecided{in_contact_
-                                ? "release or none: the contact force cannot be told from zero for all of the set"
-                                : "impact or none: the gap cannot be told from zero for all of the set"};
+    if (!next.doubt.empty()) {
+        length = 0.9 * next.clear;
+        if (!(length > 0.0) || ++doubts_ > 12) throw Undecided{next.doubt};
     } else {
         doubts_ = 0;
     }
     cover(step, Interval(length));
     if (is_over()) return;
-    if (!in_contact_) {
-        const Interval factor = integer_power(Interval(length), static_cast<int>(known_));
-        gap_ = value_over(step.watched(), Interval(length)) * factor;
-    }
+    pass(step, Interval(length));
     step.advance(set_, length);
-    known_ = KnownRoot::none;
-    if (in_contact_)
-        maps_->retract(set_);
-    else
-        project();
+    retract(held_);
+    if (held_.empty()) project(last_);
     settle();
 }
 
 // ---- events
 
-void Prover::note_event(Event::Kind kind, const Interval& t, const Intervals& v_before, const Intervals& v_after) {
-    result_.events.push_back({kind, t, positions(set_.hull()), v_before, v_after, bounces_});
+void Prover::note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
+                        const Intervals& v_after) {
+    result_.events.push_back(
+        {kind, contact, held_, {}, t, positions(set_.hull()), v_before, v_after, bounces_[contact]});
+}
+
+void Prover::retract(ContactSet onto) {
+    const ContactSet before = std::exchange(held_, onto);
+    for (std::size_t i = 0; i < z_.contacts; ++i)
+        if (onto.contains(i)) maps(i).retract(set_);
+    held_ = before;
+}
+
+// The held contacts that an impact opens in every member: Moreau's law has one answer, which is proved to be this
+// (theory-gaps.md 2.1). Those that stay are pressed by what is passed on to them; that the others leave is seen after it.
+ContactSet Prover::opened_by(std::size_t contact) {
+    ContactSet opened;
+    const ContactSet all = held_;
+    for (int round = 0; round < 2 && !held_.empty(); ++round) {
+        Doubleton tangential = set_;
+        maps(contact).take_rate_out(tangential);
+        ContactSet pulled;
+        for (const auto& [other, passed] : completion(contact).passed_on(tangential)) {
+            if (certainly_negative(passed))
+                pulled = pulled.with(other);
+            else if (!(passed.lo() >= 0.0))
+                throw Undecided{"an impact opens a contact that is held, or leaves it"};
+        }
+        if (pulled.empty()) break;
+        if (round > 0) throw Undecided{"which held contacts an impact opens is not decided"};
+        opened = pulled;
+        held_ = held_.without(opened);
+    }
+    held_ = all;
+    return opened;
+}
+
+// By the event that was noted last.
+void Prover::check_opened(ContactSet opened) {
+    result_.events.back().opened = opened;
+    for (std::size_t i = 0; i < z_.contacts; ++i)
+        if (opened.contains(i) && !certainly_positive(set_.hull(z_.u(i))))
+            throw Undecided{"an impact opens a contact that is held, or leaves it"};
 }
 
 // All members are on the surface.
-void Prover::land(const Interval& time) {
-    const Interval u = set_.hull(z_.u());
-    if (!certainly_negative(u)) throw Undecided{"graze: the impact speed cannot be told from zero for all of the set"};
-    project();
+void Prover::land(std::size_t contact, const Interval& time) {
+    const std::size_t h = z_.h(contact), u = z_.u(contact);
+    if (!certainly_negative(set_.hull(u)))
+        throw Undecided{"graze: the impact speed cannot be told from zero for all of the set"};
+    project(contact);
     const Intervals v_before = velocities(set_.hull());
-    const Interval e = maps_->restitution(set_.hull());
-    if (e.lo() == 0.0 && e.hi() == 0.0) return capture(time, v_before);
+    const Interval e = maps(contact).restitution(set_.hull());
+    const ContactSet opened = opened_by(contact);
+    if (!opened.empty()) {
+        hold(held_.without(opened));
+        for (std::size_t i = 0; i < z_.contacts; ++i)
+            if (opened.contains(i)) openings_[i].known = KnownRoot::landed;
+    }
+    if (e.lo() == 0.0 && e.hi() == 0.0) return capture(contact, time, v_before, opened);
     if (++result_.statistics.impacts > claim_.run.options.max_impacts)
         throw Undecided{fmt::format("more than {} impacts", claim_.run.options.max_impacts)};
-    ++bounces_;
+    ++bounces_[contact];
     const double radius = largest_radius();
     Doubleton before = set_;
-    maps_->impact(set_);
-    set_.set(z_.h(), 0.0);
-    note_event(Event::Kind::impact, time, v_before, velocities(set_.hull()));
+    maps(contact).impact(set_);
+    set_.set(h, 0.0);
+    note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
+    check_opened(opened);
     Doubleton after = set_;
     set_ = before;
-    if (complete(time, e, radius)) return;
+    if (complete(contact, time, e, radius)) return;
     set_ = after;
-    const double rise = set_.hull(z_.u()).hi(), a = mag(maps_->normal(set_.hull()).hddot);
+    const double rise = set_.hull(u).hi(), a = mag(maps(contact).normal(set_.hull()).hddot);
     if (2.0 * rise < 0x1p-50 * mag(time) * a)
         throw Undecided{"the flights are below the resolution of time, and no completion is proved"};
-    known_ = KnownRoot::landed;
-    flight_.forget();
+    openings_[contact].known = KnownRoot::landed;
+    motion().forget();
 }
 
 // What the set has gained where no member is goes, unless the map's own bending costs more: it is of second order, but a wide
 // set pays it at once, and what goes would have grown later only.
-void Prover::project() {
+void Prover::project(std::size_t contact) {
     const auto size = [&](const Doubleton& set) {
         double sum = 0.0;
         for (std::size_t i = 0; i < 2 * z_.dof; ++i) sum += rad(set.hull(z_.q(i)));
         return sum;
     };
     Doubleton projected = set_;
-    maps_->project(projected);
+    maps(contact).project(projected);
     constexpr double hardly = 1.001;
     if (size(projected) <= hardly * size(set_)) set_ = projected;
 }
 
 // A landing with e = 0 of every member.
-void Prover::capture(const Interval& time, const Intervals& v_before) {
-    maps_->take_rate_out(set_);
-    set_.set(z_.h(), 0.0);
-    set_.set(z_.u(), 0.0);
-    maps_->retract(set_);
-    const Interval hddot = maps_->normal(set_.hull()).hddot;
+void Prover::capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened) {
+    maps(contact).take_rate_out(set_);
+    set_.set(z_.h(contact), 0.0);
+    set_.set(z_.u(contact), 0.0);
+    retract(held_.with(contact));
+    const Interval hddot = maps(contact).normal(set_.hull()).hddot;
     if (certainly_negative(hddot)) {
-        in_contact_ = true;
-        contact_motion_.forget();
-        note_event(Event::Kind::zeno, time, v_before, velocities(set_.hull()));
-        return;
+        hold(held_.with(contact));
+        note_event(Event::Kind::zeno, contact, time, v_before, velocities(set_.hull()));
+        return check_opened(opened);
     }
     if (!certainly_positive(hddot))
         throw Undecided{"contact or flight: the contact force cannot be told from zero for all of the set"};
     ++result_.statistics.impacts;
-    note_event(Event::Kind::impact, time, v_before, velocities(set_.hull()));
-    known_ = KnownRoot::at_rest;
-    flight_.forget();
+    note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
+    check_opened(opened);
+    openings_[contact].known = KnownRoot::at_rest;
+    motion().forget();
 }
 
 // The states at the Zeno points of members that all reach them in this step, each after its own wait, without the error of the
 // comparison.
-Intervals Prover::zeno_box(const Step& step, const Interval& tau, const Completion::Proof& proof) const {
+Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval& tau,
+                           const Completion::Proof& proof) const {
     const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
     Intervals box = step.box_over(set_, tau);
     const Intervals point = step.centre_at(Interval(middle)), rho = step.remainder_at(tau),
                     F = step.rate_at(hull(tau, Interval(middle)));
     IntervalMatrix S = step.slope_at(tau);
     for (std::size_t i = 0; i < z_.size(); ++i) {
-        S(i, z_.u()) += F[i] * proof.by_u;
+        S(i, z_.u(contact)) += F[i] * proof.by_u;
         box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof.at_centre - Interval(middle)) + set_.along(S.row(i)));
     }
     return box;
@@ -280,13 +389,14 @@ Intervals Prover::zeno_box(const Step& step, const Interval& tau, const Completi
 
 // All members bounce to their Zeno points, if that is proved well enough. Then the set is that of the members in contact, so
 // much later than their collisions that all have reached them.
-bool Prover::complete(const Interval& time, const Interval& e, double radius) {
-    maps_->take_rate_out(set_);
-    set_.set(z_.h(), 0.0);
-    const auto proof = completion_.prove(set_, e);
+bool Prover::complete(std::size_t contact, const Interval& time, const Interval& e, double radius) {
+    const std::size_t u = z_.u(contact);
+    maps(contact).take_rate_out(set_);
+    set_.set(z_.h(contact), 0.0);
+    const auto proof = completion(contact).prove(set_, e);
     if (!proof) return false;
     const double end = claim_.run.options.end_time;
-    const double resolution = 0x1p-52 * std::max(mag(time), 0x1p-30), w = mag(set_.hull(z_.u()));
+    const double resolution = 0x1p-52 * std::max(mag(time), 0x1p-30), w = mag(set_.hull(u));
     double error = 0.0, fast = 0.0, size = 0.0;
     for (const Interval& entry : proof->error) error = std::max(error, rad(entry));
     for (std::size_t i = 0; i < z_.dof; ++i) {
@@ -299,25 +409,25 @@ bool Prover::complete(const Interval& time, const Interval& e, double radius) {
     if (!last && !(sharp && timely && proof->time.hi() < end)) return false;
 
     cover(Interval(time.lo(), (Interval(time.hi()) + Interval(proof->window)).hi()), proof->position, proof->velocity);
-    maps_->retract(set_);  // u is kept beside: the wait depends on it
+    hold(held_.with(contact));
+    retract(held_);  // u is kept beside: the wait depends on it
     Interval passed(0.0);
     std::optional<Intervals> zeno;
-    contact_motion_.forget();
     for (double left = proof->window; left > 0x1p-43 * proof->window;) {
-        const Step step = contact_motion_.make(set_, left, KnownRoot::none);
+        const Step step = motion().make(set_, left, openings_);
         count_step();
         const Interval wait = proof->wait - passed;
         const Interval tau(std::max(0.0, wait.lo()), std::min(step.length(), wait.hi()));
         if (tau.is_defined()) {
             const bool is_all = passed.hi() == 0.0 && wait.hi() <= step.length();
-            const Intervals box = is_all ? zeno_box(step, tau, *proof) : step.box_over(set_, tau);
+            const Intervals box = is_all ? zeno_box(contact, step, tau, *proof) : step.box_over(set_, tau);
             if (!zeno) zeno = box;
             for (std::size_t i = 0; i < box.size(); ++i) (*zeno)[i] = hull((*zeno)[i], box[i]);
         }
         step.advance(set_, step.length());
         passed += Interval(step.length());
         left = step.length() < left ? proof->window - mid(passed) : 0.0;
-        if (left > 0x1p-43 * proof->window) maps_->retract(set_);
+        if (left > 0x1p-43 * proof->window) retract(held_);
     }
     if (!zeno) throw Undecided{"the Zeno point has no enclosure"};
     Intervals centre = set_.centre();
@@ -326,28 +436,27 @@ bool Prover::complete(const Interval& time, const Interval& e, double radius) {
         centre[z_.q(i)] += proof->error[i];
     }
     set_.map(centre, IntervalMatrix::identity(z_.size()));
-    set_.set(z_.u(), 0.0);
-    maps_->retract(set_);
+    set_.set(u, 0.0);
+    retract(held_);
+    measure_others(held_);
     const Intervals v = velocities(*zeno);
-    result_.events.push_back({Event::Kind::zeno, proof->time, positions(*zeno), v, v, bounces_});
-    bounces_ = 0;
-    in_contact_ = true;
-    known_ = KnownRoot::none;
-    contact_motion_.forget();
+    result_.events.push_back(
+        {Event::Kind::zeno, contact, held_, {}, proof->time, positions(*zeno), v, v, bounces_[contact]});
+    bounces_[contact] = 0;
+    motion().forget();
     return true;
 }
 
-void Prover::release(const Interval& time) {
-    maps_->retract(set_);
-    if (!certainly_positive(maps_->normal(set_.hull()).jerk))
+void Prover::release(std::size_t contact, const Interval& time) {
+    retract(held_);
+    if (!certainly_positive(maps(contact).normal(set_.hull()).jerk))
         throw Undecided{
             "degenerate release: the rate of the contact force cannot be told from zero for all of the set"};
     const Intervals v = velocities(set_.hull());
-    note_event(Event::Kind::release, time, v, v);
-    in_contact_ = false;
-    known_ = KnownRoot::released;
-    bounces_ = 0;
-    flight_.forget();
+    hold(held_.without(contact));
+    note_event(Event::Kind::release, contact, time, v, v);
+    openings_[contact].known = KnownRoot::released;
+    bounces_[contact] = 0;
 }
 
 }  // namespace achilles

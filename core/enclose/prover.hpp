@@ -2,6 +2,7 @@
 // decisions. Where members would do different things, or nothing is proved, it throws Undecided.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "enclose/completion.hpp"
@@ -27,17 +28,39 @@ class Prover {
         std::optional<EnclosedState> state;
         bool is_known = false;
     };
+    // What happens next to one of the contacts, and until when nothing does.
+    struct Next {
+        std::optional<std::size_t> contact;
+        Interval elapsed;
+        double clear;
+        std::string doubt;
+    };
     void begin();
-    void begin_on_surface(const Intervals& start);
+    void begin_on_surface(const Intervals& start, std::size_t contact);
+    void measure_others(ContactSet but);
     void count_step();
     void move();
-    void project();
-    void land(const Interval& time);
-    void capture(const Interval& time, const Intervals& v_before);
-    bool complete(const Interval& time, const Interval& e, double radius);
-    Intervals zeno_box(const Step& step, const Interval& tau, const Completion::Proof& proof) const;
-    void release(const Interval& time);
-    void note_event(Event::Kind kind, const Interval& t, const Intervals& v_before, const Intervals& v_after);
+    double longest_step();
+    Next next_in(const Step& step) const;
+    void pass(const Step& step, const Interval& elapsed);
+    void project(std::size_t contact);
+    void retract(ContactSet onto);
+    ContactSet opened_by(std::size_t contact);
+    void check_opened(ContactSet opened);
+    void land(std::size_t contact, const Interval& time);
+    void capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened);
+    bool complete(std::size_t contact, const Interval& time, const Interval& e, double radius);
+    Intervals zeno_box(std::size_t contact, const Step& step, const Interval& tau,
+                       const Completion::Proof& proof) const;
+    void release(std::size_t contact, const Interval& time);
+    void hold(ContactSet contacts);
+    void note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
+                    const Intervals& v_after);
+
+    // Of the contacts that are held, and of one while the others are.
+    Stepper& motion();
+    Maps& maps(std::size_t contact);
+    Completion& completion(std::size_t contact);
 
     void cover(const Step& step, const Interval& elapsed);
     void cover(const Interval& times, const Intervals& q, const Intervals& v);
@@ -50,18 +73,20 @@ class Prover {
     Intervals part(const Intervals& box, std::size_t first) const;
     double largest_radius() const;
 
+    const Model* model_;
     Claim claim_;
     Coordinates z_;
     ProofWatch* watch_;
-    Stepper flight_, contact_motion_;
-    std::unique_ptr<Maps> maps_;
-    Completion completion_;
+    using OfContact = std::pair<ContactSet, std::size_t>;
+    std::map<ContactSet, std::unique_ptr<Stepper>> motions_;
+    std::map<OfContact, std::unique_ptr<Maps>> maps_;
+    std::map<OfContact, std::unique_ptr<Completion>> completions_;
     Doubleton set_;
-    bool in_contact_ = false;
-    KnownRoot known_ = KnownRoot::none;
-    Interval gap_ = Interval::everything();  // in flight, where no root is known
-    int doubts_ = 0;                         // steps in a row that ended before what is not decided
-    int bounces_ = 0;                        // since the flight began
+    ContactSet held_;
+    std::vector<Opening> openings_;  // by contact
+    std::size_t last_ = 0;           // contact of which there was an event
+    int doubts_ = 0;                 // steps in a row that ended before what is not decided
+    std::vector<int> bounces_;       // of each contact since its flight began
     std::vector<Asked> asked_;
     double proved_until_;  // the latest time that no member's was below
     Enclosure result_;

@@ -22,9 +22,10 @@ Intervals unit(std::size_t size, std::size_t i) {
 
 }  // namespace
 
-Section Section::of_gap(const Coordinates& z) {
-    return {[h = z.h()](const Intervals& box) { return box[h]; },
-            [h = z.h()](const Intervals& box) { return unit(box.size(), h); }, std::pair(z.h(), 0.0), false};
+Section Section::of_gap(const Coordinates& z, std::size_t contact) {
+    const std::size_t h = z.h(contact);
+    return {[h](const Intervals& box) { return box[h]; }, [h](const Intervals& box) { return unit(box.size(), h); },
+            std::pair(h, 0.0), false};
 }
 
 Section Section::of_time(const Coordinates&, double time) {

@@ -18,7 +18,7 @@ struct Section {
     std::optional<std::pair<std::size_t, double>> exact;
     bool rises = false;  // g along the motion; else it falls
 
-    static Section of_gap(const Coordinates& coordinates);
+    static Section of_gap(const Coordinates& coordinates, std::size_t contact);
     static Section of_time(const Coordinates& coordinates, double time);
 };
 

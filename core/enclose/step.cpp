@@ -78,10 +78,9 @@ void Step::advance(Doubleton& set, double tau) const {
     set.map(centre, slope_at(at));
 }
 
-Stepper::Stepper(const Model& model, const Coordinates& coordinates, ContactSet held, std::size_t contact)
+Stepper::Stepper(const Model& model, const Coordinates& coordinates, ContactSet held)
     : coordinates_(coordinates),
-      in_contact_(held.contains(contact)),
-      event_(2 * coordinates.dof + contact),
+      held_(held),
       variables_(coordinates.of_motion()),
       at_centre_(make_expansion(model.hddot_series(held), coordinates, Expanded::at_a_point)),
       over_hull_(make_expansion(model.hddot_series(held), coordinates, Expanded::with_derivatives)),
@@ -102,9 +101,11 @@ std::vector<double> Stepper::scales(const Intervals& hull, double length) const 
         result[coordinates_.q(i)] = std::max(result[coordinates_.q(i)], 0.01 * position);
         result[coordinates_.v(i)] = std::max(result[coordinates_.v(i)], 0.01 * velocity);
     }
-    const double a = std::abs(mid(at_centre_->value(0, event_)));
-    result[coordinates_.u()] = mag(hull[coordinates_.u()]) + a * length;
-    result[coordinates_.h()] = mag(hull[coordinates_.h()]) + result[coordinates_.u()] * length;
+    for (std::size_t i = 0; i < coordinates_.contacts; ++i) {
+        const std::size_t h = coordinates_.h(i), u = coordinates_.u(i);
+        result[u] = mag(hull[u]) + std::abs(mid(at_centre_->value(0, event(i)))) * length;
+        result[h] = mag(hull[h]) + result[u] * length;
+    }
     return result;
 }
 
@@ -122,9 +123,11 @@ double Stepper::first_length(const Doubleton&, const Intervals& hull, double lon
             const std::size_t row = coordinates_.q(i);
             limit(std::abs(mid(at_centre_->value(k, i))), std::max(3e-18 * scale[row], 1e-6 * rad(hull[row])), k);
         }
-        const double size =
-            std::abs(mid(at_centre_->value(0, event_))) + std::abs(mid(at_centre_->value(1, event_))) * length;
-        limit(std::abs(mid(at_centre_->value(k, event_))), 3e-18 * size + 1e-6 * rad(over_hull_->value(0, event_)), k);
+        for (std::size_t i = event(0); i < event(coordinates_.contacts); ++i) {
+            const double size =
+                std::abs(mid(at_centre_->value(0, i))) + std::abs(mid(at_centre_->value(1, i))) * length;
+            limit(std::abs(mid(at_centre_->value(k, i))), 3e-18 * size + 1e-6 * rad(over_hull_->value(0, i)), k);
+        }
     }
     return length;
 }
@@ -165,19 +168,20 @@ bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
         step.length_ = length;
         step.remainder_.assign(coordinates_.size(), Interval(0.0));
         for (std::size_t i = 0; i < 2 * n; ++i) step.remainder_[coordinates_.q(i)] = over_box_->value(K + 1, i);
-        if (!in_contact_) {
-            step.remainder_[coordinates_.h()] = over_box_->value(K - 1, event_) / Interval(K * (K + 1));
-            step.remainder_[coordinates_.u()] = over_box_->value(K, event_) / Interval(K + 1);
+        for (std::size_t i = 0; i < coordinates_.contacts; ++i) {
+            if (!is_open(i)) continue;
+            step.remainder_[coordinates_.h(i)] = over_box_->value(K - 1, event(i)) / Interval(K * (K + 1));
+            step.remainder_[coordinates_.u(i)] = over_box_->value(K, event(i)) / Interval(K + 1);
         }
         return true;
     }
     return false;
 }
 
-// The coefficients of all coordinates: h'' = hddot in flight; in contact h and u stay.
-void Stepper::tabulate(Step& step, const Doubleton& set, KnownRoot known) {
+// The coefficients of all coordinates: h'' = hddot of an open contact; of a held one h and u stay.
+void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings) {
     const Coordinates& z = coordinates_;
-    const std::size_t size = z.size(), n = z.dof, h = z.h(), u = z.u();
+    const std::size_t size = z.size(), n = z.dof;
     step.size_ = size;
     step.centre_.assign((K + 1) * size, Interval(0.0));
     step.hull_.assign((K + 1) * size, Interval(0.0));
@@ -198,47 +202,54 @@ void Stepper::tabulate(Step& step, const Doubleton& set, KnownRoot known) {
     fill(1, Coordinates::t(), Interval(1.0), Interval(1.0));
     for (int k = 1; k <= K; ++k)
         for (std::size_t i = 0; i < 2 * n; ++i) copy(k, z.q(i), k, i, Interval(1.0));
-    if (in_contact_) return;
-    fill(1, h, Interval(set.centre(u)), set.hull(u));
-    step.slopes_[1](h, u) = Interval(1.0);
-    for (int k = known == KnownRoot::released ? 1 : 0; k < K; ++k) {
-        copy(k + 1, u, k, event_, Interval(1.0) / Interval(k + 1));
-        if (k + 2 <= K) copy(k + 2, h, k, event_, Interval(1.0) / Interval((k + 1) * (k + 2)));
+    for (std::size_t i = 0; i < z.contacts; ++i) {
+        if (!is_open(i)) continue;
+        const std::size_t h = z.h(i), u = z.u(i);
+        fill(1, h, Interval(set.centre(u)), set.hull(u));
+        step.slopes_[1](h, u) = Interval(1.0);
+        for (int k = openings[i].known == KnownRoot::released ? 1 : 0; k < K; ++k) {
+            copy(k + 1, u, k, event(i), Interval(1.0) / Interval(k + 1));
+            if (k + 2 <= K) copy(k + 2, h, k, event(i), Interval(1.0) / Interval((k + 1) * (k + 2)));
+        }
     }
 }
 
-void Stepper::watch(Step& step, const Doubleton& set, KnownRoot known, const Interval& gap) const {
-    step.watched_.clear();
-    const std::size_t size = coordinates_.size(), h = coordinates_.h();
-    if (in_contact_) {
-        Intervals row(size);
-        for (int k = 0; k < K; ++k) {
-            for (std::size_t j = 0; j < variables_.size(); ++j) row[variables_[j]] = over_hull_->slope(k, event_, j);
-            step.watched_.push_back(
-                -both(at_centre_->value(k, event_) + set.along(row.data()), over_hull_->value(k, event_)));
-        }
-        step.watched_.push_back(-over_box_->value(K, event_));
-        return;
+Intervals Stepper::watch_force(const Doubleton& set, std::size_t contact) const {
+    Intervals result, row(coordinates_.size());
+    for (int k = 0; k < K; ++k) {
+        for (std::size_t j = 0; j < variables_.size(); ++j)
+            row[variables_[j]] = over_hull_->slope(k, event(contact), j);
+        result.push_back(
+            -both(at_centre_->value(k, event(contact)) + set.along(row.data()), over_hull_->value(k, event(contact))));
     }
-    for (int k = static_cast<int>(known); k <= K; ++k) {
+    result.push_back(-over_box_->value(K, event(contact)));
+    return result;
+}
+
+Intervals Stepper::watch_gap(const Step& step, const Doubleton& set, std::size_t contact,
+                             const Opening& opening) const {
+    const std::size_t size = coordinates_.size(), h = coordinates_.h(contact);
+    Intervals result;
+    for (int k = static_cast<int>(opening.known); k <= K; ++k) {
         const std::size_t at = static_cast<std::size_t>(k) * size + h;
         const Interval sharp = step.centre_[at] + set.along(step.slopes_[static_cast<std::size_t>(k)].row(h));
-        step.watched_.push_back(both(sharp, step.hull_[at]));
+        result.push_back(both(sharp, step.hull_[at]));
     }
-    step.watched_.push_back(step.remainder_[h]);
-    if (known == KnownRoot::none) step.watched_.front() = both(step.watched_.front(), gap);
+    result.push_back(step.remainder_[h]);
+    if (opening.known == KnownRoot::none) result.front() = both(result.front(), opening.gap);
+    return result;
 }
 
-Step Stepper::make(const Doubleton& set, double longest, KnownRoot known, const Interval& gap) {
+Step Stepper::make(const Doubleton& set, double longest, const std::vector<Opening>& openings) {
     const Intervals hull = set.hull();
     at_centre_->expand(set.centre(), K);
     over_hull_->expand(hull, K);
     double length = first_length(set, hull, longest);
     if (last_ > 0.0) length = std::min(length, 1.3 * last_);
     const double least = 0x1p-50 * std::max(mag(hull[Coordinates::t()]), 0x1p-20 * longest);
-    const double fine = in_contact_ ? 1e-15 : 2e-17;
+    const double fine = held_.empty() ? 2e-17 : 1e-15;
     Step step;
-    tabulate(step, set, known);
+    tabulate(step, set, openings);
     for (int round = 0; round < 60 && length > least; ++round) {
         if (!enclose(step, hull, length)) {
             length *= 0.7;
@@ -253,7 +264,8 @@ Step Stepper::make(const Doubleton& set, double longest, KnownRoot known, const 
         }
         if (!(excess > 1.0)) {
             last_ = length;
-            watch(step, set, known, gap);
+            for (std::size_t i = 0; i < coordinates_.contacts; ++i)
+                step.watched_.push_back(is_open(i) ? watch_gap(step, set, i, openings[i]) : watch_force(set, i));
             return step;
         }
         length *= std::clamp(std::pow(excess, -0.7 / (K + 1)), 0.5, 0.95);

@@ -11,6 +11,13 @@ namespace achilles {
 // after a release.
 enum class KnownRoot { none = 0, landed = 1, at_rest = 2, released = 3 };
 
+// What is known of an open contact's gap where a step starts, besides the set: its root, or where it has none a bound, which may
+// be narrower than what the set says.
+struct Opening {
+    KnownRoot known = KnownRoot::none;
+    Interval gap = Interval::everything();
+};
+
 class Step {
  public:
     double length() const { return length_; }
@@ -23,9 +30,9 @@ class Step {
     Intervals box_over(const Doubleton& set, const Interval& tau) const;
     // The members after exactly this time.
     void advance(Doubleton& set, double tau) const;
-    // What must stay positive until the next event, over all members, the last coefficient the remainder's: in flight the
-    // gap with its known root divided out, in contact -hddot.
-    const Intervals& watched() const { return watched_; }
+    // What of a contact must stay positive until its next event, over all members, the last coefficient the remainder's: its
+    // gap with the known root divided out, or, where it is held, -hddot of the motion that holds the others.
+    const Intervals& watched(std::size_t contact) const { return watched_[contact]; }
 
  private:
     friend class Stepper;
@@ -39,33 +46,34 @@ class Step {
     // By order: a row of each coordinate; at the centre, over the hull, and its derivatives by all coordinates over the hull.
     Intervals centre_, hull_;
     std::vector<IntervalMatrix> slopes_;
-    Intervals remainder_;  // R
-    Intervals watched_;
+    Intervals remainder_;             // R
+    std::vector<Intervals> watched_;  // by contact
 };
 
 class Stepper {
  public:
     static constexpr int order = 20;  // K
 
-    // Of the motion that holds these contacts, and a contact that is watched.
-    Stepper(const Model& model, const Coordinates& coordinates, ContactSet held, std::size_t contact = 0);
+    // Of the motion that holds these contacts.
+    Stepper(const Model& model, const Coordinates& coordinates, ContactSet held);
 
-    // A step that is at most so long, from where the gap, with no known root, lies in `gap`, which may be narrower than what
-    // the set says. Throws Undecided where no a-priori box is found.
-    Step make(const Doubleton& set, double longest, KnownRoot known, const Interval& gap = Interval::everything());
+    // A step that is at most so long; `openings` by contact. Throws Undecided where no a-priori box is found.
+    Step make(const Doubleton& set, double longest, const std::vector<Opening>& openings);
     // The next step may be as long as it likes.
     void forget() { last_ = 0.0; }
 
  private:
-    void tabulate(Step& step, const Doubleton& set, KnownRoot known);
-    void watch(Step& step, const Doubleton& set, KnownRoot known, const Interval& gap) const;
+    void tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings);
+    Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const;
+    Intervals watch_force(const Doubleton& set, std::size_t contact) const;
+    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
+    std::size_t event(std::size_t contact) const { return 2 * coordinates_.dof + contact; }  // the row of its hddot
     bool enclose(Step& step, const Intervals& hull, double length);
     double first_length(const Doubleton& set, const Intervals& hull, double longest) const;
     std::vector<double> scales(const Intervals& hull, double length) const;
 
     Coordinates coordinates_;
-    bool in_contact_;
-    std::size_t event_;  // the row of its hddot
+    ContactSet held_;
     std::vector<std::size_t> variables_;
     std::unique_ptr<Expansion> at_centre_, over_hull_, over_box_;
     double last_ = 0.0;  // s

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
         }
     }
     fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
-    for (const std::string& name : systems_of_one_gap()) {
+    for (const std::string& name : all_systems()) {
         const auto model = load(name);
         const Membership members = members_of(model, claim_around(*model, 20.0, 1e-6, 0.0, 5), count, 1);
         fmt::print("{:<24} {:>9} compared {:>3} outside, enclosed/observed {:.2f}, until {:.4g} s {}\n", name,

@@ -33,7 +33,7 @@ TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
     Stepper stepper(*model, z, {});
     const Doubleton start(
         {Interval(0.0), Interval(0.0), Interval(1.0), Interval(1.0), Interval(0.0), Interval(1.0), Interval(0.0)});
-    const Step step = stepper.make(start, 1.0, KnownRoot::none);
+    const Step step = stepper.make(start, 1.0, {{}});
     const Real length = step.length();
     Real term = length, tail = 0;
     for (int k = 3; k < 60; k += 2) {
