@@ -138,6 +138,8 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     if (!is_plastic) lens_button(session, state, commands);
     show_certificate(event);
     const auto& others = certificate.others;
+    if (session.enclosed(index) != nullptr)
+        paragraph("Of the whole run: " + proved_text(session, index) + ".", remaining().width, text_color());
     const std::string told = others ? others_told(*session.model(), *others) : "";
     if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }

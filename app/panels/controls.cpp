@@ -268,7 +268,7 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     bounds(now, file.options, state, commands);
     choice(
         {"conditions", "", "conditions",
-         "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
+         "what must be certified before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
          "which choose their own neighbourhood and certify the restarted motion"},
         now, file.options, state, commands);
     choice({"reinitialization", "", "restart",

@@ -39,7 +39,7 @@ void show_places(const Lens& lens, double width, PanelState& state, Commands& co
     place("cut", lens.cut() - 0.3 * width, "where the run was cut short and the contact began");
     if (lens.interval()) {
         ImGui::SameLine();
-        place("certified interval", *lens.interval() - 0.5 * width, "what is proved of the Zeno time");
+        place("certified interval", *lens.interval() - 0.5 * width, "what is certified of the Zeno time");
     }
 }
 

@@ -92,7 +92,7 @@ std::string saved_text(const Session& session) {
     return held_by(session.description().file);  // another text stands in the editor, which is no system
 }
 
-// To the present run, by way of those that are pinned.
+// To the present run, by way of those that are pinned, and to its proof.
 std::vector<Command> run_steps(const Session& session, Run from) {
     std::vector<Command> steps, hidden;
     std::set<int> taken;
@@ -107,6 +107,7 @@ std::vector<Command> run_steps(const Session& session, Run from) {
     }
     append(steps, steps_between(session.description(), from, session.run()));
     append(steps, hidden);
+    if (const auto proof = session.proof_command()) steps.emplace_back(*proof);
     return steps;
 }
 

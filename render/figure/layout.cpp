@@ -80,11 +80,36 @@ Stroke scaled(Stroke stroke, double scale) {
     return stroke;
 }
 
+// Pixels far outside the plot area would be far off in single precision; none of them is seen.
+void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
+    const double above = plot.y - 2.0 * plot.height, below = plot.y + 3.0 * plot.height;
+    const auto piece = [&](std::size_t begin, std::size_t end) {
+        Strip strip{{}, {}, tube.fill, plot};
+        for (std::size_t i = begin; i < end; ++i) {
+            const Tube::Slice& slice = tube.slices[i];
+            const double x = map.x(slice.x), high = map.y(slice.high), low = map.y(slice.low);
+            strip.upper.push_back({x, std::isfinite(high) ? std::clamp(high, above, below) : below});
+            strip.lower.push_back({x, std::isfinite(low) ? std::clamp(low, above, below) : below});
+        }
+        const Stroke edge{tube.edge, 0.8 * m.scale, {}};
+        const Path top{strip.upper, edge, plot}, bottom{strip.lower, edge, plot};
+        sheet.emplace_back(std::move(strip));
+        sheet.emplace_back(top);
+        sheet.emplace_back(bottom);
+    };
+    const auto is_there = [](const Tube::Slice& slice) { return std::isfinite(slice.low + slice.high); };
+    for (std::size_t begin = 0, end = 0; begin < tube.slices.size(); begin = end + 1) {
+        for (end = begin; end < tube.slices.size() && is_there(tube.slices[end]);) ++end;
+        if (end > begin + 1) piece(begin, end);
+    }
+}
+
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
     lay_hatch(panel.hatch, sheet, plot, m);
     lay_raster(panel.raster, sheet, plot, map);
     lay_dots(panel.dots, sheet, plot, map, m);
+    for (const Tube& tube : panel.tubes) lay_tube(tube, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
     const auto lay = [&](const Curve& curve) {
@@ -111,6 +136,8 @@ std::vector<Key> keys_of(const Panel& panel) {
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
     if (!panel.hatch.label.empty()) keys.push_back({panel.hatch.label, panel.hatch});
+    for (const Tube& tube : panel.tubes)
+        if (!tube.label.empty()) keys.push_back({tube.label, Tube{{}, tube.fill, tube.edge, {}}});
     return keys;
 }
 
@@ -125,6 +152,16 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
         const float side = std::round(0.8F * m.text);
         lay_hatched_field(*hatch, sheet,
                           {std::round(x + (length - side) / 2.0F), y - std::round(side / 2.0F), side, side}, m);
+        return;
+    }
+    if (const auto* tube = std::get_if<Tube>(&key.sign)) {
+        const double half = 0.28 * double{m.text};
+        const std::vector<Point> above{{x, y - half}, {x + length, y - half}},
+            below{{x, y + half}, {x + length, y + half}};
+        const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
+        const Stroke edge{tube->edge, 0.8 * m.scale, {}};
+        sheet.emplace_back(Strip{above, below, tube->fill, around});
+        for (const auto& line : {above, below}) sheet.emplace_back(Path{line, edge, around});
         return;
     }
     const Markers& markers = std::get<Markers>(key.sign);
@@ -215,7 +252,8 @@ struct KeyLines {
         return filled;
     }
     static float sign(const Key& key, const Metrics& m) {
-        return std::round((std::holds_alternative<Stroke>(key.sign) ? 2.2F : 0.8F) * m.text);
+        const bool is_long = std::holds_alternative<Stroke>(key.sign) || std::holds_alternative<Tube>(key.sign);
+        return std::round((is_long ? 2.2F : 0.8F) * m.text);
     }
     static float sample(const Key& key, const Metrics& m) { return sign(key, m) + std::round(0.4F * m.text); }
     static float between(const Metrics& m) { return std::round(1.4F * m.text); }
