@@ -136,10 +136,15 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                         state);
     if (close) commands.emplace_back(command::Select{0});
     if (!is_plastic) lens_button(session, state, commands);
+    if (const std::string proved = proved_text(session, index); !proved.empty()) {
+        if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
+        ImGui::TextUnformatted(proved.c_str());
+        tooltip(
+            "of the whole run from its start, integration and all cuts included; what stands below is of this cut "
+            "alone");
+    }
     show_certificate(event);
     const auto& others = certificate.others;
-    if (session.enclosed(index) != nullptr)
-        paragraph("Of the whole run: " + proved_text(session, index) + ".", remaining().width, text_color());
     const std::string told = others ? others_told(*session.model(), *others) : "";
     if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }

@@ -58,7 +58,8 @@ std::optional<Inequality> failed(const Certificate& certificate) {
 
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once) {
     if (reason.cut)
-        return "Cut here: what follows is certified to stay within the tolerances of what is drawn. The next event, the "
+        return "Cut here: what follows is certified to stay within the tolerances of what is drawn. The next event, "
+               "the "
                "Zeno point, tells by how much.";
     if (!reason.contact || all_at_once)
         return "Not cut: more than one contact moves here, all at once by Moreau's law.";
@@ -105,8 +106,7 @@ Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& r
 
 // When the proof of the run has it.
 void show_proved(const Session& session, std::size_t event) {
-    if (const EnclosedEvent* enclosed = session.enclosed(event))
-        row("proved in", with_minus(fmt::format("[{}, {}]", enclosed->t.lo(), enclosed->t.hi())));
+    if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
 }
 
 // "Impact of wall, event 7"; without the contact where there is one.

@@ -37,6 +37,9 @@ void show_legend(const Session& session) {
     for (const Phase::Kind kind : phases)
         width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
     for (const Markers& markers : events) width += ImGui::CalcTextSize(markers.label.c_str()).x + units(18.0F) + gap;
+    const bool has_tube = session.proof() != nullptr;
+    const Tube tube = proof_tube(session.theme());
+    if (has_tube) width += ImGui::CalcTextSize(tube.label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(content_right() - units(edge) - width + gap);
@@ -51,8 +54,14 @@ void show_legend(const Session& session) {
         legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
             paint_marker(list, markers, {c.x, c.y}, units(1.0F));
         });
-        if (&markers != &events.back()) ImGui::SameLine(0.0F, gap);
+        if (&markers != &events.back() || has_tube) ImGui::SameLine(0.0F, gap);
     }
+    if (!has_tube) return;
+    legend_entry(tube.label, [&](ImDrawList* list, ImVec2 c) {
+        const ImVec2 low{c.x - units(6.0F), c.y - units(4.0F)}, high{c.x + units(6.0F), c.y + units(4.0F)};
+        list->AddRectFilled(low, high, packed(tube.fill));
+        stroke_rectangle(list, low, high, packed(tube.edge), 0.0F, units(1.0F));
+    });
 }
 
 // How much is done of what is under way, along the upper edge.

@@ -120,13 +120,11 @@ struct ShowPlane {
         Said("plane", "write: plane X Y, expressions with spaces in double quotes, or: plane default", Change::view,
              &ShowPlane::x, &ShowPlane::y);
 };
-
 struct ShowSweep {
     std::string text;  // as on the command line, but for --set and the options: these are what the session has
     static constexpr auto said = Said("sweep", "write: sweep \"--over e=0:0.95:512 --print zeno_time(1)\"",
                                       Change::view, Field(&ShowSweep::text, in_quotes));
 };
-
 struct StopProof {  // and forgets what was proved
     static constexpr auto said = Said("prove off", alone, Change::view);
 };
@@ -137,7 +135,6 @@ struct Prove {
         Said("prove", "write: prove [width W] [NAME=LOW..HIGH ...], or: prove off", Change::view,
              Field(&Prove::width, length_after("width")), Field(&Prove::intervals, {.may_lack = true}));
 };
-
 struct Find {
     std::string text;  // letters of a command, in the palette, which opens
     static constexpr auto said =

@@ -141,8 +141,9 @@ std::string short_text(const Interval& x) {
     constexpr int most = 15;  // decimals, of which a double of a few seconds has no more
     const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, most);
     const std::string text = fmt::format("{:.{}f}", centre, decimals);
-    const long double shown = std::stold(text), off = std::max(x.hi() - shown, shown - x.lo());
-    return fmt::format("{}({:.0f})", text, static_cast<double>(std::ceil(off * std::pow(10.0L, decimals) + 1e-9L)));
+    const long double shown = std::stold(text), off = std::max(x.hi() - shown, shown - x.lo()),
+                      rounding = 0x1p-60L * (std::abs(shown) + off);
+    return fmt::format("{}({})", text, std::ceil((off + rounding) * std::pow(10.0L, decimals)));
 }
 
 std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const Enclosure& proof) {

@@ -80,28 +80,53 @@ Stroke scaled(Stroke stroke, double scale) {
     return stroke;
 }
 
+// How thick a strip is across its way, in pixels: where it leads up steeply that is less than it is high.
+double thickness(const Strip& strip, std::size_t i) {
+    const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, strip.upper.size() - 1);
+    const auto middle = [&](std::size_t k) { return 0.5 * (strip.upper[k].y + strip.lower[k].y); };
+    const double along = strip.upper[after].x - strip.upper[before].x, up = middle(after) - middle(before);
+    const double way = std::hypot(along, up);
+    return way > 0.0 ? (strip.lower[i].y - strip.upper[i].y) * along / way : 0.0;
+}
+
+// The parts of a tube that are seen beside its curve: lines along one that is thinner would be taken for another curve.
+void lay_strip(const Strip& strip, const Stroke& edge, double least, Sheet& sheet) {
+    const std::size_t n = strip.upper.size();
+    std::vector<bool> seen(n, false);
+    for (std::size_t i = 0; i < n; ++i)
+        if (thickness(strip, i) >= least) seen[i > 0 ? i - 1 : i] = seen[i] = seen[std::min(i + 1, n - 1)] = true;
+    for (std::size_t begin = 0, end = 0; begin < n; begin = end + 1) {
+        for (end = begin; end < n && seen[end];) ++end;
+        if (end < begin + 2) continue;
+        const auto part = [&](const std::vector<Point>& all) {
+            return std::vector<Point>(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      all.begin() + static_cast<std::ptrdiff_t>(end));
+        };
+        const Strip piece{part(strip.upper), part(strip.lower), strip.color, strip.clip};
+        sheet.emplace_back(piece);
+        for (const auto& line : {piece.upper, piece.lower}) sheet.emplace_back(Path{line, edge, strip.clip});
+    }
+}
+
 // Pixels far outside the plot area would be far off in single precision; none of them is seen.
 void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
-    const double above = plot.y - 2.0 * plot.height, below = plot.y + 3.0 * plot.height;
-    const auto piece = [&](std::size_t begin, std::size_t end) {
-        Strip strip{{}, {}, tube.fill, plot};
-        for (std::size_t i = begin; i < end; ++i) {
-            const Tube::Slice& slice = tube.slices[i];
-            const double x = map.x(slice.x), high = map.y(slice.high), low = map.y(slice.low);
-            strip.upper.push_back({x, std::isfinite(high) ? std::clamp(high, above, below) : below});
-            strip.lower.push_back({x, std::isfinite(low) ? std::clamp(low, above, below) : below});
-        }
-        const Stroke edge{tube.edge, 0.8 * m.scale, {}};
-        const Path top{strip.upper, edge, plot}, bottom{strip.lower, edge, plot};
-        sheet.emplace_back(std::move(strip));
-        sheet.emplace_back(top);
-        sheet.emplace_back(bottom);
+    const double above = plot.y - 2.0 * plot.height, below = plot.y + 3.0 * plot.height, least = 1.2 * m.scale;
+    Strip strip{{}, {}, tube.fill, plot};
+    const auto end_strip = [&] {
+        if (strip.upper.size() > 1) lay_strip(strip, {tube.edge, 0.8 * m.scale, {}}, least, sheet);
+        strip.upper.clear();
+        strip.lower.clear();
     };
-    const auto is_there = [](const Tube::Slice& slice) { return std::isfinite(slice.low + slice.high); };
-    for (std::size_t begin = 0, end = 0; begin < tube.slices.size(); begin = end + 1) {
-        for (end = begin; end < tube.slices.size() && is_there(tube.slices[end]);) ++end;
-        if (end > begin + 1) piece(begin, end);
+    for (const Tube::Slice& slice : tube.slices) {
+        if (!std::isfinite(slice.low + slice.high)) {
+            end_strip();
+            continue;
+        }
+        const double x = map.x(slice.x), high = map.y(slice.high), low = map.y(slice.low);
+        strip.upper.push_back({x, std::isfinite(high) ? std::clamp(high, above, below) : below});
+        strip.lower.push_back({x, std::isfinite(low) ? std::clamp(low, above, below) : below});
     }
+    end_strip();
 }
 
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {

@@ -16,7 +16,7 @@ namespace achilles {
 namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double least_seen = 1.0 / 300.0;  // of the panel's height: a narrower tube is behind its curve
+constexpr double least_seen = 1.0 / 150.0;  // of the panel's height, across: a narrower tube is behind its curve
 
 // Whether the members are in contact at a time.
 enum class Contact { no, yes, either };
@@ -31,6 +31,7 @@ class EnclosedValues {
         evaluator_.fix();
         starts_in_contact_ = !run.phases.empty() && run.phases.front().kind == Phase::Kind::constrained;
         gap_ = output_names(run.model->description(), "gap")[0];
+        force_ = output_names(run.model->description(), "lambda")[0];
     }
 
     std::vector<Interval> at(const EnclosedState& state) {
@@ -68,9 +69,10 @@ class EnclosedValues {
         std::vector<Interval> values;
         for (std::size_t i = 0; i < view_.quantities().size(); ++i) {
             Interval value = evaluator_.output(i);
-            // No member goes through the surface, and in contact its gap is 0.
+            // No member goes through the surface; in contact its gap is 0 and the force presses.
             const std::string& text = view_.quantities()[i].text;
             if (in_contact && (text == gap_ || text == gap_ + "'")) value = Interval(0.0);
+            if (in_contact && text == force_) value = Interval(std::max(value.lo(), 0.0), std::max(value.hi(), 0.0));
             if (!in_contact && text == gap_ && value.hi() >= 0.0)
                 value = Interval(std::max(value.lo(), 0.0), value.hi());
             values.push_back(value * Interval(view_.quantities()[i].factor));
@@ -83,7 +85,7 @@ class EnclosedValues {
     const PreparedView& view_;
     Evaluator<Interval> evaluator_;
     bool starts_in_contact_ = false;
-    std::string gap_;
+    std::string gap_, force_;
 };
 
 bool is_within(const Axis& axis, double x) { return x >= axis.low && x <= axis.high; }
@@ -93,6 +95,7 @@ struct Known {
     double t = 0.0;
     std::vector<Interval> proved;
     std::vector<double> before, after;
+    bool is_event = false;  // some members have had it by then, and others not yet
 };
 
 std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const PreparedView& view) {
@@ -106,8 +109,11 @@ std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const Pre
         return all;
     };
     std::vector<Known> known;
+    auto event = proof.enclosure.events.begin();
     const auto add = [&](const EnclosedState& state) {
-        known.push_back({state.t, enclosed.at(state), at(std::nextafter(state.t, -HUGE_VAL)), at(state.t)});
+        while (event != proof.enclosure.events.end() && event->t.hi() < state.t) ++event;
+        const bool is_event = event != proof.enclosure.events.end() && event->t.contains(state.t);
+        known.push_back({state.t, enclosed.at(state), at(std::nextafter(state.t, -HUGE_VAL)), at(state.t), is_event});
     };
     for (const EnclosedState& state : proof.enclosure.samples) add(state);
     // A run that stopped early has no curve from there to the end.
@@ -126,9 +132,10 @@ std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
     return course;
 }
 
-// At the instants what is proved there; between them, where a panel shows more of the curve, as far from it as it is at both.
+// At the instants what is proved there; between them, where a panel shows more of the curve, as far from it as it is at both, or
+// beside an event at the other one; never below the least that it can be.
 std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t quantity,
-                                   const std::vector<Point>& course) {
+                                   const std::vector<Point>& course, double least) {
     const std::size_t y = quantity + 1;
     std::vector<Tube::Slice> slices;
     auto point = course.begin();
@@ -141,14 +148,26 @@ std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t 
         const Known& next = known[k + 1];
         while (point != course.end() && point->x <= here.t) ++point;
         for (; is_there && point != course.end() && point->x < next.t; ++point) {
-            const double share = (point->x - here.t) / (next.t - here.t);
+            if (here.is_event && next.is_event) continue;
+            const double between = (point->x - here.t) / (next.t - here.t);
+            const double share = here.is_event ? 1.0 : next.is_event ? 0.0 : between;
             const auto off = [&](double from, double to) {
                 return point->y + (1.0 - share) * (from - here.after[y]) + share * (to - next.before[y]);
             };
-            slices.push_back({point->x, off(proved.lo(), next.proved[y].lo()), off(proved.hi(), next.proved[y].hi())});
+            slices.push_back({point->x, std::max(off(proved.lo(), next.proved[y].lo()), least),
+                              std::max(off(proved.hi(), next.proved[y].hi()), least)});
         }
     }
     return slices;
+}
+
+// Gaps and forces of contact are not negative.
+double least_of(const PreparedView& view, const Trajectory& run, std::size_t quantity) {
+    const std::string& text = view.quantities()[quantity].text;
+    const SystemDescription& description = run.model->description();
+    const bool is_positive =
+        text == output_names(description, "gap")[0] || text == output_names(description, "lambda")[0];
+    return is_positive ? 0.0 : -HUGE_VAL;
 }
 
 // Where along an axis a value is, 0 to 1.
@@ -157,35 +176,41 @@ double share_of(const Axis& axis, double value) {
     return std::log(std::max(value, axis.low) / axis.low) / std::log(axis.high / axis.low);
 }
 
+// How thick it is across its way, as a share of the panel's height, where that is about half its width: a jump is as thick as
+// it lasts.
 bool is_seen(const Tube& tube, const Panel& panel) {
-    return std::any_of(tube.slices.begin(), tube.slices.end(), [&](const Tube::Slice& at) {
-        return is_within(panel.x, at.x) && share_of(panel.y, at.high) - share_of(panel.y, at.low) > least_seen;
-    });
+    constexpr double wide = 2.0;
+    const auto middle = [&](const Tube::Slice& at) {
+        return 0.5 * (share_of(panel.y, at.low) + share_of(panel.y, at.high));
+    };
+    for (std::size_t i = 0; i + 1 < tube.slices.size(); ++i) {
+        const Tube::Slice &at = tube.slices[i], &next = tube.slices[i + 1];
+        if (!is_within(panel.x, at.x)) continue;
+        const double along = wide * (share_of(panel.x, next.x) - share_of(panel.x, at.x)),
+                     up = middle(next) - middle(at), high = share_of(panel.y, at.high) - share_of(panel.y, at.low);
+        if (along > 0.0 && high * along / std::hypot(along, up) > least_seen) return true;
+    }
+    return false;
 }
 
-// Room for tubes beyond the limits.
-void give_room(Panel& panel) {
+// Room for tubes beyond the limits. At an event the whole jump is enclosed, which is no reason.
+void give_room(Panel& panel, const std::vector<Known>& known) {
     constexpr double most = 0.5, margin = 0.02;
+    const auto is_event = [&](double t) {
+        const auto at =
+            std::lower_bound(known.begin(), known.end(), t, [](const Known& a, double b) { return a.t < b; });
+        return at != known.end() && at->t == t && at->is_event;
+    };
     const double span = panel.y.high - panel.y.low;
     double low = panel.y.low, high = panel.y.high;
     for (const Tube& tube : panel.tubes)
         for (const Tube::Slice& at : tube.slices)
-            if (is_within(panel.x, at.x) && std::isfinite(at.low + at.high))
+            if (is_within(panel.x, at.x) && std::isfinite(at.low + at.high) && !is_event(at.x))
                 low = std::min(low, at.low), high = std::max(high, at.high);
     if (low < panel.y.low) low -= margin * span;
     if (high > panel.y.high) high += margin * span;
     low = std::max(low, panel.y.low - most * span), high = std::min(high, panel.y.high + most * span);
     if (low < panel.y.low || high > panel.y.high) set_ticks(panel.y, low, high, 0.0);
-}
-
-Tube tube_of(const Theme& theme, Color color) {
-    const bool is_ink = color == theme.ink;
-    Tube tube;
-    tube.label = "proved";
-    tube.fill = tube.edge = color;
-    tube.fill.a = is_ink ? 44 : 60;
-    tube.edge.a = is_ink ? 120 : 170;
-    return tube;
 }
 
 Markers undecided_mark(const Theme& theme, const Enclosure& proof) {
@@ -212,6 +237,14 @@ std::vector<double> instants_of(const Trajectory& run) {
 
 }  // namespace
 
+Tube proof_tube(const Theme& theme) {
+    Tube tube;
+    tube.label = "proved";
+    tube.fill = theme.dark ? Color{240, 205, 60, 84} : Color{240, 200, 40, 110};
+    tube.edge = theme.dark ? Color{226, 190, 60, 190} : Color{170, 132, 0, 190};
+    return tube;
+}
+
 Claim claim_to_draw(const Trajectory& run, const Spread& spread) {
     Claim claim = claim_of(run.model->description(), run.run, spread);
     check(*run.model, claim);
@@ -229,17 +262,15 @@ Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const P
     if (!view.quantities()[0].is_time || framing.difference) return panel;
     const Ground ground;
     const std::size_t curves = view.quantities().size() - 1;
-    std::vector<Tube> tubes;
-    for (std::size_t i = 0; i < curves; ++i)
-        tubes.push_back(tube_of(theme, curves == 1 ? theme.ink : panel.curves[2 * i].stroke.color));
     const Enclosure& enclosure = proof.enclosure;
     const std::vector<Known> known = known_of(run, proof, view);
     for (std::size_t i = 0; i < curves; ++i) {
         if (framing.hidden.contains(i)) continue;
-        tubes[i].slices = slices_of(known, i, course_of(panel, i));
-        if (is_seen(tubes[i], panel)) panel.tubes.push_back(std::move(tubes[i]));
+        Tube tube = proof_tube(theme);
+        tube.slices = slices_of(known, i, course_of(panel, i), least_of(view, run, i + 1));
+        if (is_seen(tube, panel)) panel.tubes.push_back(std::move(tube));
     }
-    if (!framing.y && !framing.log_y) give_room(panel);
+    if (!framing.y && !framing.log_y) give_room(panel, known);
     if (!is_undecided(enclosure)) return panel;
     Markers mark = undecided_mark(theme, enclosure);
     mark.points = {{enclosure.proved_until, panel.y.low}};
@@ -253,7 +284,7 @@ Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const P
 void name_proof(Figure& figure, const Proof& proof, const Theme& theme) {
     const bool is_drawn = std::any_of(figure.panels.begin(), figure.panels.end(),
                                       [](const Panel& panel) { return !panel.tubes.empty(); });
-    const Tube tube = tube_of(theme, theme.ink);
+    const Tube tube = proof_tube(theme);
     const std::string about = told(proof.spread), name = about.empty() ? "proved" : "proved: " + about;
     figure.keys.push_back({is_drawn ? name : name + " (narrower than the curves)", tube});
     if (!is_undecided(proof.enclosure)) return;

@@ -15,6 +15,9 @@ struct Proof {
     Enclosure enclosure;
 };
 
+// How its tubes look: in a hue that no curve and no event has.
+Tube proof_tube(const Theme& theme);
+
 // What is to be proved of a run, at so many instants that what is drawn of it is as smooth as the curves. Throws InputErrors
 // where a part of that is impossible.
 Claim claim_to_draw(const Trajectory& run, const Spread& spread);

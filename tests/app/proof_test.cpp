@@ -220,22 +220,21 @@ TEST(ProofFigure, IsDrawnAndMadeAgain) {
     const Folder folder;
     for (const std::string format : {"svg", "png"}) {
         const std::string picture = "ball." + format;
-        const test::Answer drawn = folder.run(
-            "figure ball_on_sine --proof --width 1e-4 --view height --end 4 --size 500x300 --out " + picture);
+        const test::Answer drawn =
+            folder.run("figure ball_on_floor --proof --width 1e-3 --set e=0.495..0.505 --view height --out " + picture);
         EXPECT_EQ(drawn.status, 0) << drawn.err;
         EXPECT_EQ(drawn.err, "");
         const test::Answer again = folder.run("reproduce " + picture);
         EXPECT_EQ(again.status, 0) << again.err;
-        EXPECT_NE(again.out.find("--proof --width 1e-4"), std::string::npos) << again.out;
+        EXPECT_NE(again.out.find("--proof --width 1e-3"), std::string::npos) << again.out;
         EXPECT_NE(again.err.find("the same bytes"), std::string::npos) << again.err;
     }
     const std::string svg = test::content(folder.path() / "ball.svg");
-    EXPECT_NE(svg.find("proved: start \u00b1 0.0001"), std::string::npos);
+    EXPECT_NE(svg.find("proved: start \u00b1 0.001, e in [0.495, 0.505]"), std::string::npos);
     EXPECT_NE(svg.find("fill-opacity"), std::string::npos);
     // The same by the explorer's command.
-    EXPECT_EQ(folder.run("figure ball_on_sine --end 4 --do \"prove width 1e-4\" --do \"grid 1 1\" --out do.svg").status,
-              0);
-    EXPECT_NE(test::content(folder.path() / "do.svg").find("proved: start \u00b1 0.0001"), std::string::npos);
+    EXPECT_EQ(folder.run("figure ball_on_floor --do \"prove width 1e-3 e=0.495..0.505\" --out do.svg").status, 0);
+    EXPECT_NE(test::content(folder.path() / "do.svg").find("proved: start \u00b1 0.001, e in"), std::string::npos);
     EXPECT_EQ(folder.run("reproduce do.svg").status, 0);
 }
 

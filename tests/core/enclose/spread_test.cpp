@@ -20,8 +20,8 @@ TEST(Spread, IsReadAndWritten) {
     EXPECT_EQ(read_side(to_text(*rate), ball), rate);
     for (const char* wrong : {"e=0.6..0.5", "z=0..1", "e=0.5..", "e=..1", "e=0..x"})
         EXPECT_THROW(read_side(wrong, ball), InputError) << wrong;
-    EXPECT_EQ(told({}), "");
-    EXPECT_EQ(told({1e-6, {*e}}), "start \u00b1 1e-06, e in [0.4, 0.6]");
+    EXPECT_EQ(achilles::told(Spread()), "");
+    EXPECT_EQ(achilles::told(Spread{1e-6, {*e}}), "start \u00b1 1e-06, e in [0.4, 0.6]");
 }
 
 TEST(Spread, MakesBoxes) {
