@@ -107,6 +107,18 @@ Run without(const Model& model, const std::string& setting, Run run) {
 
 }  // namespace
 
+Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,
+                   std::vector<std::string>& points) {
+    Spread spread;
+    spread.width = width;
+    for (const std::string& setting : settings) {
+        const auto side = read_side(setting, description);
+        points.push_back(side ? fmt::format("{}={}", side->name, 0.5 * side->low + 0.5 * side->high) : setting);
+        if (side) spread.sides.push_back(*side);
+    }
+    return spread;
+}
+
 void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings) {
     try {
         model.check(run);

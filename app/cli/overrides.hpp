@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "enclose/spread.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -38,6 +39,11 @@ void apply(const OptionOverrides& overrides, Options& options);
 // InputError.
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides);
+
+// The intervals among settings, which may be NAME=LOW..HIGH; `points` becomes the settings with the middle of each. Throws
+// InputError.
+Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,
+                   std::vector<std::string>& points);
 
 // Model::check(). What a --set makes impossible is told with that setting in place of the file's line. Throws InputErrors.
 void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings);

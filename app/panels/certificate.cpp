@@ -136,6 +136,13 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                         state);
     if (close) commands.emplace_back(command::Select{0});
     if (!is_plastic) lens_button(session, state, commands);
+    if (const std::string proved = proved_text(session, index); !proved.empty()) {
+        if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
+        ImGui::TextUnformatted(proved.c_str());
+        tooltip(
+            "of the whole run from its start, integration and all cuts included; what stands below is of this cut "
+            "alone");
+    }
     show_certificate(event);
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";

@@ -266,11 +266,11 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     if (!accuracy_heading(session, file, state, commands)) return;
     const Options& now = session.run().options;
     bounds(now, file.options, state, commands);
-    choice(
-        {"conditions", "", "conditions",
-         "what must be proved before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
-         "which choose their own neighbourhood and certify the restarted motion"},
-        now, file.options, state, commands);
+    choice({"conditions", "", "conditions",
+            "what must be certified before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp "
+            "ones, "
+            "which choose their own neighbourhood and certify the restarted motion"},
+           now, file.options, state, commands);
     choice({"reinitialization", "", "restart",
             "the velocity the constrained motion starts with: the paper's "
             "euclidean projection, or the kinetic one of a plastic impact"},

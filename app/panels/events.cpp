@@ -10,6 +10,7 @@
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "output/output.hpp"
+#include "output/proof.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/event_columns.hpp"
@@ -68,6 +69,8 @@ std::string table(const Session& session) {
     std::string text = several ? "#\tevent\tcontacts\topened\theld\tt\timpact speed" : "#\tevent\tt\timpact speed";
     for (const StateColumn& column : columns) text += "\t" + column.name;
     text += "\tenergy lost\tsentence";
+    const bool is_proved = session.proof() != nullptr;
+    if (is_proved) text += "\tt proved from\tt proved to";
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (chosen(session).value_or(i) != i) continue;
@@ -79,6 +82,8 @@ std::string table(const Session& session) {
         text += fmt::format("\t{}\t{}", event.t, is_impact ? fmt::format("{}", event.impact_speed) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
         text += fmt::format("\t{}\t{}", energy_lost(session.trajectory(), i), session.sentences().of(i));
+        const EnclosedEvent* const enclosed = session.enclosed(i);
+        if (is_proved) text += enclosed ? fmt::format("\t{}\t{}", enclosed->t.lo(), enclosed->t.hi()) : "\t\t";
     }
     return text + "\n";
 }
@@ -111,6 +116,53 @@ void show_comparing(float x, PanelState& state, Commands& commands) {
     tooltip("keep the present run in the plots, in a colour of its own, beside those that follow");
 }
 
+constexpr const char *prove_word = "Prove this run", *stop_word = "Stop proving", *forget_word = "Forget proof";
+
+float proving_width() {
+    return std::max({button_width(prove_word), button_width(stop_word), button_width(forget_word)}) + units(2.0F) +
+           ImGui::GetFrameHeight();
+}
+
+// For how much around the run's start.
+void show_spreads(PanelState& state, Commands& commands) {
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(8.0F), units(8.0F)});
+    const bool is_open = ImGui::BeginPopup("spreads");
+    ImGui::PopStyleVar();
+    if (!is_open) return;
+    ImGui::TextDisabled("for every start within");
+    for (const double width : {0.0, 1e-8, 1e-6, 1e-4}) {
+        const std::string name = width == 0.0 ? "the numbers alone" : fmt::format("± {:g}", width);
+        if (ImGui::MenuItem(name.c_str())) commands.emplace_back(command::Prove{width, {}});
+        remember(state, fmt::format("prove {:g}", width));
+    }
+    close_by_escape();
+    ImGui::EndPopup();
+}
+
+// Its left end at x: the proof of the present run begins, ends, or goes.
+void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
+    const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
+    const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
+    ImGui::SameLine(x + width + units(2.0F));
+    if (ImGui::Button("##spread", {arrow, 0.0F})) ImGui::OpenPopup("spreads");
+    remember(state, "prove more");
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    paint_menu_arrow(low.x + 0.5F * (high.x - low.x) - units(4.0F), 0.5F * (low.y + high.y), ImGui::IsItemHovered());
+    tooltip("prove more than the present run: every start within a distance of its own");
+    show_spreads(state, commands);
+    ImGui::SameLine(x);
+    if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word, {width, 0.0F})) {
+        if (is_under_way || is_there)
+            commands.emplace_back(command::StopProof{});
+        else
+            commands.emplace_back(command::Prove{});
+    }
+    remember(state, "prove");
+    tooltip(is_under_way ? "give up the proof that is under way"
+            : is_there   ? "draw the run without what is proved of it"
+                         : "enclose the whole exact motion: integration, rounding, every bounce and every Zeno point");
+}
+
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
     number_cell(at, number_at, "#", faint_color());
     number_cell(at, time_at, "t (s)", faint_color());
@@ -125,6 +177,9 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     const float copy_width = button_width("copy");
     const float buttons = right - width - units(16.0F) - copy_width - units(button_gap) - comparing_width();
     show_lower_tabs(session, state, commands);
+    const float tabs = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x,
+                proving = buttons - proving_width() - units(16.0F);
+    if (proving > tabs + units(16.0F)) show_proving(proving, session, state, commands);
     ImGui::SameLine(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
@@ -147,7 +202,9 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     // Beside a card, which says the rest, its name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
-    columns.put_words(at, name, text_color());
+    const EnclosedEvent* const enclosed = has_card(session) ? nullptr : session.enclosed(index);
+    const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
+    columns.put_words(at, proved + name, text_color());
     // At a Zeno point all its impacts, as the sentence has it.
     const double lost = event.kind == Event::Kind::zeno && !is_plastic_landing(event)
                             ? pile_of(session.trajectory(), index).loss

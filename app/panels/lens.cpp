@@ -39,7 +39,7 @@ void show_places(const Lens& lens, double width, PanelState& state, Commands& co
     place("cut", lens.cut() - 0.3 * width, "where the run was cut short and the contact began");
     if (lens.interval()) {
         ImGui::SameLine();
-        place("certified interval", *lens.interval() - 0.5 * width, "what is proved of the Zeno time");
+        place("certified interval", *lens.interval() - 0.5 * width, "what is certified of the Zeno time");
     }
 }
 
@@ -77,7 +77,7 @@ void show_interval(const Session& session, const Event& zeno, float width) {
                   width, text_color());
     if (!zeno.certificate || !zeno.certificate->certified) return;
     const Certificate& c = *zeno.certificate;
-    paragraph(fmt::format("Proved from the computed state at the cut:\n\u03c4\u221e lies in {}, {:.2g} s wide.",
+    paragraph(fmt::format("Certified from the computed state at the cut:\n\u03c4\u221e lies in {}, {:.2g} s wide.",
                           interval_text(c.zeno_low, c.zeno_high), c.zeno_high - c.zeno_low),
               width, event_markers(session.theme(), Event::Kind::zeno).fill);
 }

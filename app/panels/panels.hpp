@@ -296,6 +296,8 @@ float state_height(const Session& session, float panel_width);
 std::string time_text(const Trajectory& trajectory, std::size_t event);
 // What that stands for.
 std::string precision_text();
+// "proved: t in [LOW, HIGH]" behind this; empty where there is no proof of the event.
+std::string proved_text(const Session& session, std::size_t event, const std::string& before = "");
 // In place of the mechanism, of any system: two quantities, where the gap is open, the run, and its start to drag. With one
 // coordinate its phase plane.
 bool has_contours(const PlaneView& plane);

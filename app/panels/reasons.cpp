@@ -58,7 +58,8 @@ std::optional<Inequality> failed(const Certificate& certificate) {
 
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once) {
     if (reason.cut)
-        return "Cut here: what follows is proved to stay within the tolerances of what is drawn. The next event, the "
+        return "Cut here: what follows is certified to stay within the tolerances of what is drawn. The next event, "
+               "the "
                "Zeno point, tells by how much.";
     if (!reason.contact || all_at_once)
         return "Not cut: more than one contact moves here, all at once by Moreau's law.";
@@ -68,11 +69,11 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, 
                            number(reason.normal_acceleration));
     if (attempt == nullptr)
         return fmt::format(
-            "Not cut: nothing can be proved yet, the gap's acceleration may change its sign{} on the way.",
+            "Not cut: nothing can be certified yet, the gap's acceleration may change its sign{} on the way.",
             several ? " or another contact open or close" : "");
     const std::optional<Inequality> inequality = failed(*attempt);
     if (!inequality) return "Not cut: an impact before the conditions were asked.";
-    if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} is not proved.", inequality->name);
+    if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} does not hold.", inequality->name);
     return fmt::format("Not cut: the {} asks for {} < {}; it is {} times too large.", inequality->name,
                        number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
                        number(inequality->left / inequality->right, "{:.3g}"));
@@ -101,6 +102,11 @@ Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& r
     panel.curves = {force, pull};
     panel.markers = {release};
     return panel;
+}
+
+// When the proof of the run has it.
+void show_proved(const Session& session, std::size_t event) {
+    if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
 }
 
 // "Impact of wall, event 7"; without the contact where there is one.
@@ -145,6 +151,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         with(number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))),
              "energy"));
     const bool several = session.model()->contacts() > 1;
+    show_proved(session, index);
     std::string words =
         why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr);
     if (several) {
@@ -171,6 +178,7 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     row("\u03bb", number(without_noise(reason.lambda, most), "{:.2g}"));
     row("\u03bb\u0307", number(reason.lambda_rate));
     row("h\u2034", number(reason.jerk));
+    show_proved(session, index);
     paragraph(
         "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
         "first "

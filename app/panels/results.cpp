@@ -9,6 +9,7 @@
 
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/proof.hpp"
 #include "output/sentences.hpp"
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
@@ -30,9 +31,10 @@ std::string explanation(const Session& session, std::size_t index) {
     const Event& event = session.trajectory().events[index];
     const std::string said = typeset_sentence(
         fmt::format("{} at t = {:.10g} s: {}", event_name(event), event.t, session.sentences().of(index)));
-    if (event.kind != Event::Kind::zeno) return said + "\nClick: why";
+    if (event.kind != Event::Kind::zeno) return said + proved_text(session, index, "\n") + "\nClick: why";
+    if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
     std::string proof =
-        event.certificate ? sentence(*event.certificate, session.description()) : "nothing is proved of it";
+        event.certificate ? sentence(*event.certificate, session.description()) : "nothing is certified of it";
     for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
         proof.replace(at, 2, "\n");
     return said + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
@@ -84,8 +86,11 @@ struct Strip {
     float room = 0.0F;  // pixels, between its ends
     bool is_low = false;
 };
-Cell cell_of(const Trajectory& trajectory, const Result& result, const Strip& strip) {
+Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
+    const Trajectory& trajectory = session.trajectory();
     Cell cell{name_of(trajectory, result), time_text(trajectory, result.event), 0.0F};
+    if (const EnclosedEvent* enclosed = session.enclosed(result.event))
+        cell.name += ", proved", cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
     const float room = (strip.is_low ? 1.0F : most_of_strip) * strip.room - units(sign_width);
     cell.name = fitted(cell.name, room), cell.time = fitted(cell.time, room);
@@ -100,19 +105,18 @@ struct Shown {
 };
 
 // As many as have room from this one on and, where that leaves room at the end of the run, before it.
-Shown shown_from(const Trajectory& trajectory, const std::vector<Result>& results, std::size_t begin,
-                 const Strip& strip) {
+Shown shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin, const Strip& strip) {
     Shown shown{begin, {}};
     float x = 0.0F;
     const auto fits = [&](const Cell& cell) { return shown.cells.empty() || x + cell.width <= strip.room; };
     for (std::size_t i = begin; i < results.size(); ++i) {
-        Cell cell = cell_of(trajectory, results[i], strip);
+        Cell cell = cell_of(session, results[i], strip);
         if (!fits(cell)) return shown;
         x += cell.width + units(between);
         shown.cells.push_back(std::move(cell));
     }
     while (shown.begin > 0) {
-        Cell cell = cell_of(trajectory, results[shown.begin - 1], strip);
+        Cell cell = cell_of(session, results[shown.begin - 1], strip);
         if (!fits(cell)) break;
         x += cell.width + units(between);
         shown.cells.insert(shown.cells.begin(), std::move(cell));
@@ -122,16 +126,15 @@ Shown shown_from(const Trajectory& trajectory, const std::vector<Result>& result
 }
 
 // With what is to be seen about in the middle, so that what comes before and after it is seen as well.
-Shown shown_around(const Trajectory& trajectory, const std::vector<Result>& results, std::size_t seen,
-                   const Strip& strip) {
+Shown shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen, const Strip& strip) {
     std::size_t begin = seen;
-    float x = 0.5F * cell_of(trajectory, results[seen], strip).width;
+    float x = 0.5F * cell_of(session, results[seen], strip).width;
     while (begin > 0) {
-        x += cell_of(trajectory, results[begin - 1], strip).width + units(between);
+        x += cell_of(session, results[begin - 1], strip).width + units(between);
         if (x > 0.5F * strip.room) break;
         --begin;
     }
-    return shown_from(trajectory, results, begin, strip);
+    return shown_from(session, results, begin, strip);
 }
 
 // What a hand has moved the strip to, until the present reaches another result.
@@ -142,8 +145,8 @@ Shown shown_by(const Session& session, PanelState& state, const std::vector<Resu
         by_hand = {};
         by_hand.seen = results[seen].event, by_hand.count = results.size();
     }
-    if (!by_hand.begin) return shown_around(session.trajectory(), results, seen, strip);
-    return shown_from(session.trajectory(), results, std::min(*by_hand.begin, results.size() - 1), strip);
+    if (!by_hand.begin) return shown_around(session, results, seen, strip);
+    return shown_from(session, results, std::min(*by_hand.begin, results.size() - 1), strip);
 }
 
 // A drag takes the strip along by whole cells, a wheel by one.
@@ -264,9 +267,9 @@ void show_none(const Session& session, ImVec2 at, float width) {
 }  // namespace
 
 std::string precision_text() {
-    return "\u00b1: proved of the Zeno time from the computed state at the cut.\n"
+    return "\u00b1: certified of the Zeno time from the computed state at the cut.\n"
            "The integration and the cuts before it are not covered: where an\n"
-           "estimate of theirs is larger, that stands here, and nothing is proved of it.";
+           "estimate of theirs is larger, that stands here, and nothing is certified of it.";
 }
 
 std::string time_text(const Trajectory& trajectory, std::size_t index) {
@@ -281,6 +284,12 @@ std::string time_text(const Trajectory& trajectory, std::size_t index) {
     const std::string text = fmt::format("{:.{}f}", event.t, digits);
     const double value = std::strtod(text.c_str(), nullptr);
     return text + " \u00b1 " + rounded_up(std::max({high - value, value - low, integration}));
+}
+
+std::string proved_text(const Session& session, std::size_t event, const std::string& before) {
+    const EnclosedEvent* const enclosed = session.enclosed(event);
+    if (enclosed == nullptr) return "";
+    return before + with_minus(fmt::format("proved: t in [{}, {}]", enclosed->t.lo(), enclosed->t.hi()));
 }
 
 float results_height(const Session& session) {
@@ -304,7 +313,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     // Room for the arrows on both sides: what stands between them does not jump when one appears.
     const float inset = units(arrow_width + 6.0F);
     const bool is_low = lines < 2;
-    Shown shown = shown_from(session.trajectory(), results, 0, {width, is_low});
+    Shown shown = shown_from(session, results, 0, {width, is_low});
     const bool has_all = shown.cells.size() == results.size();
     if (!has_all) shown = shown_by(session, state, results, seen, {width - 2.0F * inset, is_low});
     const bool is_hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);

@@ -37,6 +37,9 @@ void show_legend(const Session& session) {
     for (const Phase::Kind kind : phases)
         width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
     for (const Markers& markers : events) width += ImGui::CalcTextSize(markers.label.c_str()).x + units(18.0F) + gap;
+    const bool has_tube = session.proof() != nullptr;
+    const Tube tube = proof_tube(session.theme());
+    if (has_tube) width += ImGui::CalcTextSize(tube.label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(content_right() - units(edge) - width + gap);
@@ -51,8 +54,22 @@ void show_legend(const Session& session) {
         legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
             paint_marker(list, markers, {c.x, c.y}, units(1.0F));
         });
-        if (&markers != &events.back()) ImGui::SameLine(0.0F, gap);
+        if (&markers != &events.back() || has_tube) ImGui::SameLine(0.0F, gap);
     }
+    if (!has_tube) return;
+    legend_entry(tube.label, [&](ImDrawList* list, ImVec2 c) {
+        const ImVec2 low{c.x - units(6.0F), c.y - units(4.0F)}, high{c.x + units(6.0F), c.y + units(4.0F)};
+        list->AddRectFilled(low, high, packed(tube.fill));
+        stroke_rectangle(list, low, high, packed(tube.edge), 0.0F, units(1.0F));
+    });
+}
+
+// How much is done of what is under way, along the upper edge.
+void paint_share(double share) {
+    const ImVec2 corner = ImGui::GetWindowPos();
+    const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)},
+                                              ImGui::GetColorU32(ImGuiCol_SliderGrab));
 }
 
 // A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
@@ -64,11 +81,8 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
         std::clamp(std::max((time - run.options.start_time) / (run.options.end_time - run.options.start_time),
                             impacts / run.options.max_impacts),
                    0.0, 1.0);
-    const ImVec2 corner = ImGui::GetWindowPos();
-    const ImU32 accent = ImGui::GetColorU32(ImGuiCol_SliderGrab);
-    const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
-    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)}, accent);
-    ImGui::PushStyleColor(ImGuiCol_Text, accent);
+    paint_share(share);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_SliderGrab));
     const std::string left = state.in_window ? time_left(session.seconds_under_way(), share) : "";
     ImGui::TextUnformatted(fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts{}{}", time,
                                        run.options.end_time, impacts, left.empty() ? "" : "   \u00b7   ", left)
@@ -77,6 +91,36 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
     ImGui::SameLine(0.0F, units(24.0F));
     ImGui::TextDisabled(
         "%s", session.shows_start() ? "its start is shown until then" : "the run before this one is shown until then");
+}
+
+// How far the proof of the run has come, or how far it goes.
+void show_proof(const Session& session) {
+    const Options& options = session.run().options;
+    if (const ProofWatch* watch = session.proof_under_way()) {
+        const double time = watch->time;
+        paint_share(std::clamp((time - options.start_time) / (options.end_time - options.start_time), 0.0, 1.0));
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_SliderGrab));
+        ImGui::TextUnformatted(fmt::format("proving: t = {:.6g} of {:.6g} s", time, options.end_time).c_str());
+        ImGui::PopStyleColor();
+        return ImGui::SameLine(0.0F, units(24.0F));
+    }
+    const Proof* const proof = session.proof();
+    if (proof == nullptr) return;
+    const Enclosure& enclosure = proof->enclosure;
+    const std::string about = told(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(enclosure.end ? text_color() : error_color()));
+    ImGui::TextUnformatted(
+        fmt::format("proved to t = {:.6g} s{}{}", enclosure.proved_until, enclosure.end ? "" : ", then undecided", of)
+            .c_str());
+    ImGui::PopStyleColor();
+    tooltip(enclosure.end
+                ? "Whatever is computed here, the exact motion lies in the tubes of the plots and has its events "
+                  "in the intervals that are told. It stands on " +
+                      enclosure.assumptions + "."
+                : "Until then the exact motion lies in the tubes of the plots and has its events in the "
+                  "intervals that are told; what comes after is not known: " +
+                      enclosure.outcome.message + ".");
+    ImGui::SameLine(0.0F, units(24.0F));
 }
 
 }  // namespace
@@ -99,6 +143,7 @@ void show_status(const Session& session, const PanelState& state) {
                                         ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
     if (const Watch* watch = session.under_way()) return show_progress(session, state, *watch);
+    show_proof(session);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
             fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));

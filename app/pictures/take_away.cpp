@@ -32,9 +32,9 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
     for (const Command& step : steps) words.insert(words.end(), {"--do", to_text(step)});
 }
 
-// The plots as views of the system's file, where they are nothing else and no pinned run stands behind them.
+// The plots as views of the system's file, where they are nothing else: no pinned run stands behind them, nor a proof.
 std::optional<Words> views_of(const Session& session, const Plots& plots) {
-    if (!session.pinned().empty()) return std::nullopt;
+    if (!session.pinned().empty() || session.proof() != nullptr) return std::nullopt;
     const auto& views = session.description().views;
     Words words;
     for (const Plot& plot : plots.list()) {
@@ -204,11 +204,14 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
             behind.push_back({&others[k][i], pinned[k]->name, pinned[k]->place});
         Framing framing = plot.framing;
         framing.for_print = true;
+        if (const Proof* proof = session.proof())
+            panels[i] = with_proof(std::move(panels[i]), session.trajectory(), *proof, *plot.prepared, framing, theme);
         panels[i] = framing.difference ? difference(session.trajectory(), compared, *plot.prepared, framing)
                                        : with_pinned(std::move(panels[i]), behind, framing, theme);
     }
     Figure figure = publication(session.trajectory(), std::move(panels), style);
     if (!pinned.empty()) name_runs(figure, session, pinned);
+    if (const Proof* proof = session.proof()) name_proof(figure, *proof, theme);
     return figure;
 }
 

@@ -157,7 +157,7 @@ std::string written(const Values& values, const How& how) {
 template <class Value>
 std::pair<std::size_t, std::size_t> count(const How& how) {
     if (how.is_name) return {0, 0};
-    if (std::same_as<Value, Words>) return {1, 10};
+    if (std::same_as<Value, Words>) return {how.may_lack ? 0 : 1, 10};
     if (std::same_as<Value, Given>) return {1, 2};
     if (std::same_as<Value, Values>) return {2, 96};
     if (!how.after.empty()) return {0, 2};

@@ -120,13 +120,21 @@ struct ShowPlane {
         Said("plane", "write: plane X Y, expressions with spaces in double quotes, or: plane default", Change::view,
              &ShowPlane::x, &ShowPlane::y);
 };
-
 struct ShowSweep {
     std::string text;  // as on the command line, but for --set and the options: these are what the session has
     static constexpr auto said = Said("sweep", "write: sweep \"--over e=0:0.95:512 --print zeno_time(1)\"",
                                       Change::view, Field(&ShowSweep::text, in_quotes));
 };
-
+struct StopProof {  // and forgets what was proved
+    static constexpr auto said = Said("prove off", alone, Change::view);
+};
+struct Prove {
+    double width = 0.0;                  // half, for all coordinates and rates of the start
+    std::vector<std::string> intervals;  // NAME=LOW..HIGH, which hold what the present run has
+    static constexpr auto said =
+        Said("prove", "write: prove [width W] [NAME=LOW..HIGH ...], or: prove off", Change::view,
+             Field(&Prove::width, length_after("width")), Field(&Prove::intervals, {.may_lack = true}));
+};
 struct Find {
     std::string text;  // letters of a command, in the palette, which opens
     static constexpr auto said =
@@ -357,13 +365,14 @@ struct Replay {
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::DefaultPlane,
-                 command::ShowPlane, command::ShowSweep, command::Find, command::Grid, command::PlotView, command::Zoom,
-                 command::Fit, command::Range, command::AxisScale, command::ShowCurve, command::Link, command::Start,
-                 command::LookAll, command::Look, command::Camera, command::Speed, command::Loop, command::Step,
-                 command::Undo, command::Redo, command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned,
-                 command::Recall, command::PlotDifference, command::Lens, command::UseTheme, command::Enlarge,
-                 command::Present, command::Size, command::Reset, command::Done, command::Export, command::Copy,
-                 command::Wait, command::Say, command::Highlight, command::Replay>;
+                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::Find,
+                 command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
+                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Camera,
+                 command::Speed, command::Loop, command::Step, command::Undo, command::Redo, command::Pin,
+                 command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
+                 command::Lens, command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset,
+                 command::Done, command::Export, command::Copy, command::Wait, command::Say, command::Highlight,
+                 command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

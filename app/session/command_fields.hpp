@@ -39,7 +39,7 @@ struct How {
     bool (*fits)(double) = nullptr;  // a number
     std::string_view zero = {};      // the word for 0
     std::string_view after = {};     // a number above 0, behind this word; 0 where both are left out
-    // A bool of one word: another one is the next field's. A whole number from 1: 0 where it is left out.
+    // A bool of one word: another one is the next field's. A whole number from 1: 0 where it is left out. A list: of none.
     bool may_lack = false;
     std::string_view complaint = {};  // {}: what stands there instead, and for a text what was probably meant
 };

@@ -21,9 +21,9 @@ constexpr std::array terms{
          "Where 0 < e < 1, infinitely many impacts end here in finite time: each flight is about e times the last.",
          "paper, Thm. 2"},
     Term{"truncation", "w < c1, w < c2, w < c3",
-         "The bouncing is cut at the first impact where it is proved how little is lost by it.", "paper, Def. 7"},
+         "The bouncing is cut at the first impact where it is certified how little is lost by it.", "paper, Def. 7"},
     Term{"conditions", "a_min <= -gap'' <= a_max",
-         "What is proved before the cut: the paper's inequalities, or the sharp ones, which choose their own "
+         "What is certified before the cut: the paper's inequalities, or the sharp ones, which choose their own "
          "neighbourhood.",
          "paper (9)-(11); theory 6"},
     Term{"certificate", "t(Zeno) - t(cut) <= A*w",

@@ -110,6 +110,12 @@ std::vector<Command> run_steps(const Session& session, Run from) {
     return steps;
 }
 
+// To its proof, be it under way.
+std::vector<Command> proof_steps(const Session& session) {
+    const auto proof = session.proof_command();
+    return proof ? std::vector<Command>{*proof} : std::vector<Command>();
+}
+
 // Where the present is.
 std::vector<Command> time_steps(const Session& session) {
     std::vector<Command> steps;
@@ -150,6 +156,7 @@ std::vector<Command> recipe(const Session& session) {
     append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
                                 description.source_text));
     append(steps, run_steps(session, session.file_run()));
+    append(steps, proof_steps(session));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.
     const Document& document = session.document();
@@ -204,12 +211,14 @@ std::vector<Difference> differences(const SystemDescription& description, const 
 
 std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
     std::vector<Command> steps = run_steps(session, session.run());
+    if (session.proof() != nullptr) append(steps, proof_steps(session));  // a figure has none that is not there yet
     append(steps, steps_to(plots, true));
     return steps;
 }
 
 std::vector<Command> explorer_steps(const Session& session) {
     std::vector<Command> steps = run_steps(session, session.run());
+    append(steps, proof_steps(session));
     append(steps, sight_steps(session));
     return steps;
 }

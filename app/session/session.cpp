@@ -74,6 +74,7 @@ void Session::apply(const Command& command) {
         if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, moment());
         follow_sweep();
+        follow_proof(0.0);
     } catch (const Forbidden&) {
         throw;
     } catch (const InputError& problem) {

@@ -19,6 +19,7 @@
 #include "session/history.hpp"
 #include "session/pinned_run.hpp"
 #include "session/plots.hpp"
+#include "session/proof_job.hpp"
 #include "session/run_table.hpp"
 #include "session/scene.hpp"
 #include "session/sweep_job.hpp"
@@ -76,6 +77,7 @@ class Session {
     void update() {
         receive_pins(0.0);
         receive(0.0);
+        receive_proof(0.0);
         sweep_job_->update(0.0);
     }
     // Waits for all that is under way: what a picture shows is finished.
@@ -118,6 +120,16 @@ class Session {
     Sweep sweep() const;
     std::string sweep_text() const;
     const SweepJob& sweep_job() const { return *sweep_job_; }
+    // What is proved of the run that is shown; null: nothing yet. Another start, parameter or end has no part in it.
+    const Proof* proof() const;
+    // Of an event of the run that is shown, what the proof encloses it in; null: nothing.
+    const EnclosedEvent* enclosed(std::size_t event) const {
+        return event < enclosed_.size() ? enclosed_[event] : nullptr;
+    }
+    // How far the proof is that was asked for; null: none is under way.
+    const ProofWatch* proof_under_way() const;
+    // The command that leads to it; nothing where there is none, nor one under way.
+    std::optional<command::Prove> proof_command() const;
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
 
@@ -197,6 +209,8 @@ class Session {
     void perform(const command::Lens& command);
     void perform(const command::ShowPlane& command);
     void perform(const command::ShowSweep& command);
+    void perform(const command::Prove& command);
+    void perform(const command::StopProof& command);
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
@@ -246,6 +260,8 @@ class Session {
     void keep_plane();
     void keep_sweep();
     void follow_sweep();
+    void follow_proof(Patience patience);
+    void receive_proof(Patience patience);
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);
@@ -292,6 +308,14 @@ class Session {
     std::vector<PinUnderWay> pins_;                 // the first was asked for first
     std::vector<std::unique_ptr<Runner>> stopped_;  // until they have forgotten what nobody wants any more
     std::function<void()> ready_;
+    struct AskedProof {
+        std::shared_ptr<const System> system;
+        Run run;
+        Spread spread;
+    };
+    std::optional<AskedProof> proof_asked_;       // until it is there
+    std::vector<const EnclosedEvent*> enclosed_;  // for every event; empty: there is no proof
+    std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
 };

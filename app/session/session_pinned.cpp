@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "figure/difference.hpp"
+#include "output/proof.hpp"
 #include "session/refusal.hpp"
 #include "session/session.hpp"
 
@@ -112,6 +113,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     ready_ = ready;
     worker_->on_ready(ready);
     sweep_job_->on_ready(ready);
+    proof_job_->on_ready(ready);
     for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
 }
 
@@ -204,13 +206,17 @@ void Session::perform(const command::Recall& command) {
     rerun(Run(pinned->trajectory->run));
 }
 
-// What follows from the runs, the plots and the theme, once for each change of them.
+// What follows from the runs, the proof, the plots and the theme, once for each change of them.
 void Session::compose_pinned() {
     drawn_.clear();
     run_table_ = {};
     name_.clear();
+    enclosed_ =
+        proof() == nullptr ? std::vector<const EnclosedEvent*>() : enclosed_events(trajectory(), proof()->enclosure);
     const auto is_difference = [](const Plot& plot) { return plot.framing.difference; };
-    if (pinned_.empty() && std::none_of(plots_.list().begin(), plots_.list().end(), is_difference)) return;
+    if (pinned_.empty() && proof() == nullptr &&
+        std::none_of(plots_.list().begin(), plots_.list().end(), is_difference))
+        return;
     std::vector<const Run*> runs{&trajectory().run};
     std::vector<const Trajectory*> trajectories{&trajectory()};
     for (const PinnedRun& run : pinned_) {
@@ -242,8 +248,11 @@ void Session::compose_pinned() {
         std::vector<PinnedPanel> others;
         for (const PinnedRun& run : pinned_)
             if (run.shown) others.push_back({&run.plots[i], run.name, run.place});
+        Panel own = plots()[i];
+        if (proof() != nullptr)
+            own = with_proof(std::move(own), trajectory(), *proof(), *plot.prepared, plot.framing, theme_);
         drawn_.push_back(plot.framing.difference ? difference(trajectory(), compared, *plot.prepared, plot.framing)
-                                                 : with_pinned(plots()[i], others, plot.framing, theme_));
+                                                 : with_pinned(std::move(own), others, plot.framing, theme_));
         drawn_.back().title.clear();
     }
 }

@@ -83,6 +83,7 @@ void Session::follow_sweep() {
 void Session::settle() {
     receive_pins({});
     receive({});
+    receive_proof({});
     sweep_job_->update({});
 }
 

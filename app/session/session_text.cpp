@@ -2,6 +2,7 @@
 
 #include "model/model.hpp"
 #include "output/output.hpp"
+#include "output/proof.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -21,6 +22,9 @@ std::string to_text(const Session& session) {
     for (const PinnedRun& pinned : session.pinned())
         text += fmt::format("pinned {}{}: {}\n", pinned.place, pinned.shown ? "" : " (hidden)",
                             pinned.name.empty() ? "the same" : pinned.name);
+    if (const Proof* proof = session.proof())
+        text += fmt::format("{}: {} until {:.9g}\n", to_text(*session.proof_command()),
+                            to_text(proof->enclosure.outcome.kind), proof->enclosure.proved_until);
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
     if (!session.error().empty()) text += "error " + session.error() + "\n";

@@ -134,4 +134,31 @@ std::string proof_text(const Model& model, const Claim& claim, const Enclosure& 
     return text + fmt::format("\nIt stands on {}.\n", proof.assumptions);
 }
 
+std::string short_text(const Interval& x) {
+    const double centre = mid(x), half = std::max(x.hi() - centre, centre - x.lo());
+    if (!std::isfinite(half)) return fmt::format("[{}, {}]", x.lo(), x.hi());
+    if (half == 0.0) return fmt::format("{}", centre + 0.0);
+    constexpr int most = 15;  // decimals, of which a double of a few seconds has no more
+    const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, most);
+    const std::string text = fmt::format("{:.{}f}", centre, decimals);
+    const long double shown = std::stold(text), off = std::max(x.hi() - shown, shown - x.lo()),
+                      rounding = 0x1p-60L * (std::abs(shown) + off);
+    return fmt::format("{}({})", text, std::ceil((off + rounding) * std::pow(10.0L, decimals)));
+}
+
+std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const Enclosure& proof) {
+    std::vector<const EnclosedEvent*> result(run.events.size(), nullptr);
+    auto enclosed = proof.events.begin();
+    for (std::size_t i = 0; i < run.events.size() && enclosed != proof.events.end(); ++i) {
+        const bool is_impact = run.events[i].kind == Event::Kind::impact;
+        while (!is_impact && enclosed != proof.events.end() && enclosed->kind == Event::Kind::impact) ++enclosed;
+        if (enclosed == proof.events.end()) break;
+        if (enclosed->kind == run.events[i].kind)
+            result[i] = &*enclosed++;
+        else if (!is_impact)
+            break;
+    }
+    return result;
+}
+
 }  // namespace achilles

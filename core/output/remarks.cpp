@@ -62,7 +62,8 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
                 "eps_q = {:g} is large beside this motion: the bouncing was cut {}, t = {:.6g}, where {} {:.2g}, "
                 "and the gap is never above {:.2g}: try --eps {:g}",
                 trajectory.run.options.truncation.eps_q, when, event.truncation->t,
-                c.uniform_position ? "the position is proved to" : "bounces may be as high as", bound, largest, eps)};
+                c.uniform_position ? "the position is certified to" : "bounces may be as high as", bound, largest,
+                eps)};
     }
     return std::nullopt;
 }
@@ -77,7 +78,7 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
         "ends before a Zeno point",
         fmt::format("the run ends between the cut of a bouncing, t = {:.9g}, and its Zeno point: from there on it "
                     "is the restarted motion, without the bounces that are left; a later end time tells what is "
-                    "proved about it",
+                    "certified about it",
                     cut.t)};
 }
 
@@ -92,7 +93,7 @@ std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
         if (!(width > 0.0) || !(error > width) || !(error > trajectory.run.options.truncation.eps_t)) continue;
         return Remark{
             "integration outweighs an interval",
-            fmt::format("the interval of the Zeno time {:.6g} is {:.1g} s wide: it is proved of the motion from "
+            fmt::format("the interval of the Zeno time {:.6g} is {:.1g} s wide: it is certified of the motion from "
                         "the computed state, and the integration and cuts before may have moved that time by "
                         "{:.1g} s (an estimate, mostly too large): a smaller --tolerance makes that less",
                         event.t, width, error)};

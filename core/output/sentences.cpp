@@ -112,9 +112,9 @@ std::string Sentences::zeno(std::size_t index) const {
         text += (pile.impacts == 1 ? " at " : " since ") + seconds(trajectory_.events[pile.first].t, 4);
     text += lost(pile.loss);
     const std::optional<double> bound = proved_time(event);
-    text += !bound         ? ", not proved"
-            : *bound > 0.0 ? fmt::format(", proved to {} s from the cut", rounded_up(*bound))
-                           : ", proved from the cut";
+    text += !bound         ? ", not certified"
+            : *bound > 0.0 ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))
+                           : ", certified from the cut";
     if (by_convention_ && *by_convention_ < index)
         text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
     return text;

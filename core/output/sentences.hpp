@@ -11,8 +11,8 @@
 
 namespace achilles {
 
-// "knee is held: 10 impacts since 2.46 s, 1.3 J lost, proved to 1e-6 s from the cut": the Zeno time of the exact motion from the
-// computed state at the cut is that near to the event's, by the certificate; "proved" is said of nothing else. In the units
+// "knee is held: 10 impacts since 2.46 s, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time of the exact motion from the
+// computed state at the cut is that near to the event's, by the certificate; "proved" is said of whole runs alone (proof.hpp). In the units
 // of the file.
 class Sentences {
  public:

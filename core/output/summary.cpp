@@ -146,7 +146,7 @@ class Course {
         text += indented(sentence(*event.certificate, model_.description()));
         if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
             text += indented(fmt::format(
-                "not proved: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
+                "not covered: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
         const auto& others = event.certificate->others;
         if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);

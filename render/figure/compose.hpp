@@ -25,6 +25,7 @@ class PreparedView {
         double factor = 1.0;
         bool is_time = false;
         std::optional<std::size_t> coordinate{};  // if it is one: its number
+        std::string text{};                       // as it is written
     };
     const std::string& title() const { return title_; }
     const Program& program() const { return program_; }

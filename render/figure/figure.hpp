@@ -105,6 +105,16 @@ struct ColorBar {
     std::vector<Color> colors;  // from axis.low on, evenly; empty: no bar
 };
 
+// What lies between two curves over the same x, with a line along both: where something is proved to be. A NaN breaks it.
+struct Tube {
+    struct Slice {
+        double x = 0.0, low = 0.0, high = 0.0;
+    };
+    std::string label;
+    Color fill, edge;
+    std::vector<Slice> slices;
+};
+
 // Strokes across the plot area, behind all, seen where nothing covers them.
 struct Hatch {
     std::string label;  // "" : not in the legend
@@ -118,9 +128,10 @@ struct Panel {
     int rows = 1;             // of the figure's, that it stands beside
     std::vector<Band> bands;
     Hatch hatch;
-    Raster raster;  // behind the curves, as are
+    Raster raster;  // behind the curves, as is what follows until there
     Dots dots;
     ColorBar color_bar;
+    std::vector<Tube> tubes;
     Curve boundary;  // behind the curves: what the path cannot cross
     std::vector<Curve> curves;
     std::vector<Markers> markers;
@@ -130,10 +141,10 @@ struct Panel {
     std::array<double, 2> legend_at{1.0, 1.0};  // corner of the plot area: (0,0) bottom left, (1,1) top right
 };
 
-// A line of a legend: a stroke, a marker or a hatched field and its meaning.
+// A line of a legend: a stroke, a marker, a hatched field or a piece of a tube, and its meaning.
 struct Key {
     std::string label;
-    std::variant<Stroke, Markers, Hatch> sign;
+    std::variant<Stroke, Markers, Hatch, Tube> sign;
 };
 
 struct Figure {

@@ -68,6 +68,19 @@ std::string many_text(const Panel& panel) {
     return text;
 }
 
+// At most forty of its slices.
+std::string tube_text(const Tube& tube) {
+    constexpr std::size_t most = 40;
+    const std::size_t shown = std::min(most, tube.slices.size());
+    std::string text = fmt::format("  tube \"{}\" {} {} slices {}:", tube.label, color_text(tube.fill),
+                                   color_text(tube.edge), tube.slices.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Tube::Slice& at = tube.slices[shown == 1 ? 0 : i * (tube.slices.size() - 1) / (shown - 1)];
+        text += fmt::format(" {}: {} to {}", number_text(at.x), number_text(at.low), number_text(at.high));
+    }
+    return text + "\n";
+}
+
 const char* shape_text(Markers::Shape shape) {
     switch (shape) {
         case Markers::Shape::square:
@@ -100,6 +113,7 @@ std::string to_text(const Figure& figure) {
             text += fmt::format("  band \"{}\" {} {:.9g} to {:.9g}\n", band.label, color_text(band.color), band.low,
                                 band.high);
         text += many_text(panel);
+        for (const Tube& tube : panel.tubes) text += tube_text(tube);
         if (!panel.boundary.points.empty())
             text += fmt::format("  boundary {} points {}:{}\n", color_text(panel.boundary.stroke.color),
                                 panel.boundary.points.size(), points_text(panel.boundary.points));

@@ -80,11 +80,61 @@ Stroke scaled(Stroke stroke, double scale) {
     return stroke;
 }
 
+// How thick a strip is across its way, in pixels: where it leads up steeply that is less than it is high.
+double thickness(const Strip& strip, std::size_t i) {
+    const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, strip.upper.size() - 1);
+    const auto middle = [&](std::size_t k) { return 0.5 * (strip.upper[k].y + strip.lower[k].y); };
+    const double along = strip.upper[after].x - strip.upper[before].x, up = middle(after) - middle(before);
+    const double way = std::hypot(along, up);
+    return way > 0.0 ? (strip.lower[i].y - strip.upper[i].y) * along / way : 0.0;
+}
+
+// The parts of a tube that are seen beside its curve: lines along one that is thinner would be taken for another curve.
+void lay_strip(const Strip& strip, const Stroke& edge, double least, Sheet& sheet) {
+    const std::size_t n = strip.upper.size();
+    std::vector<bool> seen(n, false);
+    for (std::size_t i = 0; i < n; ++i)
+        if (thickness(strip, i) >= least) seen[i > 0 ? i - 1 : i] = seen[i] = seen[std::min(i + 1, n - 1)] = true;
+    for (std::size_t begin = 0, end = 0; begin < n; begin = end + 1) {
+        for (end = begin; end < n && seen[end];) ++end;
+        if (end < begin + 2) continue;
+        const auto part = [&](const std::vector<Point>& all) {
+            return std::vector<Point>(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      all.begin() + static_cast<std::ptrdiff_t>(end));
+        };
+        const Strip piece{part(strip.upper), part(strip.lower), strip.color, strip.clip};
+        sheet.emplace_back(piece);
+        for (const auto& line : {piece.upper, piece.lower}) sheet.emplace_back(Path{line, edge, strip.clip});
+    }
+}
+
+// Pixels far outside the plot area would be far off in single precision; none of them is seen.
+void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
+    const double above = plot.y - 2.0 * plot.height, below = plot.y + 3.0 * plot.height, least = 1.2 * m.scale;
+    Strip strip{{}, {}, tube.fill, plot};
+    const auto end_strip = [&] {
+        if (strip.upper.size() > 1) lay_strip(strip, {tube.edge, 0.8 * m.scale, {}}, least, sheet);
+        strip.upper.clear();
+        strip.lower.clear();
+    };
+    for (const Tube::Slice& slice : tube.slices) {
+        if (!std::isfinite(slice.low + slice.high)) {
+            end_strip();
+            continue;
+        }
+        const double x = map.x(slice.x), high = map.y(slice.high), low = map.y(slice.low);
+        strip.upper.push_back({x, std::isfinite(high) ? std::clamp(high, above, below) : below});
+        strip.lower.push_back({x, std::isfinite(low) ? std::clamp(low, above, below) : below});
+    }
+    end_strip();
+}
+
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
     lay_hatch(panel.hatch, sheet, plot, m);
     lay_raster(panel.raster, sheet, plot, map);
     lay_dots(panel.dots, sheet, plot, map, m);
+    for (const Tube& tube : panel.tubes) lay_tube(tube, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
     const auto lay = [&](const Curve& curve) {
@@ -111,6 +161,8 @@ std::vector<Key> keys_of(const Panel& panel) {
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
     if (!panel.hatch.label.empty()) keys.push_back({panel.hatch.label, panel.hatch});
+    for (const Tube& tube : panel.tubes)
+        if (!tube.label.empty()) keys.push_back({tube.label, Tube{{}, tube.fill, tube.edge, {}}});
     return keys;
 }
 
@@ -125,6 +177,16 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
         const float side = std::round(0.8F * m.text);
         lay_hatched_field(*hatch, sheet,
                           {std::round(x + (length - side) / 2.0F), y - std::round(side / 2.0F), side, side}, m);
+        return;
+    }
+    if (const auto* tube = std::get_if<Tube>(&key.sign)) {
+        const double half = 0.28 * double{m.text};
+        const std::vector<Point> above{{x, y - half}, {x + length, y - half}},
+            below{{x, y + half}, {x + length, y + half}};
+        const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
+        const Stroke edge{tube->edge, 0.8 * m.scale, {}};
+        sheet.emplace_back(Strip{above, below, tube->fill, around});
+        for (const auto& line : {above, below}) sheet.emplace_back(Path{line, edge, around});
         return;
     }
     const Markers& markers = std::get<Markers>(key.sign);
@@ -215,7 +277,8 @@ struct KeyLines {
         return filled;
     }
     static float sign(const Key& key, const Metrics& m) {
-        return std::round((std::holds_alternative<Stroke>(key.sign) ? 2.2F : 0.8F) * m.text);
+        const bool is_long = std::holds_alternative<Stroke>(key.sign) || std::holds_alternative<Tube>(key.sign);
+        return std::round((is_long ? 2.2F : 0.8F) * m.text);
     }
     static float sample(const Key& key, const Metrics& m) { return sign(key, m) + std::round(0.4F * m.text); }
     static float between(const Metrics& m) { return std::round(1.4F * m.text); }

@@ -149,7 +149,7 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
     bar(cut_, "cut here", theme.surface);
     if (interval_) {
         Color color = event_markers(theme, Event::Kind::zeno).fill;
-        bar(*interval_, "τ_{∞} is proved to lie to the right", color);
+        bar(*interval_, "τ_{∞} is certified to lie to the right", color);
         color.a = 36;
         panel.bands.push_back({"certified", color, *interval_, std::numeric_limits<double>::max()});
     }

@@ -42,6 +42,7 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
     const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
     const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
     Quantity result{typeset(text), unit, 1.0, text == "t"};
+    result.text = text;
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const CoordinateDescription& c = description.coordinates[i];
         if (text == c.name) result.coordinate = i;

@@ -171,16 +171,22 @@ void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, co
     }
 }
 
-Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views,
-                   const PublicationStyle& style) {
+Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style,
+                   const Proof* proof) {
     const Theme theme = style.dark ? dark_theme() : light_theme();
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
     framing.for_print = true;
     std::vector<Panel> panels;
-    for (const ViewDescription& view : views)
-        panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme, framing));
-    return publication(trajectory, std::move(panels), style);
+    for (const ViewDescription& view : views) {
+        const PreparedView prepared(*trajectory.model, view);
+        panels.push_back(compose(trajectory, samples, prepared, theme, framing));
+        if (proof != nullptr)
+            panels.back() = with_proof(std::move(panels.back()), trajectory, *proof, prepared, framing, theme);
+    }
+    Figure figure = publication(trajectory, std::move(panels), style);
+    if (proof != nullptr) name_proof(figure, *proof, theme);
+    return figure;
 }
 
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style) {

@@ -2,7 +2,7 @@
 // once.
 #pragma once
 
-#include "figure/compose.hpp"
+#include "figure/proof.hpp"
 
 namespace achilles {
 
@@ -14,8 +14,9 @@ struct PublicationStyle {
     bool dark = false;         // for a screen in a dark room, not for paper
 };
 
-// Throws InputError for a view that cannot be evaluated.
-Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style);
+// Throws InputError for a view that cannot be evaluated. With a proof of the run where there is one.
+Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style,
+                   const Proof* proof = nullptr);
 
 // The same of panels that are composed already, in the colours of the style.
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);

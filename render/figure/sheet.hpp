@@ -29,6 +29,13 @@ struct Path {
     Rectangle clip;
 };
 
+// What lies between two lines that have as many points, each above its own.
+struct Strip {
+    std::vector<Point> upper, lower;  // pixels
+    Color color;
+    Rectangle clip;
+};
+
 struct Mark {
     Markers::Shape shape = Markers::Shape::square;
     Point at;
@@ -51,6 +58,6 @@ struct TextRun {
     bool upwards = false;  // turned by 90 degrees to the left; x is then the top of the letters
 };
 
-using Sheet = std::vector<std::variant<Fill, Path, Mark, Tiles, TextRun>>;
+using Sheet = std::vector<std::variant<Fill, Path, Strip, Mark, Tiles, TextRun>>;
 
 }  // namespace achilles

@@ -26,6 +26,20 @@ class Brush {
         add_curve(list_, path.points, screen_stroke(path.stroke, 1.0));
         list_->PopClipRect();
     }
+    // Pieces side by side, whose edges are not smoothed: they would be seen where they meet. Lines along it hide the rest.
+    void operator()(const Strip& strip) const {
+        const Rectangle& r = strip.clip;
+        const Color& c = strip.color;
+        list_->PushClipRect({r.x, r.y}, {r.x + r.width, r.y + r.height}, true);
+        const ImDrawListFlags before = list_->Flags;
+        list_->Flags &= ~ImDrawListFlags_AntiAliasedFill;
+        const auto at = [](const Point& p) { return ImVec2(static_cast<float>(p.x), static_cast<float>(p.y)); };
+        for (std::size_t i = 0; i + 1 < strip.upper.size(); ++i)
+            list_->AddQuadFilled(at(strip.upper[i]), at(strip.upper[i + 1]), at(strip.lower[i + 1]), at(strip.lower[i]),
+                                 IM_COL32(c.r, c.g, c.b, c.a));
+        list_->Flags = before;
+        list_->PopClipRect();
+    }
     void operator()(const Tiles& tiles) const {
         const Rectangle& r = tiles.clip;
         list_->PushClipRect({r.x, r.y}, {r.x + r.width, r.y + r.height}, true);

@@ -104,6 +104,12 @@ class Writer {
         body_ += "Z\"/>\n";
     }
 
+    void operator()(const Strip& strip) {
+        std::vector<Point> rim = strip.upper;
+        rim.insert(rim.end(), strip.lower.rbegin(), strip.lower.rend());
+        fill(rim, strip.color, strip.clip);
+    }
+
     void operator()(const Mark& mark) {
         const std::string look =
             color("fill", mark.fill) +

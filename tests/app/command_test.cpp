@@ -39,6 +39,9 @@ const std::vector<Command> one_of_each{
     command::Save{"mine.toml", false},
     command::Save{"a folder/mine\n.toml", true},
     command::Show{"editor", true},
+    command::Prove{},
+    command::Prove{1e-6, {"e=0.4..0.6", "x'=1.4..1.6"}},
+    command::StopProof{},
     command::Find{"grid 3"},
     command::Enlarge{1.25},
     command::Present{true},
@@ -195,7 +198,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 59u) << list;
+    EXPECT_EQ(all.size(), 60u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.

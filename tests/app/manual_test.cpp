@@ -227,12 +227,12 @@ void find_faults(const json& value, const json& schema, const std::string& at, s
             find_faults(value[i], schema["items"], at + "/" + std::to_string(i), faults);
 }
 
-std::vector<std::string> faults_of(const json& run) {
-    static const json schema = json::parse(page_text("trajectory.schema.json"));
+std::vector<std::string> faults_of(const json& value, const std::string& schema) {
     std::vector<std::string> faults;
-    find_faults(run, schema, "", faults);
+    find_faults(value, json::parse(page_text(schema)), "", faults);
     return faults;
 }
+std::vector<std::string> faults_of(const json& run) { return faults_of(run, "trajectory.schema.json"); }
 
 TEST(Schema, HoldsForEverySystemOfTheGallery) {
     const Folder folder;
@@ -283,6 +283,24 @@ TEST(Schema, HoldsForARunThatWasMadeAgain) {
     ASSERT_EQ(run["warnings"].size(), 1U);
     EXPECT_TRUE(run["warnings"][0].get<std::string>().starts_with(what)) << run["warnings"];
     EXPECT_EQ(summary.err, "") << "once";
+}
+
+// Proved, undecided, and with states at fixed times.
+TEST(Schema, HoldsForProofs) {
+    const Folder folder;
+    for (const auto& [arguments, status] :
+         std::vector<std::pair<std::string, int>>{{"ball_on_sine --end 3", 0},
+                                                  {"double_pendulum --end 3 --samples 4 --width 1e-7", 0},
+                                                  {"ball_on_floor --set e=0.4..0.5 --end 0.6 --split 2", 0},
+                                                  {"ball_on_sine --width 1e-3 --samples 5", 3}}) {
+        const Answer answer = folder.run("prove " + arguments + " --json -");
+        EXPECT_EQ(answer.status, status) << arguments << "\n" << answer.err;
+        EXPECT_EQ(faults_of(json::parse(answer.out), "proof.schema.json"), std::vector<std::string>()) << arguments;
+    }
+    json proof = json::parse(folder.run("prove ball_on_sine --end 3 --json -").out);
+    proof["events"][0]["t"] = 1.7;
+    proof["end"].erase("v");
+    EXPECT_EQ(faults_of(proof, "proof.schema.json").size(), 3u);
 }
 
 TEST(Schema, NoticesWhatIsOtherwise) {

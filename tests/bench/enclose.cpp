@@ -1,5 +1,5 @@
 // What proofs give and cost: every system of the gallery, its own run and boxes around it, with random members.
-// usage: bench_enclose [MEMBERS]    default 1000
+// usage: bench_enclose [MEMBERS]    default 1000; 0: the table of own runs alone
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,10 +27,17 @@ double widest_zeno(const Enclosure& proof) {
     return result;
 }
 
+// A line of README's table; what is not there is a dash.
 void tell(const std::string& name, const Enclosure& proof) {
-    fmt::print("{:<24} {:>7.4g} s {:>8.1e} {:>8.1e} {:>5} impacts {:>6} steps {:>6.3f} s  {}\n", name,
-               proof.proved_until, widest_zeno(proof), proof.end ? widest(proof) : 0.0, proof.statistics.impacts,
-               proof.statistics.steps, proof.statistics.seconds, proof.end ? "proved" : proof.outcome.message);
+    const auto size = [](double x) { return x > 0.0 ? fmt::format("{:.1e}", x) : "-"; };
+    const auto count = [&](Event::Kind kind) {
+        return std::count_if(proof.events.begin(), proof.events.end(),
+                             [&](const EnclosedEvent& event) { return event.kind == kind; });
+    };
+    fmt::print("| {:<25} | {:>8.4g} | {:>7} | {:>4} | {:>9} | {:>9} | {:>5} | {:>6.3f} | {}\n", "`" + name + "`",
+               proof.proved_until, proof.statistics.impacts, count(Event::Kind::zeno), size(widest_zeno(proof)),
+               size(proof.end ? widest(proof) : 0.0), proof.statistics.steps, proof.statistics.seconds,
+               proof.end ? "" : "undecided: " + proof.outcome.message);
 }
 
 }  // namespace
@@ -38,15 +45,21 @@ void tell(const std::string& name, const Enclosure& proof) {
 int main(int argc, char** argv) {
     const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
     long outside = 0;
-    fmt::print("own runs: proved until, widest Zeno time, widest end\n");
+    fmt::print(
+        "| {:<25} | until, s | impacts | Zeno | Zeno time | state     | steps | CPU, s |\n"
+        "|---------------------------|---------:|--------:|-----:|----------:|----------:|------:|-------:|\n",
+        "own run");
+    std::string refused;
     for (const std::string& name : all_systems()) {
         const auto model = load(name);
         try {
             tell(name, prove(model, claim_as_written(model->default_run())));
         } catch (const InputError& refusal) {
-            fmt::print("{:<24} refused: {}\n", name, refusal.message);
+            refused += fmt::format("{}: {}\n", name, refusal.message);
         }
     }
+    fmt::print("\nrefused\n{}", refused);
+    if (count == 0) return EXIT_SUCCESS;
     fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
     for (const std::string& name : all_systems()) {
         const auto model = load(name);

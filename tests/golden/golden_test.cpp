@@ -50,7 +50,7 @@ TEST(Goldens, every_system_and_journal_has_a_picture) {
     for (const auto& [folder, kind] :
          {std::pair{"assets/systems", "figure"}, std::pair{"assets/journals", "tour"},
           std::pair{"tests/golden/explorer", "explorer"}, std::pair{"tests/golden/frame", "frame"},
-          std::pair{"tests/golden/sweep", "sweep"}}) {
+          std::pair{"tests/golden/sweep", "sweep"}, std::pair{"tests/golden/proof", "proof"}}) {
         const std::filesystem::path where = std::filesystem::path(ACHILLES_SOURCE_DIR) / folder;
         if (!std::filesystem::exists(where)) continue;
         for (const auto& entry : std::filesystem::directory_iterator(where)) {

@@ -3,18 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 
 #include "app/program.hpp"
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/overrides.hpp"
 #include "figure/animation.hpp"
 #include "figure/compose.hpp"
+#include "figure/proof.hpp"
 #include "figure/sweep_figure.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
 #include "pictures/paper.hpp"
+#include "pictures/views.hpp"
 #include "session/session.hpp"
 #include "simulate/simulate.hpp"
 
@@ -99,6 +103,8 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
     const std::string trajectory = to_text(session.trajectory()), state = anywhere(to_text(session));
     Figure plots;
     plots.panels = session.plots();
+    for (std::size_t i = 0; i < plots.panels.size() && session.proof() != nullptr; ++i)
+        plots.panels[i] = session.drawn(i);
     return {{"trajectory.txt", trajectory},
             {"figure.txt", state.substr(0, state.size() - trajectory.size()) + to_text(plots)},
             {image_name, image_of(explorer_command(journal))}};
@@ -129,6 +135,34 @@ std::vector<Layer> sweep_layers(const fs::path& file) {
     return {{"figure.txt", to_text(compose_sweep(data))}, {image_name, made.image(image_name)}};
 }
 
+// The file's line is a system and what `achilles figure --proof` is asked of it, an option and its value each.
+std::vector<Layer> proof_layers(const fs::path& file) {
+    const std::string line = test::content(file).substr(0, test::content(file).find('\n'));
+    std::istringstream words(line);
+    std::string system, option, value;
+    words >> system;
+    const SystemDescription description = read_system(find_system(system));
+    std::vector<std::string> settings, views, points;
+    double width = 0.0, end = default_run(description).options.end_time;
+    while (words >> option >> value) {
+        if (option == "--set") settings.push_back(value);
+        if (option == "--view") views.push_back(value);
+        if (option == "--width") width = std::stod(value);
+        if (option == "--end") end = std::stod(value);
+    }
+    const Spread spread = take_spread(settings, width, description, points);
+    Run run = asked_run(description, points, {});
+    run.options.end_time = end;
+    const Trajectory trajectory = simulate(std::make_shared<const Model>(description), run);
+    const Proof proof = proof_of(trajectory, spread);
+    PublicationStyle style;
+    style.ordered = !views.empty();
+    style.shape = double{figure_width} / figure_height;
+    return {{"figure.txt", to_text(publication(trajectory, views_of(description, views), style, &proof))},
+            {image_name, image_of(fmt::format("figure {} --proof --size {}x{} --scale {}", line, figure_width,
+                                              figure_height, figure_size))}};
+}
+
 template <class Make>
 void add_files(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder, const char* extension,
                Make make) {
@@ -147,6 +181,7 @@ std::vector<Picture> pictures() {
     all.push_back({"paper", paper_layers});
     add_files(all, "frame", place().goldens / "frame", ".toml", frame_layers);
     add_files(all, "sweep", place().goldens / "sweep", ".sweep", sweep_layers);
+    add_files(all, "proof", place().goldens / "proof", ".proof", proof_layers);
     add_files(all, "explorer", place().goldens / "explorer", ".journal", explorer_layers);
     add_files(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals", ".journal", explorer_layers);
     std::sort(all.begin(), all.end(), [](const Picture& a, const Picture& b) { return a.name < b.name; });

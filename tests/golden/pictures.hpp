@@ -9,8 +9,8 @@
 namespace achilles::golden {
 
 // A figure of every system in assets/systems, the paper's pictures, a frame of every system in tests/golden/frame, the
-// sweeps in tests/golden/sweep, and the
-// explorer after every journal in tests/golden/explorer and assets/journals. What a new file shows has no golden files yet: that is a failure.
+// sweeps in tests/golden/sweep, the proofs in tests/golden/proof, and the explorer after every journal in
+// tests/golden/explorer and assets/journals. What a new file shows has no golden files yet: that is a failure.
 std::vector<Picture> pictures();
 
 constexpr int frame_width = 1000, frame_height = 625;  // pixels

@@ -9,6 +9,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
+#include "enclose/enclosure.hpp"
 #include "output/output.hpp"
 #include "system/input_error.hpp"
 
@@ -43,6 +44,12 @@ int told_of(const Trajectory& trajectory, bool with_remarks) {
             print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    return stopped_early;
+}
+
+int told_of(const Enclosure& proof) {
+    if (proof.end) return reached_end;
+    print_clean(stderr, "achilles: undecided at t = {}: {}\n", proof.proved_until, proof.outcome.message);
     return stopped_early;
 }
 
@@ -83,6 +90,18 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
         add_option(command, *option, flag, std::string(option->about) + unit, overrides);
     }
+}
+
+void add_width_option(CLI::App& command, double& width, const std::string& about) {
+    command
+        .add_option_function<std::string>(
+            "--width",
+            [&width](const std::string& text) {
+                width = number_from("--width", text);
+                if (!(width >= 0.0)) throw InputError("--width " + text, {}, "a half width is not negative");
+            },
+            about + "a half width for all coordinates and rates of the start (default 0)")
+        ->type_name("W");
 }
 
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files) {

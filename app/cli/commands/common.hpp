@@ -14,6 +14,7 @@ class App;
 
 namespace achilles {
 
+struct Enclosure;
 struct Trajectory;
 
 // SYSTEM, which must be given.
@@ -27,6 +28,9 @@ void add_view_option(CLI::App& command, std::vector<std::string>& views, const s
 
 // --set and everything that goes over a system's options.
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides);
+
+// --width W of a proof; what is said of it besides.
+void add_width_option(CLI::App& command, double& width, const std::string& about);
 
 // --do COMMAND, a line of a journal; may be given again. --allow-files.
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files);
@@ -42,5 +46,7 @@ void add_page_options(CLI::App& command, PaperSize& page);
 // Tells on standard error what a person may not expect of a finished run: its remarks, unless they stand elsewhere, and why it
 // stopped early. The exit status.
 int told_of(const Trajectory& trajectory, bool with_remarks = true);
+// The same of a proof: why it goes no further.
+int told_of(const Enclosure& proof);
 
 }  // namespace achilles

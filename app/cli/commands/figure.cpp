@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
+#include <optional>
 
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
+#include "figure/proof.hpp"
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
@@ -32,6 +35,8 @@ struct FigureArguments {
     PaperSize page;
     bool mechanism = false;
     std::string at;  // "": the start
+    bool proof = false;
+    double width = 0.0;  // of its start
 };
 
 // Puts what is drawn of a finished run where it belongs.
@@ -43,13 +48,14 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const st
     return told_of(trajectory);
 }
 
-int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const std::string& format,
-        PictureJob& job) {
-    return put(arguments, trajectory, format, job, [&](const PaperSize& page, const Notes& notes) {
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const Proof* proof,
+        const std::string& format, PictureJob& job) {
+    const int status = put(arguments, trajectory, format, job, [&](const PaperSize& page, const Notes& notes) {
         const PictureSize size = size_of(page, arguments.size, figure, format);
         job.check_size(size.width, size.height);
         return picture_of(figure, size, notes, format);
     });
+    return proof == nullptr ? status : std::max(status, told_of(proof->enclosure));
 }
 
 int put_mechanism(const FigureArguments& arguments, const Session& session, const std::string& format,
@@ -65,6 +71,15 @@ int put_mechanism(const FigureArguments& arguments, const Session& session, cons
     });
 }
 
+// What is to be proved, if anything is. `points` becomes the settings, in place of each interval its middle.
+std::optional<Spread> spread_of(const FigureArguments& arguments, const SystemDescription& description,
+                                std::vector<std::string>& points) {
+    points = arguments.settings;
+    if (!arguments.proof) return std::nullopt;
+    points.clear();
+    return take_spread(arguments.settings, arguments.width, description, points);
+}
+
 // The plots of the explorer after a journal and some commands more.
 int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
@@ -77,16 +92,19 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     if (!arguments.journal.empty()) steps = job.inputs().journal(arguments.journal);
     const std::vector<Command> more = job.inputs().steps(arguments.steps);
     steps.insert(steps.end(), more.begin(), more.end());
-    Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
-                                   arguments.overrides, source_of(job), {});
+    const SystemDescription description = job.inputs().system(arguments.system);
+    std::vector<std::string> points;
+    const std::optional<Spread> spread = spread_of(arguments, description, points);
+    Session session = open_session(arguments.system, description, points, arguments.overrides, source_of(job), {});
     job.add(arguments.out);
+    if (spread) steps.emplace_back(prove_command(*spread));
     if (!arguments.at.empty()) steps.insert(steps.begin(), parse_command("seek " + arguments.at, "--at"));
     apply_all(session, steps);
     if (!session.document().problems.empty()) throw InputError(session.document().problems.front());
     if (arguments.mechanism) return put_mechanism(arguments, session, format, job);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
-    return put(arguments, session.trajectory(), figure_of(session, style), format, job);
+    return put(arguments, session.trajectory(), figure_of(session, style), session.proof(), format, job);
 }
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
@@ -95,14 +113,22 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     check(arguments.page, "--width-mm");
     if (!arguments.at.empty() && !arguments.mechanism)
         throw InputError("--at " + arguments.at, {}, "only a mechanism has an instant", "add --mechanism");
+    if (arguments.width > 0.0 && !arguments.proof)
+        throw InputError(fmt::format("--width {}", arguments.width), {}, "only a proof is about starts around this one",
+                         "add --proof; --width-mm is the width of the picture");
+    if (arguments.proof && arguments.mechanism)
+        throw InputError("--proof", {}, "a proof is drawn in plots over time, and the mechanism is none",
+                         "leave --mechanism out");
     if (format == "png") job.check_size(arguments.size.width, arguments.size.height);
     if (!arguments.steps.empty() || !arguments.journal.empty() || arguments.mechanism)
         return draw_session(arguments, format, job);
     const SystemDescription description = job.inputs().system(arguments.system);
-    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    std::vector<std::string> points;
+    const std::optional<Spread> spread = spread_of(arguments, description, points);
+    const Run run = asked_run(description, points, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
-    check_asked(*model, run, arguments.settings);
+    check_asked(*model, run, points);
     warn(description, run);
     job.add(arguments.out);
 
@@ -110,7 +136,10 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     PublicationStyle style = arguments.style;
     style.ordered = !arguments.views.empty();
     style.shape = double{1} * arguments.size.width / arguments.size.height;
-    return put(arguments, trajectory, publication(trajectory, views, style), format, job);
+    std::optional<Proof> proof;
+    if (spread) proof = proof_of(trajectory, *spread);
+    const Proof* const drawn = proof ? &*proof : nullptr;
+    return put(arguments, trajectory, publication(trajectory, views, style, drawn), drawn, format, job);
 }
 
 void take_columns(const std::string& text, int& columns) {
@@ -144,6 +173,11 @@ void add_figure(CLI::App& program, int& status, PictureJob& job) {
     command->add_flag("--transparent", arguments->style.transparent, "no background");
     command->add_flag("--dark", arguments->style.dark, "light on dark, for a screen");
     command->add_flag("--mechanism", arguments->mechanism, "the mechanism in place of plots");
+    command->add_flag(
+        "--proof", arguments->proof,
+        "prove the run as `achilles prove` does, and draw in plots over time where it is proved to be; --set "
+        "NAME=LOW..HIGH for an interval");
+    add_width_option(*command, arguments->width, "with --proof: ");
     command->add_option("--at", arguments->at, "of the mechanism: the instant, s (default: the start)")->type_name("T");
     add_page_options(*command, arguments->page);
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -11,6 +9,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
+#include "enclose/spread.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/proof.hpp"
@@ -32,55 +31,11 @@ struct ProveArguments {
     bool verbose = false;
 };
 
-// NAME=LOW..HIGH as the two settings that it consists of; nothing where it is one number.
-std::optional<std::array<std::string, 2>> ends_of(const std::string& setting) {
-    const std::size_t dots = setting.find(".."), equals = setting.find('=');
-    if (dots == setting.npos || equals == setting.npos || dots < equals) return std::nullopt;
-    return std::array{setting.substr(0, dots), setting.substr(0, equals + 1) + setting.substr(dots + 2)};
-}
-
-// Where a claim keeps the interval of a name that a run has a value of.
-Interval& place_of(Claim& claim, const SystemDescription& description, const std::string& name) {
-    Run marked = claim.run;
-    for (auto* values : {&marked.q, &marked.v}) values->setZero();
-    for (double& value : marked.parameters) value = 0.0;
-    *find_value(description, marked, name) = 1.0;
-    for (std::size_t i = 0; i < claim.q.size(); ++i) {
-        if (marked.q[static_cast<Eigen::Index>(i)] != 0.0) return claim.q[i];
-        if (marked.v[static_cast<Eigen::Index>(i)] != 0.0) return claim.v[i];
-    }
-    std::size_t at = 0;
-    while (marked.parameters[at] == 0.0) ++at;
-    return claim.parameters[at];
-}
-
 // The start and the parameters as boxes. `points` becomes the settings with the middle of each interval.
 Claim claim_of(const ProveArguments& arguments, const SystemDescription& description,
                std::vector<std::string>& points) {
-    std::vector<std::pair<std::string, Interval>> intervals;
-    for (const std::string& setting : arguments.settings) {
-        const auto ends = ends_of(setting);
-        if (!ends) {
-            points.push_back(setting);
-            continue;
-        }
-        std::string name = setting.substr(0, setting.find('='));
-        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
-        std::array<double, 2> values{};
-        for (std::size_t i = 0; i < 2; ++i) {
-            Run run = default_run(description);
-            assign(run, description, (*ends)[i]);
-            values[i] = *find_value(description, run, name);
-        }
-        if (!(values[0] <= values[1]))
-            throw InputError("--set " + shown(setting), {}, "the interval ends before it begins",
-                             fmt::format("write --set {}={}..{}", name, values[1], values[0]));
-        intervals.emplace_back(name, hull(as_written(values[0]), as_written(values[1])));
-        points.push_back(fmt::format("{}={}", name, 0.5 * values[0] + 0.5 * values[1]));
-    }
-    Claim claim = claim_as_written(asked_run(description, points, arguments.overrides));
-    for (const auto& [name, interval] : intervals) place_of(claim, description, name) = interval;
-    widen(claim, arguments.width);
+    const Spread spread = take_spread(arguments.settings, arguments.width, description, points);
+    Claim claim = claim_of(description, asked_run(description, points, arguments.overrides), spread);
     if (const auto* given = arguments.overrides.given(option("eps_t"))) claim.eps_t = std::get<double>(given->second);
     return claim;
 }
@@ -114,9 +69,7 @@ int run(const ProveArguments& arguments) {
               arguments.json.empty() ? printable(proof_text(*model, claim, proof)) : to_json(*model, claim, proof));
     files.commit();
     if (arguments.verbose) print_clean(stderr, "achilles: {:.3g} s\n", proof.statistics.seconds);
-    if (proof.end) return reached_end;
-    print_clean(stderr, "achilles: undecided at t = {}: {}\n", proof.proved_until, proof.outcome.message);
-    return stopped_early;
+    return told_of(proof);
 }
 
 }  // namespace
@@ -126,15 +79,7 @@ void add_prove(CLI::App& program, int& status) {
     CLI::App* command =
         program.add_subcommand("prove", "A whole run as a theorem: boxes around every member of a set of runs");
     add_system_argument(*command, arguments->system);
-    command
-        ->add_option_function<std::string>(
-            "--width",
-            [arguments](const std::string& text) {
-                arguments->width = number_from("--width", text);
-                if (!(arguments->width >= 0.0)) throw InputError("--width " + text, {}, "a half width is not negative");
-            },
-            "a half width for all coordinates and rates of the start (default 0)")
-        ->type_name("W");
+    add_width_option(*command, arguments->width, "");
     command
         ->add_option_function<std::string>(
             "--split",

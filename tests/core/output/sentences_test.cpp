@@ -32,7 +32,7 @@ TEST_P(SentencesOf, ProveNoMoreThanTheCertificate) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
         const std::string text = sentences.of(i);
-        const std::string proved = "proved to ";
+        const std::string proved = "certified to ";
         const std::size_t at = text.find(proved);
         const bool may = event.kind == Event::Kind::zeno && !is_plastic_landing(event) && event.certificate->certified;
         ASSERT_EQ(at != std::string::npos, may) << text;
@@ -101,7 +101,7 @@ TEST(Sentences, SayWhatAPersonWould) {
     while (trajectory.events[zeno].kind != Event::Kind::zeno) ++zeno;
     const std::string text = sentences.of(zeno);
     EXPECT_EQ(text.find("contact begins: 9 impacts since "), 0U) << text;
-    EXPECT_TRUE(holds(text, " J lost, proved to ")) << text;
+    EXPECT_TRUE(holds(text, " J lost, certified to ")) << text;
     EXPECT_EQ(sentences.of(zeno + 1), "contact ends: the contact force falls to zero");
     EXPECT_TRUE(holds(sentences.of(0), "impact at gap speed ")) << sentences.of(0);
     EXPECT_TRUE(holds(sentences.of(0), " m/s, ")) << sentences.of(0);
@@ -111,14 +111,14 @@ TEST(Sentences, SayWhatAPersonWould) {
     EXPECT_TRUE(holds(summary(trajectory), text)) << "the command line says the same";
 }
 
-// What is not certified is not said to be proved; what stands on a convention says so.
+// What is not certified is not said to be; what stands on a convention says so.
 TEST(Sentences, SayWhatIsNotProved) {
     Trajectory trajectory = run_of("ball_on_sine");
     std::size_t zeno = 0;
     while (trajectory.events[zeno].kind != Event::Kind::zeno) ++zeno;
     trajectory.events[zeno].certificate->certified = false;
-    EXPECT_TRUE(holds(Sentences(trajectory).of(zeno), "not proved"));
-    EXPECT_FALSE(holds(Sentences(trajectory).of(zeno), "proved to"));
+    EXPECT_TRUE(holds(Sentences(trajectory).of(zeno), "not certified"));
+    EXPECT_FALSE(holds(Sentences(trajectory).of(zeno), "certified to"));
     trajectory.events[zeno].certificate->certified = true;
     auto joint = std::make_shared<Joint>();
     joint->order_matters = true;

@@ -1,0 +1,295 @@
+#include "figure/proof.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "figure/ticks.hpp"
+#include "figure/values.hpp"
+#include "number/ground.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double least_seen = 1.0 / 150.0;  // of the panel's height, across: a narrower tube is behind its curve
+
+// Whether the members are in contact at a time.
+enum class Contact { no, yes, either };
+
+// A view's quantities over the boxes of a proof, x first, in the units that are shown.
+class EnclosedValues {
+ public:
+    EnclosedValues(const Trajectory& run, const Proof& proof, const PreparedView& view)
+        : layout_(run.model->layout()), events_(proof.enclosure.events), view_(view), evaluator_(view.program()) {
+        for (std::size_t i = 0; i < proof.claim.parameters.size(); ++i)
+            evaluator_.input(layout_.parameter(i)) = proof.claim.parameters[i];
+        evaluator_.fix();
+        starts_in_contact_ = !run.phases.empty() && run.phases.front().kind == Phase::Kind::constrained;
+        gap_ = output_names(run.model->description(), "gap")[0];
+        force_ = output_names(run.model->description(), "lambda")[0];
+    }
+
+    std::vector<Interval> at(const EnclosedState& state) {
+        const Contact contact = contact_at(state.t);
+        std::vector<Interval> values;
+        if (contact != Contact::yes) values = at(state, false);
+        if (contact == Contact::no) return values;
+        const std::vector<Interval> held = at(state, true);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = hull(values[i], held[i]);
+        return values.empty() ? held : values;
+    }
+
+ private:
+    Contact contact_at(double t) const {
+        Contact contact = starts_in_contact_ ? Contact::yes : Contact::no;
+        for (const EnclosedEvent& event : events_) {
+            if (event.kind == Event::Kind::impact) continue;
+            if (event.t.contains(t)) return Contact::either;
+            if (event.t.lo() > t) break;
+            contact = event.kind == Event::Kind::zeno ? Contact::yes : Contact::no;
+        }
+        return contact;
+    }
+
+    std::vector<Interval> at(const EnclosedState& state, bool in_contact) {
+        for (std::size_t i = 0; i < state.q.size(); ++i) {
+            evaluator_.input(layout_.q(i)) = state.q[i];
+            evaluator_.input(layout_.v(i)) = state.v[i];
+        }
+        evaluator_.clock() = Interval(state.t);
+        evaluator_.input(layout_.contact()) = Interval(in_contact ? 1.0 : 0.0);
+        // A proof says nothing of these.
+        evaluator_.input(layout_.work()) = evaluator_.input(layout_.loss()) = Interval::everything();
+        evaluator_.run();
+        std::vector<Interval> values;
+        for (std::size_t i = 0; i < view_.quantities().size(); ++i) {
+            Interval value = evaluator_.output(i);
+            // No member goes through the surface; in contact its gap is 0 and the force presses.
+            const std::string& text = view_.quantities()[i].text;
+            if (in_contact && (text == gap_ || text == gap_ + "'")) value = Interval(0.0);
+            if (in_contact && text == force_) value = Interval(std::max(value.lo(), 0.0), std::max(value.hi(), 0.0));
+            if (!in_contact && text == gap_ && value.hi() >= 0.0)
+                value = Interval(std::max(value.lo(), 0.0), value.hi());
+            values.push_back(value * Interval(view_.quantities()[i].factor));
+        }
+        return values;
+    }
+
+    const Layout& layout_;
+    const std::vector<EnclosedEvent>& events_;
+    const PreparedView& view_;
+    Evaluator<Interval> evaluator_;
+    bool starts_in_contact_ = false;
+    std::string gap_, force_;
+};
+
+bool is_within(const Axis& axis, double x) { return x >= axis.low && x <= axis.high; }
+
+// What is proved of the quantities at an instant, and what the run has just before and just after it, which differ at an event.
+struct Known {
+    double t = 0.0;
+    std::vector<Interval> proved;
+    std::vector<double> before, after;
+    bool is_event = false;  // some members have had it by then, and others not yet
+};
+
+std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const PreparedView& view) {
+    EnclosedValues enclosed(run, proof, view);
+    Values values(view, run);
+    Sampler sampler(run);
+    const auto at = [&](double t) {
+        values.set(sampler.at(t));
+        std::vector<double> all;
+        for (std::size_t i = 0; i < view.quantities().size(); ++i) all.push_back(values[i]);
+        return all;
+    };
+    std::vector<Known> known;
+    auto event = proof.enclosure.events.begin();
+    const auto add = [&](const EnclosedState& state) {
+        while (event != proof.enclosure.events.end() && event->t.hi() < state.t) ++event;
+        const bool is_event = event != proof.enclosure.events.end() && event->t.contains(state.t);
+        known.push_back({state.t, enclosed.at(state), at(std::nextafter(state.t, -HUGE_VAL)), at(state.t), is_event});
+    };
+    for (const EnclosedState& state : proof.enclosure.samples) add(state);
+    // A run that stopped early has no curve from there to the end.
+    const auto& end = proof.enclosure.end;
+    if (end && run.end_time >= end->t) add(*end);
+    return known;
+}
+
+// The points of one quantity in a panel over time, both kinds of phases.
+std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
+    std::vector<Point> course;
+    for (const std::size_t curve : {2 * quantity, 2 * quantity + 1})
+        for (const Point& point : panel.curves[curve].points)
+            if (std::isfinite(point.x + point.y) && is_within(panel.x, point.x)) course.push_back(point);
+    std::stable_sort(course.begin(), course.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
+    return course;
+}
+
+// At the instants what is proved there; between them, where a panel shows more of the curve, as far from it as it is at both, or
+// beside an event at the other one; never below the least that it can be.
+std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t quantity,
+                                   const std::vector<Point>& course, double least) {
+    const std::size_t y = quantity + 1;
+    std::vector<Tube::Slice> slices;
+    auto point = course.begin();
+    for (std::size_t k = 0; k < known.size(); ++k) {
+        const Known& here = known[k];
+        const Interval& proved = here.proved[y];
+        const bool is_there = proved.is_defined() && std::isfinite(proved.lo()) && std::isfinite(proved.hi());
+        slices.push_back({here.t, is_there ? proved.lo() : nothing, is_there ? proved.hi() : nothing});
+        if (k + 1 == known.size()) break;
+        const Known& next = known[k + 1];
+        while (point != course.end() && point->x <= here.t) ++point;
+        for (; is_there && point != course.end() && point->x < next.t; ++point) {
+            if (here.is_event && next.is_event) continue;
+            const double between = (point->x - here.t) / (next.t - here.t);
+            const double share = here.is_event ? 1.0 : next.is_event ? 0.0 : between;
+            const auto off = [&](double from, double to) {
+                return point->y + (1.0 - share) * (from - here.after[y]) + share * (to - next.before[y]);
+            };
+            slices.push_back({point->x, std::max(off(proved.lo(), next.proved[y].lo()), least),
+                              std::max(off(proved.hi(), next.proved[y].hi()), least)});
+        }
+    }
+    return slices;
+}
+
+// Gaps and forces of contact are not negative.
+double least_of(const PreparedView& view, const Trajectory& run, std::size_t quantity) {
+    const std::string& text = view.quantities()[quantity].text;
+    const SystemDescription& description = run.model->description();
+    const bool is_positive =
+        text == output_names(description, "gap")[0] || text == output_names(description, "lambda")[0];
+    return is_positive ? 0.0 : -HUGE_VAL;
+}
+
+// Where along an axis a value is, 0 to 1.
+double share_of(const Axis& axis, double value) {
+    if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
+    return std::log(std::max(value, axis.low) / axis.low) / std::log(axis.high / axis.low);
+}
+
+// How thick it is across its way, as a share of the panel's height, where that is about half its width: a jump is as thick as
+// it lasts.
+bool is_seen(const Tube& tube, const Panel& panel) {
+    constexpr double wide = 2.0;
+    const auto middle = [&](const Tube::Slice& at) {
+        return 0.5 * (share_of(panel.y, at.low) + share_of(panel.y, at.high));
+    };
+    for (std::size_t i = 0; i + 1 < tube.slices.size(); ++i) {
+        const Tube::Slice &at = tube.slices[i], &next = tube.slices[i + 1];
+        if (!is_within(panel.x, at.x)) continue;
+        const double along = wide * (share_of(panel.x, next.x) - share_of(panel.x, at.x)),
+                     up = middle(next) - middle(at), high = share_of(panel.y, at.high) - share_of(panel.y, at.low);
+        if (along > 0.0 && high * along / std::hypot(along, up) > least_seen) return true;
+    }
+    return false;
+}
+
+// Room for tubes beyond the limits. At an event the whole jump is enclosed, which is no reason.
+void give_room(Panel& panel, const std::vector<Known>& known) {
+    constexpr double most = 0.5, margin = 0.02;
+    const auto is_event = [&](double t) {
+        const auto at =
+            std::lower_bound(known.begin(), known.end(), t, [](const Known& a, double b) { return a.t < b; });
+        return at != known.end() && at->t == t && at->is_event;
+    };
+    const double span = panel.y.high - panel.y.low;
+    double low = panel.y.low, high = panel.y.high;
+    for (const Tube& tube : panel.tubes)
+        for (const Tube::Slice& at : tube.slices)
+            if (is_within(panel.x, at.x) && std::isfinite(at.low + at.high) && !is_event(at.x))
+                low = std::min(low, at.low), high = std::max(high, at.high);
+    if (low < panel.y.low) low -= margin * span;
+    if (high > panel.y.high) high += margin * span;
+    low = std::max(low, panel.y.low - most * span), high = std::min(high, panel.y.high + most * span);
+    if (low < panel.y.low || high > panel.y.high) set_ticks(panel.y, low, high, 0.0);
+}
+
+Markers undecided_mark(const Theme& theme, const Enclosure& proof) {
+    Markers mark;
+    mark.label = fmt::format("undecided from {:.6g} s on", proof.proved_until);
+    mark.shape = Markers::Shape::bar;
+    mark.fill = mark.edge = theme.error;
+    return mark;
+}
+
+bool is_undecided(const Enclosure& proof) { return proof.outcome.kind == Enclosure::Outcome::Kind::undecided; }
+
+// As those of the curves, the same time once.
+std::vector<double> instants_of(const Trajectory& run) {
+    constexpr std::size_t most = 2000;
+    std::vector<double> times;
+    for (const Sample& sample : plot_samples(run))
+        if (sample.t < run.end_time && (times.empty() || sample.t > times.back())) times.push_back(sample.t);
+    if (times.size() <= most) return times;
+    std::vector<double> some;
+    for (std::size_t i = 0; i < most; ++i) some.push_back(times[i * (times.size() - 1) / (most - 1)]);
+    return some;
+}
+
+}  // namespace
+
+Tube proof_tube(const Theme& theme) {
+    Tube tube;
+    tube.label = "proved";
+    tube.fill = theme.dark ? Color{240, 205, 60, 84} : Color{240, 200, 40, 110};
+    tube.edge = theme.dark ? Color{226, 190, 60, 190} : Color{170, 132, 0, 190};
+    return tube;
+}
+
+Claim claim_to_draw(const Trajectory& run, const Spread& spread) {
+    Claim claim = claim_of(run.model->description(), run.run, spread);
+    check(*run.model, claim);
+    claim.times = instants_of(run);
+    return claim;
+}
+
+Proof proof_of(const Trajectory& run, const Spread& spread) {
+    const Claim claim = claim_to_draw(run, spread);
+    return {spread, claim, prove(run.model, claim)};
+}
+
+Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const PreparedView& view,
+                 const Framing& framing, const Theme& theme) {
+    if (!view.quantities()[0].is_time || framing.difference) return panel;
+    const Ground ground;
+    const std::size_t curves = view.quantities().size() - 1;
+    const Enclosure& enclosure = proof.enclosure;
+    const std::vector<Known> known = known_of(run, proof, view);
+    for (std::size_t i = 0; i < curves; ++i) {
+        if (framing.hidden.contains(i)) continue;
+        Tube tube = proof_tube(theme);
+        tube.slices = slices_of(known, i, course_of(panel, i), least_of(view, run, i + 1));
+        if (is_seen(tube, panel)) panel.tubes.push_back(std::move(tube));
+    }
+    if (!framing.y && !framing.log_y) give_room(panel, known);
+    if (!is_undecided(enclosure)) return panel;
+    Markers mark = undecided_mark(theme, enclosure);
+    mark.points = {{enclosure.proved_until, panel.y.low}};
+    panel.markers.push_back(mark);
+    Color shade = theme.ink;
+    shade.a = 16;
+    panel.bands.push_back({mark.label, shade, enclosure.proved_until, std::numeric_limits<double>::max()});
+    return panel;
+}
+
+void name_proof(Figure& figure, const Proof& proof, const Theme& theme) {
+    const bool is_drawn = std::any_of(figure.panels.begin(), figure.panels.end(),
+                                      [](const Panel& panel) { return !panel.tubes.empty(); });
+    const Tube tube = proof_tube(theme);
+    const std::string about = told(proof.spread), name = about.empty() ? "proved" : "proved: " + about;
+    figure.keys.push_back({is_drawn ? name : name + " (narrower than the curves)", tube});
+    if (!is_undecided(proof.enclosure)) return;
+    const Markers mark = undecided_mark(theme, proof.enclosure);
+    figure.keys.push_back({mark.label, mark});
+}
+
+}  // namespace achilles

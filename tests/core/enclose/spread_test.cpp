@@ -1,0 +1,39 @@
+// What a person writes around a run, and the boxes that it means.
+#include "enclose/spread.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/systems.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles::test {
+
+TEST(Spread, IsReadAndWritten) {
+    const auto model = load("ball_on_sine");
+    const SystemDescription& ball = model->description();
+    EXPECT_FALSE(read_side("e=0.5", ball));
+    const auto e = read_side(" e = 2/5..0.6", ball), rate = read_side("x'=-1e-3..1.5", ball);
+    ASSERT_TRUE(e && rate);
+    EXPECT_EQ(e->name, "e");
+    EXPECT_EQ(to_text(*e), "e=0.4..0.6");
+    EXPECT_EQ(to_text(*rate), "x'=-0.001..1.5");
+    EXPECT_EQ(read_side(to_text(*rate), ball), rate);
+    for (const char* wrong : {"e=0.6..0.5", "z=0..1", "e=0.5..", "e=..1", "e=0..x"})
+        EXPECT_THROW(read_side(wrong, ball), InputError) << wrong;
+    EXPECT_EQ(achilles::told(Spread()), "");
+    EXPECT_EQ(achilles::told(Spread{1e-6, {*e}}), "start \u00b1 1e-06, e in [0.4, 0.6]");
+}
+
+TEST(Spread, MakesBoxes) {
+    const auto model = load("ball_on_sine");
+    const achilles::Run run = model->default_run();
+    const achilles::Claim claim = claim_of(model->description(), run, {1e-6, {{"e", 0.4, 0.6}, {"x'", 1.0, 2.0}}});
+    EXPECT_TRUE(claim.parameters.back().contains(0.4) && claim.parameters.back().contains(0.6));
+    EXPECT_LT(width(claim.parameters.back()), 0.2000001);
+    EXPECT_EQ(claim.parameters.front().lo(), run.parameters.front());
+    EXPECT_LE(claim.v[0].lo(), 1.0 - 1e-6);  // around the interval, too
+    EXPECT_GE(claim.v[0].hi(), 2.0 + 1e-6);
+    EXPECT_NEAR(width(claim.q[1]), 2e-6, 1e-12);
+}
+
+}  // namespace achilles::test

@@ -1,0 +1,72 @@
+// What is told of enclosed events beside those of a run.
+#include "output/proof.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/systems.hpp"
+#include "enclose/spread.hpp"
+
+namespace achilles::test {
+
+// Both ends lie in what the digits and the number behind them say, and the number has two digits.
+TEST(ShortText, HoldsBothEnds) {
+    EXPECT_EQ(short_text(Interval(2.5)), "2.5");
+    EXPECT_EQ(short_text(Interval(2.72514212, 2.72514432)), "2.7251432(12)");
+    EXPECT_EQ(short_text(Interval(-0.352, 0.352)), "0.00(36)");
+    EXPECT_EQ(short_text(Interval(100.25, 300.75)), "200(101)");
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> place(-20.0, 20.0), size(-14.5, 1.0);
+    for (int i = 0; i < 2000; ++i) {
+        const double low = place(random), high = low + std::pow(10.0, size(random));
+        const std::string text = short_text(Interval(low, high));
+        const std::size_t bracket = text.find('('), point = text.find('.');
+        ASSERT_NE(bracket, std::string::npos) << text;
+        const std::size_t decimals = point == std::string::npos ? 0 : bracket - point - 1;
+        const long double shown = std::stold(text),
+                          off = std::stold(text.substr(bracket + 1)) * std::pow(10.0L, -static_cast<int>(decimals));
+        EXPECT_LE(shown - off, low + 1e-18L) << text;
+        EXPECT_GE(shown + off, high - 1e-18L) << text;
+        EXPECT_LE(off, 1.2 * (high - low) + 2e-15) << text << " of " << low << ", " << high;
+    }
+}
+
+// Whatever the run cuts earlier than the proof: the same Zeno points, releases and impacts.
+TEST(EnclosedEvents, AreThoseOfTheRun) {
+    for (const std::string name : {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator"}) {
+        SCOPED_TRACE(name);
+        const auto model = load(name);
+        achilles::Run run = model->default_run();
+        run.options.end_time = std::min(run.options.end_time, 8.0);
+        const Trajectory trajectory = simulate(model, run);
+        const Enclosure proof = prove(model, claim_as_written(run));
+        const auto enclosed = enclosed_events(trajectory, proof);
+        ASSERT_EQ(enclosed.size(), trajectory.events.size());
+        ASSERT_FALSE(enclosed.empty());
+        for (std::size_t i = 0; i < enclosed.size(); ++i) {
+            ASSERT_NE(enclosed[i], nullptr) << i;
+            EXPECT_EQ(enclosed[i]->kind, trajectory.events[i].kind);
+            EXPECT_NEAR(mid(enclosed[i]->t), trajectory.events[i].t, 1e-5) << i;
+        }
+    }
+}
+
+// After an undecided proof there are none.
+TEST(EnclosedEvents, EndWhereTheProofDoes) {
+    const auto model = load("ball_on_sine");
+    achilles::Claim claim = claim_as_written(model->default_run());
+    widen(claim, 1e-3);
+    const Enclosure proof = prove(model, claim);
+    ASSERT_EQ(proof.outcome.kind, Enclosure::Outcome::Kind::undecided);
+    const Trajectory trajectory = simulate(model, model->default_run());
+    const auto enclosed = enclosed_events(trajectory, proof);
+    for (std::size_t i = 0; i < enclosed.size(); ++i)
+        if (enclosed[i] != nullptr) {
+            EXPECT_LE(enclosed[i]->t.lo(), proof.proved_until) << i;
+        }
+    EXPECT_EQ(enclosed.back(), nullptr);
+}
+
+}  // namespace achilles::test
