@@ -67,7 +67,18 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
     for (std::size_t i = 0; i < description.parameters.size(); ++i)
         parameters[description.parameters[i].name] = interval(claim.parameters[i]);
     for (const EnclosedEvent& event : proof.events) {
-        Json entry = {{"kind", to_text(event.kind)}, {"t", interval(event.t)}, {"q", box(event.q)}};
+        const auto names = [&](const ContactSet& set) {
+            Json result = Json::array();
+            for (std::size_t i = 0; i < description.constraints.size(); ++i)
+                if (set.contains(i)) result.push_back(description.constraints[i].name);
+            return result;
+        };
+        Json entry = {{"kind", to_text(event.kind)},
+                      {"t", interval(event.t)},
+                      {"contact", description.constraints[event.contact].name},
+                      {"held", names(event.held)},
+                      {"opened", names(event.opened)},
+                      {"q", box(event.q)}};
         if (event.kind == Event::Kind::impact) {
             entry["v_before"] = box(event.v_before);
             entry["v_after"] = box(event.v_after);
@@ -119,8 +130,10 @@ std::string proof_text(const Model& model, const Claim& claim, const Enclosure& 
     for (const EnclosedEvent& event : proof.events) {
         if (event.kind == Event::Kind::impact && impacts++ > 0) continue;
         if (event.kind != Event::Kind::impact) tell_impacts();
-        text +=
-            fmt::format("  {:<8} t = {}\n           {}\n", to_text(event.kind), about(event.t), list(names, event.q));
+        const bool is_one_of_several = model.contacts() > 1;
+        text += fmt::format("  {:<8} t = {}{}\n           {}\n", to_text(event.kind), about(event.t),
+                            is_one_of_several ? ", " + description.constraints[event.contact].name : "",
+                            list(names, event.q));
     }
     tell_impacts();
     if (proof.events_differ) text += "  (from here on the parts have different events)\n";
@@ -148,15 +161,23 @@ std::string short_text(const Interval& x) {
 
 std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const Enclosure& proof) {
     std::vector<const EnclosedEvent*> result(run.events.size(), nullptr);
-    auto enclosed = proof.events.begin();
-    for (std::size_t i = 0; i < run.events.size() && enclosed != proof.events.end(); ++i) {
-        const bool is_impact = run.events[i].kind == Event::Kind::impact;
-        while (!is_impact && enclosed != proof.events.end() && enclosed->kind == Event::Kind::impact) ++enclosed;
-        if (enclosed == proof.events.end()) break;
-        if (enclosed->kind == run.events[i].kind)
-            result[i] = &*enclosed++;
-        else if (!is_impact)
-            break;
+    for (std::size_t contact = 0; contact < run.model->contacts(); ++contact) {
+        auto enclosed = proof.events.begin();
+        const auto skip = [&](bool impacts) {  // to the next of this contact
+            while (enclosed != proof.events.end() &&
+                   (enclosed->contact != contact || (impacts && enclosed->kind == Event::Kind::impact)))
+                ++enclosed;
+            return enclosed != proof.events.end();
+        };
+        for (std::size_t i = 0; i < run.events.size(); ++i) {
+            if (!run.events[i].contacts.contains(contact)) continue;
+            const bool is_impact = run.events[i].kind == Event::Kind::impact;
+            if (!skip(!is_impact)) break;
+            if (enclosed->kind == run.events[i].kind)
+                result[i] = &*enclosed++;
+            else if (!is_impact)
+                break;
+        }
     }
     return result;
 }

@@ -70,13 +70,6 @@ TEST(SessionProof, IsGoneWithTheRunThatItIsOf) {
 }
 
 TEST(SessionProof, IsRefusedAsOnTheCommandLine) {
-    Session session = test::session("ball_in_v");
-    session.apply(command::Prove{});
-    EXPECT_NE(session.error().find("prove does not cover this system: it has several gaps, and a proof follows one"),
-              std::string::npos)
-        << session.error();
-    EXPECT_EQ(session.proof(), nullptr);
-    EXPECT_EQ(session.proof_under_way(), nullptr);
     Session ball = test::session("ball_on_sine");
     for (const auto& [line, told] : {std::pair{"prove e=0.6..0.7", "e = 0.5 of the present run is not in [0.6, 0.7]"},
                                      {"prove e=0.5..1.5", "the part above 1 is impossible"},
@@ -250,8 +243,7 @@ TEST(ProofFigure, SaysWhereItEndsAndWhatItDoesNotCover) {
     EXPECT_NE(undecided.err.find("achilles: undecided at t = "), std::string::npos) << undecided.err;
     EXPECT_NE(test::content(folder.path() / "undecided.svg").find("undecided from "), std::string::npos);
     for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
-             {"ball_in_v --proof", "prove does not cover this system: it has several gaps, and a proof follows one"},
-             {"ball_in_v --do prove", "prove does not cover this system: it has several gaps, and a proof follows one"},
+             {"ball_on_sine --do \"prove e=0.5..1.1\"", "the part above 1 is impossible"},
              {"ball_on_sine --width 1e-6", "add --proof"},
              {"ball_on_sine --proof --mechanism", "leave --mechanism out"},
              {"ball_on_sine --proof --set e=0.6..0.5", "the interval ends before it begins"},

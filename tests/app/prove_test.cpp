@@ -59,7 +59,6 @@ TEST(Prove, TakesBoxesAndInterval) {
 TEST(Prove, RefusesWhatItDoesNotCoverAndWhatIsImpossible) {
     const Folder folder;
     for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
-             {"ball_in_v", "prove does not cover this system: it has several gaps"},
              {"ball_on_sine --set e=0.6..0.5", "the interval ends before it begins"},
              {"ball_on_sine --set e=0.9..1.1", "the part above 1 is impossible"},
              {"ball_on_sine --set y=-0.1..0.1", "the gap is negative for a part of the starts"},

@@ -35,7 +35,8 @@ TEST(ShortText, HoldsBothEnds) {
 
 // Whatever the run cuts earlier than the proof: the same Zeno points, releases and impacts.
 TEST(EnclosedEvents, AreThoseOfTheRun) {
-    for (const std::string name : {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator"}) {
+    for (const std::string name : {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator", "ball_in_v",
+                                   "double_pendulum_two_stops"}) {
         SCOPED_TRACE(name);
         const auto model = load(name);
         achilles::Run run = model->default_run();
@@ -48,6 +49,8 @@ TEST(EnclosedEvents, AreThoseOfTheRun) {
         for (std::size_t i = 0; i < enclosed.size(); ++i) {
             ASSERT_NE(enclosed[i], nullptr) << i;
             EXPECT_EQ(enclosed[i]->kind, trajectory.events[i].kind);
+            EXPECT_TRUE(trajectory.events[i].contacts.contains(enclosed[i]->contact));
+            EXPECT_EQ(enclosed[i]->opened, trajectory.events[i].opened);
             EXPECT_NEAR(mid(enclosed[i]->t), trajectory.events[i].t, 1e-5) << i;
         }
     }
