@@ -83,6 +83,7 @@ void Session::follow_sweep() {
 void Session::settle() {
     receive_pins({});
     receive({});
+    receive_estimate({});
     sweep_job_->update({});
 }
 
