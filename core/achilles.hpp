@@ -5,6 +5,7 @@
 //     NamedRun(description).set("e", 0.3)     parameters, start and options     Run
 //     simulate(model, run)                    the completed execution           Trajectory: phases, events, certificates
 //     trajectory(t)                           q and v at a time                 Sample
+//     estimate_error(trajectory)              how wrong it has become, roughly  ErrorEstimate
 //     make_sweep({.over = ..., .prints = ...}, run, description)                Sweep
 //     sweep_columns(model, sweep)             many runs, on all cores           SweepColumns
 //     simulate_many(), simulate_ends()        many runs, each reduced to what is wanted of it
@@ -14,6 +15,7 @@
 // Numbers are in the file's units, angles in rad.
 #pragma once
 
+#include "depend/error_estimate.hpp"
 #include "model/read_system.hpp"
 #include "output/sweep_columns.hpp"
 #include "simulate/many.hpp"

@@ -123,6 +123,19 @@ void show_proof(const Session& session) {
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
+// What is estimated of the run's error, once that is known; nothing where there is none, and why is in the summary.
+void show_estimate(const Session& session) {
+    const ErrorEstimate* estimate = session.error_estimate();
+    if (estimate == nullptr || !estimate->end) return;
+    ImGui::SameLine(0.0F, 0.0F);
+    ImGui::TextUnformatted(
+        fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}")).c_str());
+    tooltip(
+        "Of the state at the end, position and rates together: what steps,\n"
+        "roots and cuts leave out, carried on to first order, and rounding.\n"
+        "An estimate, not a proof.");
+}
+
 }  // namespace
 
 std::string time_left(double seconds, double share) {
@@ -181,6 +194,7 @@ void show_status(const Session& session, const PanelState& state) {
         to_text(trajectory.run.options.method));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
+    show_estimate(session);
     ImGui::PopStyleColor();
     show_legend(session);
 }

@@ -212,6 +212,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     keep_plane();
     keep_sweep();
     simulated_.reset();
+    estimate_.reset();
     rerun(run);
     if (simulated_ != nullptr) return;
     std::stop_source at_once;
@@ -306,6 +307,24 @@ double Session::seconds_under_way() const {
     return watch_ == nullptr ? 0.0 : std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
 }
 
+// Of the run that has just come, on a thread beside that of runs: the next of these waits for nothing. While a hand drags each
+// run puts an end to the estimate of the one before it; at rest there always is one, so that no picture depends on the clock.
+void Session::estimate() {
+    estimate_.reset();
+    estimator_->start(
+        [run = simulated_](const std::stop_token& stop) { return estimate_error(run->trajectory, stop); });
+    receive_estimate(patience_);
+}
+
+void Session::receive_estimate(Patience patience) {
+    if (estimate_ || shows_start()) return;
+    try {
+        estimate_ = estimator_->take(patience);
+    } catch (const std::bad_alloc&) {
+        estimate_.emplace().none_since = "there was not enough memory for it";
+    }
+}
+
 void Session::receive(Patience patience) {
     if (watch_ == nullptr) return;
     std::optional<std::shared_ptr<Simulated>> motion;
@@ -320,6 +339,7 @@ void Session::receive(Patience patience) {
     if (!motion) return;
     simulated_ = *motion;
     watch_.reset();
+    estimate();
     try {
         if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pins_asked_, simulated_);
     } catch (const InputError& problem) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "depend/error_estimate.hpp"
 #include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
@@ -78,6 +79,7 @@ class Session {
         receive_pins(0.0);
         receive(0.0);
         receive_proof(0.0);
+        receive_estimate(0.0);
         sweep_job_->update(0.0);
     }
     // Waits for all that is under way: what a picture shows is finished.
@@ -101,6 +103,8 @@ class Session {
     // Of a parameter, a coordinate's start x or its rate x'; nothing if there is no such name.
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return simulated_->trajectory; }
+    // What is estimated of its error; null while that is under way: it takes longer than the run, and nobody waits for it.
+    const ErrorEstimate* error_estimate() const { return estimate_ ? &*estimate_ : nullptr; }
     const Mechanism& mechanism() const { return system_->mechanism; }
     // Runs of this system that were pinned, to compare with, in the order in which they were.
     const std::vector<PinnedRun>& pinned() const { return pinned_; }
@@ -265,6 +269,8 @@ class Session {
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);
+    void estimate();
+    void receive_estimate(Patience patience);
     void compose_plots();
     void place(const Command& command);
     void move_to(double time);
@@ -318,6 +324,8 @@ class Session {
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
+    std::optional<ErrorEstimate> estimate_;  // of simulated_
+    std::unique_ptr<Worker<ErrorEstimate>> estimator_ = std::make_unique<Worker<ErrorEstimate>>();
 };
 
 // What a sweep of a system is at first: its restitution, or else the first parameter, over its range, and the first Zeno time.

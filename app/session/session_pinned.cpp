@@ -112,6 +112,7 @@ std::vector<int> Session::pins_under_way() const {
 void Session::on_ready(const std::function<void()>& ready) {
     ready_ = ready;
     worker_->on_ready(ready);
+    estimator_->on_ready(ready);
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
     for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);

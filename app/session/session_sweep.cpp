@@ -84,6 +84,7 @@ void Session::settle() {
     receive_pins({});
     receive({});
     receive_proof({});
+    receive_estimate({});
     sweep_job_->update({});
 }
 

@@ -88,6 +88,12 @@ ContactGradient& Chain::surface(std::size_t contact, ContactSet held) {
 }
 
 FlowSlope& Chain::slope(ContactSet held) {
+    if (options_.errors) {
+        auto& difference = differences_[held];
+        if (!difference)
+            difference = std::make_unique<FlowDifference>(*model_, held, tangent_, trajectory_->run.parameters);
+        return *difference;
+    }
     auto& known = slopes_[held];
     if (!known) {
         const achilles::Options& used =
@@ -162,21 +168,29 @@ void Chain::step() {
     state_.t = piece.start;
     FlowSlope& slope = this->slope(held_);
     const int degree = static_cast<int>(piece.degree);
+    MatrixXd left_out;
     while (state_.t < piece.end) {
         const double left = piece.end - state_.t;
-        const double span = slope.expand(state_, left, options_.left_out ? degree + 2 : degree);
+        const double span = slope.expand(state_, left, options_.errors ? degree + FlowDifference::more_orders : degree);
+        if (options_.errors && state_.t == piece.start)
+            differences_.at(held_)->left_out(degree, piece.end - piece.start, left_out);
         Link& link = add(Link::Kind::step);
         link.length = span;
         link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
         slope.slope_after(span, held_, link.J);
-        watch_minima(slope, span);
+        if (!options_.errors) watch_minima(slope, span);
         const bool is_end = span >= left;
         const double t = is_end ? piece.end : state_.t + span;
         if (!is_end && !(t > state_.t)) return break_off("no step is small enough for the derivatives");
         state_ = state_in(piece, trajectory_->coefficients, model_->dof(), t);
         state_.t = t;
-        if (!held_.empty()) retract(link.J, held_);
+        if (!held_.empty()) {
+            retract(link.J, held_);
+            if (is_end && options_.errors) retract(left_out, held_);
+        }
+        if (is_end && options_.errors) link.left_out = left_out;
     }
+    if (options_.errors) set_gaps();
 }
 
 // The gaps along the step, in values: where one comes to a minimum that is no impact.
@@ -256,11 +270,12 @@ void Chain::happen(std::size_t event) {
     }
 }
 
-void Chain::cross(std::size_t event, RowVectorXd G, double residual) {
+Link& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
     Link& link = add(Link::Kind::crossing, event);
     link.F = rate();
     link.G = std::move(G);
     link.residual = residual;
+    return link;
 }
 
 // v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`.
@@ -301,7 +316,8 @@ void Chain::land(std::size_t event) {
     u_[i] = -now.impact_speed;
     RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
     to_surface[tangent_.h(i)] = 1.0;
-    cross(event, to_surface, 0.0);
+    Link& crossing = cross(event, to_surface, 0.0);
+    if (options_.errors) meet_surface(i, others, crossing);
 
     ContactSet joins;
     if (auto reason = next_completion(event, joins)) return break_off(std::move(*reason));

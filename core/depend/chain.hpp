@@ -18,7 +18,7 @@
 #include <optional>
 #include <string>
 
-#include "depend/flow_slope.hpp"
+#include "depend/flow_difference.hpp"
 #include "depend/gradient.hpp"
 #include "run/trajectory.hpp"
 #include "simulate/surfaces.hpp"
@@ -39,9 +39,11 @@ struct Link {
     Eigen::VectorXd F;      // of a crossing: the rates of all components before the event,
     Eigen::RowVectorXd G;   // the gradient of what vanishes there,
     double residual = 0.0;  // and its value
-    // Of a step, in the rows of q, v, h and u: the first two terms that the run's polynomials leave out, (c_{K+1} + c_{K+2} t)
-    // t^(K+1); where they were asked for.
+    // Where errors are followed, besides. Of a step, in the rows of q and v: the terms that the run's polynomials leave
+    // out, (c_{K+1} + c_{K+2} t + ...) t^(K+1). Of the crossing at an impact: the gradient of the gap by q and t, where the
+    // step, before it was moved onto the surface, had come to `residual`; G, the gap once more, is of the gap's own series.
     Eigen::VectorXd left_out;
+    Eigen::RowVectorXd by_place;
     // Of the jump at which a bouncing is cut.
     struct Completion {
         std::size_t contact;
@@ -66,7 +68,9 @@ struct DerivativeMargins {
 class Chain {
  public:
     struct Options {
-        bool left_out = false;  // links tell what steps leave out
+        // For errors in place of changes: links tell what steps leave out, follow the state where the run takes it for its
+        // gaps, and are no more exact than an estimate asks for; parameters do not change, there are no margins.
+        bool errors = false;
         // The parameters that a change may have, if not all may: steps are cheaper for eight variables at a time.
         std::vector<bool> parameters{};
     };
@@ -103,7 +107,9 @@ class Chain {
     void break_off(std::string reason) { broken_ = std::move(reason); }
 
     Link& add(Link::Kind kind, std::optional<std::size_t> event = {});
-    void cross(std::size_t event, Eigen::RowVectorXd G, double residual);
+    Link& cross(std::size_t event, Eigen::RowVectorXd G, double residual);
+    void meet_surface(std::size_t contact, ContactSet others, Link& crossing);
+    double residual_before(std::size_t contact);
     void take_out_rate(Eigen::MatrixXd& J, ContactGradient& surface, double times, double u,
                        const Eigen::RowVectorXd& du);
     void retract(Eigen::MatrixXd& J, ContactSet onto);
@@ -124,6 +130,7 @@ class Chain {
     std::map<std::pair<ContactSet, std::size_t>, std::unique_ptr<Gradient>> trends_, normals_;
     std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
     std::map<ContactSet, std::unique_ptr<FlowSlope>> slopes_;
+    std::map<ContactSet, std::unique_ptr<FlowDifference>> differences_;  // in their place, for errors
     Model::MotionEvaluators motions_;
 
     State state_;

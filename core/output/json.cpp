@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "depend/error_estimate.hpp"
 #include "depend/quantities.hpp"
 #include "model/derived_values.hpp"
 #include "model/model.hpp"
@@ -260,6 +261,24 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     return result;
 }
 
+// Null where there is none, with the reason.
+void add_error_estimate(Json& result, const Trajectory& trajectory) {
+    const ErrorEstimate estimate = estimate_error(trajectory);
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
+        Json& of_event = result["events"][i]["error_estimate"] = nullptr;
+        if (i < estimate.events.size()) of_event = number(estimate.events[i]);
+    }
+    Json& of_end = result["end"]["error_estimate"] = nullptr;
+    if (estimate.end)
+        of_end = {{"q", list(estimate.end->q)},
+                  {"v", list(estimate.end->v)},
+                  {"norm", number(estimate.end->norm)},
+                  {"sigma", number(estimate.end->sigma)},
+                  {"reach", number(estimate.end->reach())}};
+    else
+        result["end"]["no_error_estimate"] = estimate.none_since;
+}
+
 }  // namespace
 
 std::string version() { return ACHILLES_VERSION; }
@@ -312,6 +331,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"ulps", rounding::libm},
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
+    add_error_estimate(result, trajectory);
     if (instants) result["samples"] = samples_of(trajectory, *instants);
     if (dependence != nullptr) {
         const Derivatives& d = dependence->derivatives;

@@ -10,6 +10,7 @@
 
 namespace achilles {
 
+struct ErrorEstimate;
 struct SystemDescription;
 struct Dependence;
 
@@ -40,6 +41,8 @@ struct NormUnits {
 NormUnits norm_units(const SystemDescription& description);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate, const SystemDescription& description);
+// What is estimated of the error at the end, or why nothing is.
+std::string sentence(const ErrorEstimate& estimate);
 // "[low, high]" with as many digits as tell the ends apart, and two more.
 std::string interval_text(double low, double high);
 // A bound, to two digits; what is below 1e-16, the rounding of numbers about 1, is told as that.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "depend/error_estimate.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
@@ -49,8 +50,9 @@ std::string holding(const Trajectory& trajectory, ContactSet held) {
 // Phase by phase, event by event.
 class Course {
  public:
-    explicit Course(const Trajectory& trajectory)
+    Course(const Trajectory& trajectory, const ErrorEstimate& estimate)
         : trajectory_(trajectory),
+          estimate_(estimate),
           model_(*trajectory.model),
           scale_(scale_of(trajectory)),
           sentences_(trajectory),
@@ -144,7 +146,10 @@ class Course {
                                 event.truncation->t, event.truncation->impact_speed);
         if (!event.certificate) return text;
         text += indented(sentence(*event.certificate, model_.description()));
-        if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
+        if (!is_plastic && index < estimate_.events.size())
+            text += indented(
+                fmt::format("not proved: estimated error {:.1g} s of the time above", estimate_.events[index]));
+        else if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
             text += indented(fmt::format(
                 "not covered: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
         const auto& others = event.certificate->others;
@@ -154,6 +159,7 @@ class Course {
     }
 
     const Trajectory& trajectory_;
+    const ErrorEstimate& estimate_;
     const Model& model_;
     State scale_;
     Sentences sentences_;
@@ -220,6 +226,11 @@ NormUnits norm_units(const SystemDescription& description) {
             fmt::format(fmt::runtime(form), fmt::join(rates, ", "))};
 }
 
+std::string sentence(const ErrorEstimate& estimate) {
+    if (!estimate.end) return "no estimate of the error at the end: " + estimate.none_since;
+    return fmt::format("estimated error {:.1g} at the end: an estimate, not a proof", estimate.end->size());
+}
+
 std::string sentence(const Certificate& c, const SystemDescription& description) {
     if (!c.certified) return "not certified";
     if (c.position_bound == 0.0 && c.velocity_bound == 0.0) return std::string(c.decisive);
@@ -256,12 +267,14 @@ std::string summary(const Trajectory& trajectory) {
     for (const Remark& remark : remarks(trajectory)) text += "  " + remark.sentence + "\n";
     text += "\n";
     const State scale = scale_of(trajectory);
-    text += Course(trajectory).told();
+    const ErrorEstimate estimate = estimate_error(trajectory);
+    text += Course(trajectory, estimate).told();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
     text += fmt::format("\nend at t = {:.10g} s, {}{}: {}; {}", trajectory.end_time, to_text(trajectory.end_phase),
                         holding(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, scale.q),
                         named(model, n, trajectory.end.v, scale.v));
+    text += "\n" + sentence(estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
     text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", s.impacts, s.steps,
@@ -278,8 +291,9 @@ std::string summary(const Trajectory& trajectory) {
             "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between "
             "bodies.\n";
     text +=
-        "Digits are those of the computed run: the integration's errors grow along the way, and another --tolerance\n"
-        "shows how much.\n";
+        "Digits are those of the computed run: its errors grow along the way, as estimated to first order, and "
+        "another\n"
+        "--tolerance shows how much.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });

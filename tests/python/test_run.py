@@ -214,3 +214,14 @@ def test_it_knows_on_what_it_depends(program):
     assert run.derivatives_of("zeno_time(2)").tolist() == told["derivatives"]["of"][0]["derivatives"]
     with pytest.raises(achilles.InputError, match="zeno_time"):
         run.derivatives_of("zeno_tme(2)")
+
+
+def test_it_knows_how_wrong_it_is():
+    run = achilles.simulate("ball_on_sine")
+    estimate = run.error_estimate
+    assert 1e-9 < estimate.norm < 1e-8
+    assert estimate.reach == 1.5 * estimate.norm + 3 * estimate.sigma
+    assert np.linalg.norm(np.concatenate([estimate.q, estimate.v])) == pytest.approx(estimate.norm)
+    assert all(event.error_estimate > 0 for event in run.events)
+    other = achilles.simulate("ball_on_sine", method="dopri5")
+    assert other.error_estimate is None and "Taylor" in other.end.no_error_estimate

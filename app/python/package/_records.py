@@ -78,6 +78,7 @@ class Event(Record):
 
     kind: str
     t: float
+    error_estimate: float | None
     q: np.ndarray
     v: np.ndarray
     v_before: np.ndarray

@@ -143,8 +143,14 @@ class Run:
 
     @property
     def end(self) -> Record:
-        """Where it ended: t, q, v, phase, held, work, loss."""
+        """Where it ended: t, q, v, phase, held, work, loss, error_estimate."""
         return self._told["end"]
+
+    @property
+    def error_estimate(self) -> Record | None:
+        """How wrong the end is, estimated and not proved: q, v (true less computed), norm, sigma, reach. None: no_error_estimate
+        of `end` says why. Every event has one of its time, s."""
+        return self.end["error_estimate"]
 
     @property
     def start(self) -> Record:

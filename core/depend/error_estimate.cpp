@@ -1,0 +1,149 @@
+#include "depend/error_estimate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "depend/chain.hpp"
+#include "depend/completion_error.hpp"
+#include "number/ground.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// The error and the covariance of what rounding adds, of all components but the parameters.
+struct Transport {
+    explicit Transport(const Tangent& tangent)
+        : size(tangent.p(0)), error(VectorXd::Zero(size)), covariance(MatrixXd::Zero(size, size)) {}
+
+    // Of the step  e := J e + delta  and the event  e := e - F (G e + g(y))/(G F);  P := J P J'.
+    void follow(const Link& link) {
+        if (link.kind == Link::Kind::crossing) {
+            const auto F = link.F.head(size);
+            const auto G = link.G.head(size);
+            const double along = (link.by_place.size() > 0 ? link.by_place : link.G).head(size).dot(error);
+            const double rate = G.dot(F);
+            error -= F * ((along + link.residual) / rate);
+            const VectorXd cross = covariance * G.transpose() / rate;  // of each component with the time that it takes
+            const double variance = G.dot(cross) / rate;
+            covariance += variance * F * F.transpose() - F * cross.transpose() - cross * F.transpose();
+            return;
+        }
+        const auto J = link.J.topLeftCorner(size, size);
+        error = J * error;
+        if (link.left_out.size() > 0) error += link.left_out.head(size);
+        covariance = J * covariance * J.transpose();
+    }
+    // What is stored of a state is rounded.
+    void round(const State& state, const Tangent& tangent) {
+        constexpr double unit_roundoff = 0x1p-53;
+        const auto add = [&](Index i, double z) { covariance(i, i) += std::pow(unit_roundoff * z, 2); };
+        add(Tangent::t(), state.t);
+        for (std::size_t i = 0; i < tangent.dof; ++i) {
+            add(tangent.q(i), state.q[static_cast<Index>(i)]);
+            add(tangent.v(i), state.v[static_cast<Index>(i)]);
+        }
+    }
+    void move(const State& shift, const Tangent& tangent) {
+        error.segment(tangent.q(0), shift.q.size()) += shift.q;
+        error.segment(tangent.v(0), shift.v.size()) += shift.v;
+    }
+    double of_time() const { return std::sqrt(std::pow(error[Tangent::t()], 2) + covariance(0, 0)); }
+
+    Index size;
+    VectorXd error;
+    MatrixXd covariance;
+};
+
+ErrorEstimate none(std::string reason) {
+    ErrorEstimate result;
+    result.none_since = std::move(reason);
+    return result;
+}
+
+// At fixed time: e - F e_t.
+ErrorEstimate::AtEnd at_end(const Transport& carried, const Tangent& tangent, const VectorXd& rate) {
+    const auto n = static_cast<Index>(tangent.dof);
+    MatrixXd fixed = MatrixXd::Identity(carried.size, carried.size);
+    fixed.col(Tangent::t()) -= rate.head(carried.size);
+    const VectorXd error = fixed * carried.error;
+    const MatrixXd covariance = fixed * carried.covariance * fixed.transpose();
+    ErrorEstimate::AtEnd end;
+    end.q = error.segment(tangent.q(0), n);
+    end.v = error.segment(tangent.v(0), n);
+    end.norm = error.segment(tangent.q(0), 2 * n).norm();
+    end.sigma = std::sqrt(covariance.diagonal().segment(tangent.q(0), 2 * n).sum());
+    return end;
+}
+
+bool is_finite(const ErrorEstimate::AtEnd& end) {
+    return end.q.allFinite() && end.v.allFinite() && std::isfinite(end.reach());
+}
+
+ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop) {
+    const Options& options = trajectory.run.options;
+    if (options.method != Method::taylor) return none("errors are estimated of runs by Taylor's method alone");
+    if (options.truncation.reinitialization != Reinitialization::kinetic)
+        return none("errors are estimated where cuts restart kinetically, not by the Euclidean projection");
+    if (trajectory.pieces.empty() && trajectory.end_time > options.start_time)
+        return none("of this run the end alone was kept");
+    if (trajectory.pieces.size() > most_estimated_steps)
+        return none(fmt::format("the run has more than {} steps, and errors take several times as long as it did",
+                                most_estimated_steps));
+    Chain chain(trajectory, {.errors = true});
+    const Tangent& tangent = chain.tangent();
+    Transport carried(tangent);
+    CompletionError of_cuts(*trajectory.model, trajectory.run);
+    std::optional<CompletionError::Cut> cut;
+    ErrorEstimate result;
+    while (const Link* link = chain.next()) {
+        if (stop.stop_requested()) return none("another thread asked to stop");
+        carried.follow(*link);
+        if (link->kind == Link::Kind::crossing) continue;
+        if (link->kind == Link::Kind::step || link->event) carried.round(chain.state(), tangent);
+        if (!link->event) continue;
+        const Event& event = trajectory.events[*link->event];
+        if (link->completion) {
+            cut = {link->completion->contact, link->completion->held, chain.state(), link->completion->speed};
+            carried.move(of_cuts.shift(*cut), tangent);
+        } else if (event.kind == Event::Kind::zeno && cut) {
+            // The time that the run has for it, and the true one.
+            const CompletionError::Wait wait = of_cuts.wait(*cut);
+            const double error = wait.formula + wait.error - (event.t - cut->restart.t);
+            if (!is_plastic_landing(event)) carried.error += chain.rate().head(carried.size) * error;
+            cut.reset();
+        }
+        result.events.push_back(carried.of_time());
+    }
+    if (!chain.broken().empty()) {
+        result.none_since = chain.broken();
+    } else if (cut) {
+        result.none_since = "the run ends between a cut and its Zeno point, where what is drawn is not the motion";
+    } else {
+        result.end = at_end(carried, tangent, chain.rate());
+        if (!is_finite(*result.end)) {
+            result.end.reset();
+            result.none_since = "what became of the errors is no number";
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+double ErrorEstimate::AtEnd::size() const { return std::hypot(norm, sigma); }
+
+ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token& stop) {
+    const Ground ground;
+    try {
+        return estimate(trajectory, stop);
+    } catch (const InputError& too_large) {  // derivatives of what the run itself did not need
+        return none(too_large.message);
+    }
+}
+
+}  // namespace achilles

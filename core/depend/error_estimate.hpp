@@ -1,0 +1,43 @@
+// How wrong a run has become, estimated: what its steps leave out, what its roots miss and what its cuts leave open, carried
+// through all that follows (theory-enclosure.md 9). An estimate to first order, and not a proof.
+//
+//     const ErrorEstimate e = estimate_error(trajectory);
+//     e.end->norm       of the true end less the computed one, roughly;  e.end->reach: hardly ever exceeded
+//     e.events[j]       s, of the time of event j
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+struct ErrorEstimate {
+    struct AtEnd {
+        Vector q, v;         // true less computed, at the end time
+        double norm = 0.0;   // Euclidean, of both together
+        double sigma = 0.0;  // what rounding makes of it, as a standard deviation
+        double reach() const { return 1.5 * norm + 3.0 * sigma; }
+        double size() const;  // of both: what is told a person
+    };
+    std::optional<AtEnd> end;
+    // Of the times of events, s, rounding included: of the trajectory's, as many of the first as can be estimated.
+    std::vector<double> events;
+    // Why there is none at the end, else empty.
+    std::string none_since;
+};
+
+// Of a run of which everything was kept. Nothing where steps are not made by Taylor's method, cuts were restarted by the
+// Euclidean projection, or there are more steps than most_estimated_steps; nothing from where the run has no derivative; nothing
+// of the end where it lies between a cut and its Zeno point, or where another thread asks to stop.
+//
+// It takes up to eight times as long as the run (bench_estimate). So who makes many runs, or waits for one, asks for it when the
+// runs are there, if at all; and of a run of so many steps it is left out, which is counted in steps and not in seconds so that
+// the same run always has it or never.
+ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token& stop = {});
+inline constexpr std::size_t most_estimated_steps = 100'000;
+
+}  // namespace achilles

@@ -1,0 +1,129 @@
+#include "depend/flow_difference.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+constexpr double digits = 1e-4;  // relative, of a derivative
+constexpr int lowest = 4;
+
+}  // namespace
+
+FlowDifference::FlowDifference(const Model& model, ContactSet held, const Tangent& tangent,
+                               std::span<const double> parameters)
+    : tangent_(tangent), motion_(model, held, parameters), from_half_(model, held, parameters) {
+    const bool has_clock = model.motion(held).series.depends_on(model.layout().t());
+    for (std::size_t k = 0; k < 2 * tangent.dof; ++k)
+        beside_.push_back({tangent.variable(k), 0.0, MotionSeries(model, held, parameters)});
+    if (has_clock) beside_.push_back({Tangent::t(), 0.0, MotionSeries(model, held, parameters)});
+}
+
+void FlowDifference::expand_beside(const State& state) {
+    constexpr double relative = 0x1p-20;
+    for (Beside& beside : beside_) {
+        State other = state;
+        const Eigen::Index column = beside.column;
+        double& x = column == Tangent::t()   ? other.t
+                    : column < tangent_.v(0) ? other.q[column - tangent_.q(0)]
+                                             : other.v[column - tangent_.v(0)];
+        const double here = x;
+        x += relative * (1.0 + std::abs(here));
+        beside.distance = x - here;
+        beside.motion.expand(other, slope_order_);
+    }
+}
+
+// How large the last two terms are after such a time beside the largest, at most.
+double FlowDifference::last_terms(double length) const {
+    double most = 0.0;
+    for (const Beside& beside : beside_) {
+        double largest = 0.0, last = 0.0, power = 1.0;
+        for (int k = 0; k <= slope_order_; ++k, power *= length)
+            for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
+                const double term = std::abs(slope(beside, k, i)) * power;
+                largest = std::max(largest, term);
+                if (k >= slope_order_ - 1) last = std::max(last, term);
+            }
+        most = std::max(most, last / largest);
+    }
+    return most;
+}
+
+double FlowDifference::expand(const State& state, double length, int least_order) {
+    constexpr int highest = MotionSeries::highest_order;
+    state_ = state;
+    slope_order_ = std::max(lowest, slope_order_ - 1);
+    order_ = std::min(std::max(least_order, slope_order_), highest);
+    motion_.expand(state, order_);
+    for (;;) {
+        expand_beside(state);
+        if (last_terms(length) <= digits) return length;
+        if (slope_order_ >= highest) break;
+        slope_order_ = std::min(slope_order_ + 3, highest);
+        if (slope_order_ > order_) motion_.expand(state, order_ = slope_order_);
+    }
+    for (int round = 0; round < 60 && !(last_terms(length) <= digits); ++round) length *= 0.7;
+    return length;
+}
+
+void FlowDifference::slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const {
+    for (const Beside& beside : beside_) {
+        for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
+            double sum = 0.0;
+            for (int k = slope_order_; k >= 0; --k) sum = sum * span + slope(beside, k, i);
+            S(tangent_.q(i), beside.column) = sum;
+        }
+        // The gap, of which order 0 and 1 are given apart, and its rate.
+        for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
+            if (held.contains(contact)) continue;
+            double h = 0.0, u = 0.0;
+            for (int k = slope_order_; k >= 2; --k) {
+                const double c = slope(beside, k, 2 * tangent_.dof + contact);
+                h = h * span + c;
+                u = u * span + k * c;
+            }
+            S(tangent_.h(contact), beside.column) = h * span * span;
+            S(tangent_.u(contact), beside.column) = u * span;
+        }
+    }
+    for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
+        if (held.contains(contact)) continue;
+        S(tangent_.h(contact), tangent_.h(contact)) = S(tangent_.u(contact), tangent_.u(contact)) = 1.0;
+        S(tangent_.h(contact), tangent_.u(contact)) = span;
+    }
+}
+
+void FlowDifference::left_out(int degree, double span, Eigen::MatrixXd& delta) {
+    const int first = degree + 1, last = std::min(order_, degree + more_orders);
+    delta.setZero(tangent_.size(), 1);
+    if (first > last) return;
+    double largest = 0.0, open = 0.0;  // of the sums; of what may follow
+    for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
+        const double sum = motion_.sum(first, last, i, span);
+        delta(tangent_.q(i), 0) = sum;
+        largest = std::max(largest, std::abs(sum));
+        open = std::max(open, std::abs(motion_.sum(std::max(first, last - 1), last, i, span)));
+    }
+    constexpr double most_open = 0.03;
+    // Differences are known to a rounding of the state only, and so are the sums of the run.
+    const double rounding = 0x1p-48 * (1.0 + std::max(state_.q.cwiseAbs().maxCoeff(), state_.v.cwiseAbs().maxCoeff()));
+    if (open > most_open * largest && largest > rounding) by_halves(degree, span, delta);
+}
+
+void FlowDifference::by_halves(int degree, double span, Eigen::MatrixXd& delta) {
+    const double half = 0.5 * span;
+    State middle = state_;
+    middle.t += half;
+    for (std::size_t i = 0; i < tangent_.dof; ++i) {
+        middle.q[static_cast<Eigen::Index>(i)] = motion_.sum(0, order_, i, half);
+        middle.v[static_cast<Eigen::Index>(i)] = motion_.sum(0, order_, tangent_.dof + i, half);
+    }
+    from_half_.expand(middle, order_);
+    for (std::size_t i = 0; i < 2 * tangent_.dof; ++i)
+        delta(tangent_.q(i), 0) = from_half_.sum(0, order_, i, half) - motion_.sum(0, degree, i, span);
+}
+
+}  // namespace achilles
