@@ -35,6 +35,12 @@ std::string Inputs::text(const std::string& name) {
     return kept_.back().text;
 }
 
+std::string Inputs::data(const std::string& path) {
+    if (from_picture_) return next(path, false).text;
+    kept_.push_back({Source::Kind::system, path, read_text(files_read_.emplace_back(path))});
+    return kept_.back().text;
+}
+
 // Messages call a system what it was called here: an explorer that shows one is a picture too, and must not depend on
 // where the assets are.
 SystemDescription Inputs::system(const std::string& name) { return parse_system(text(name), name); }

@@ -37,6 +37,8 @@ class Inputs {
     // every time it is asked for counts. Throw InputError.
     std::string text(const std::string& name);
     SystemDescription system(const std::string& name);
+    // The text of a file of data, by its path.
+    std::string data(const std::string& path);
     // The commands of a journal. Throws Forbidden for what it may not, and where all of them together are too many.
     std::vector<Command> journal(const std::string& path);
     // Commands that are no journal's; those of a picture count, too.

@@ -101,7 +101,7 @@ namespace {
 // Where a picture goes and how it is worked at, rather than what it shows.
 bool is_where(const std::string& option) {
     return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite" ||
-           option == "--progress" || option == "--csv" || option == "--hdf5" || option == "--units" ||
+           option == "--progress" || option == "--csv" || option == "--json" || option == "--hdf5" || option == "--units" ||
            option == "--resume" || option == "--threads";
 }
 

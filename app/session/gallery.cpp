@@ -8,8 +8,8 @@ std::span<const GalleryGroup> gallery() {
     static const std::vector<GalleryGroup> groups{
         {"the paper", {"ball_on_sine", "double_pendulum"}},
         {"teaching",
-         {"ball_on_floor", "ball_on_incline", "ball_in_bowl", "ball_on_hills", "ball_on_cylinder", "bead_in_ring",
-          "ball_on_egg_crate", "cart_pendulum", "triple_pendulum", "falling_rod"}},
+         {"ball_on_floor", "ball_on_incline", "ball_in_bowl", "ball_on_hills", "ball_down_a_wave", "ball_on_cylinder",
+          "bead_in_ring", "ball_on_egg_crate", "cart_pendulum", "triple_pendulum", "falling_rod"}},
         {"robots", {"swinging_leg", "kneed_leg", "arm_at_wall"}},
         {"driven",
          {"impact_oscillator", "ball_on_table", "ball_on_vibrating_table", "two_mass_oscillator",

@@ -159,6 +159,14 @@ Model::MeasureProgram Model::compile_measures(std::span<const Text> texts) const
     return result;
 }
 
+Program Model::compile_of_parameters(std::span<const Text> texts) const {
+    Graph graph(*graph_);
+    const Scope scope = closing_scope(description_, layout_, graph);
+    std::vector<Expression> outputs;
+    for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
+    return Program(outputs, layout_.slots());
+}
+
 Program Model::compile_drawing(std::span<const Text> texts, const std::string& own) const {
     Graph graph(*graph_);
     Scope scope = drawing_scope(description_, layout_, graph);

@@ -136,6 +136,8 @@ class Model {
         std::vector<RunQuantity> quantities;
     };
     MeasureProgram compile_measures(std::span<const Text> texts) const;
+    // Over the parameters alone.
+    Program compile_of_parameters(std::span<const Text> texts) const;
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 
  private:

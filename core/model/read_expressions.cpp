@@ -260,6 +260,10 @@ void read_pictures(const SystemDescription& system, const Layout& layout, Graph&
         reader.read(view.x, in_views);
         for (const Text& text : view.y) reader.read(text, in_views);
     }
+    if (!system.orbit) return;
+    Scope in_orbit = closing_scope(system, layout, graph);
+    reader.read(system.orbit->period, in_orbit);
+    for (const Text& text : system.orbit->shift) reader.read(text, in_orbit);
 }
 
 }  // namespace

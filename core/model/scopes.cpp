@@ -135,6 +135,10 @@ Scope restitution_scope(const SystemDescription& system, const Layout& layout, G
     return constant_scope(system, layout, graph, "the restitution");
 }
 
+Scope closing_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    return constant_scope(system, layout, graph, "the period or shift of an orbit");
+}
+
 Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     return constant_scope(system, layout, graph, "a derived parameter");
 }

@@ -26,6 +26,8 @@ Scope potential_scope(const SystemDescription& system, const Layout& layout, Gra
 Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Parameters.
 Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+// The same of what [orbit] says of a period and a shift.
+Scope closing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // The same in a derived parameter; its units are for the caller to add.
 Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters; a drawn curve's own is for the caller to add.

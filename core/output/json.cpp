@@ -7,6 +7,7 @@
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
+#include "output/json_parts.hpp"
 #include "output/output.hpp"
 #include "simulate/least_gap.hpp"
 #include "simulate/sampler.hpp"
@@ -281,11 +282,20 @@ void add_error_estimate(Json& result, const Trajectory& trajectory) {
 
 }  // namespace
 
+Json system_json(const Trajectory& trajectory) { return system_of(trajectory); }
+Json options_json(const Trajectory& trajectory) { return options_of(trajectory.run.options); }
+Json events_json(const Trajectory& trajectory) {
+    Json events = Json::array();
+    Impulses impulses(trajectory);
+    for (std::size_t i = 0; i < trajectory.events.size(); ++i) events.push_back(event_of(trajectory, i, impulses));
+    return events;
+}
+
 std::string version() { return ACHILLES_VERSION; }
 
 std::string to_json(const Trajectory& trajectory, const Instants& instants, const Dependence* dependence) {
     const Ground ground;
-    Json phases = Json::array(), events = Json::array();
+    Json phases = Json::array();
     for (const Phase& phase : trajectory.phases) {
         phases.push_back({{"kind", to_text(phase.kind)},
                           {"held", names(trajectory, phase.held)},
@@ -294,8 +304,6 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                           {"impacts", phase.impacts}});
         if (phase.not_unique()) phases.back()["not_unique"] = true;
     }
-    Impulses impulses(trajectory);
-    for (std::size_t i = 0; i < trajectory.events.size(); ++i) events.push_back(event_of(trajectory, i, impulses));
     Json warnings = Json::array();
     for (const Remark& remark : remarks(trajectory)) warnings.push_back(remark.sentence);
     const Statistics& s = trajectory.statistics;
@@ -303,7 +311,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                    {"system", system_of(trajectory)},
                    {"options", options_of(trajectory.run.options)},
                    {"phases", phases},
-                   {"events", events},
+                   {"events", events_json(trajectory)},
                    {"end",
                     {{"t", number(trajectory.end_time)},
                      {"q", list(trajectory.end.q)},

@@ -122,6 +122,15 @@ struct ViewDescription {
         unit{};  // of the y axis, as it is shown; "": what y is, and the unit that follows from the file's
 };
 
+// A periodic run, or a guess of one (theory-derivatives.md 9).
+struct OrbitDescription {
+    std::vector<double> q, v;  // at the start of the period, by coordinate
+    std::optional<double> t;   // s, then: of a drive; else the start time of [run]
+    Text period;               // s, an expression in the parameters; may be empty
+    std::vector<Text> shift;   // by coordinate: how far it has moved on after a period; empty: nowhere
+    Location at;
+};
+
 struct SystemDescription {
     std::string file;         // as given; "<text>" for typed text
     std::string source_text;  // the whole file, for carets
@@ -135,6 +144,7 @@ struct SystemDescription {
     Options options;                                 // defaults overridden by [run] and [truncation]
     std::vector<DrawingDescription> drawings;        // as written; none is a valid answer
     std::vector<ViewDescription> views;              // as written, or default_views()
+    std::optional<OrbitDescription> orbit;
 
     // An error at a place in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;

@@ -252,6 +252,49 @@ void read_options(const TomlValue& table, const std::string& name, Options& opti
     if (fault && end != nullptr && mistakes.count() == before) mistakes.add({end->at, *fault, {}});
 }
 
+// As many as there are coordinates: each is read where it stands.
+template <class Read>
+void read_by_coordinate(const Reading& reading, const Fields& fields, std::string_view key, const Read& read) {
+    const TomlValue& value = fields.need(key);
+    const std::size_t n = reading.system.coordinates.size();
+    if (value.kind != TomlValue::Kind::array || value.items.size() != n)
+        throw Mistake{
+            value.at,
+            fmt::format("'{}' in [orbit] must have a value for each of {} coordinate{}", key, n, n == 1 ? "" : "s"),
+            "in the order of the file"};
+    for (std::size_t i = 0; i < n; ++i) read(i, value.items[i]);
+}
+
+void read_orbit(Reading& reading, const TomlValue& table) {
+    Mistakes& mistakes = reading.mistakes;
+    Fields fields(table, "[orbit]");
+    fields.allow(keys_of("[orbit]"), mistakes);
+    OrbitDescription orbit;
+    orbit.at = table.at;
+    const auto& coordinates = reading.system.coordinates;
+    mistakes.attempt([&] {
+        read_by_coordinate(reading, fields, "q", [&](std::size_t i, const TomlValue& value) {
+            orbit.q.push_back(fields.number("q", value, coordinates[i].unit));
+        });
+    });
+    mistakes.attempt([&] {
+        read_by_coordinate(reading, fields, "v", [&](std::size_t i, const TomlValue& value) {
+            orbit.v.push_back(fields.number("v", value, rate_unit(coordinates[i].unit)));
+        });
+    });
+    mistakes.attempt([&] {
+        if (fields.find("t")) orbit.t = fields.number("t", "s");
+    });
+    mistakes.attempt([&] { orbit.period = fields.expression_or_none("period"); });
+    if (fields.find("shift"))
+        mistakes.attempt([&] {
+            read_by_coordinate(reading, fields, "shift", [&](std::size_t, const TomlValue& value) {
+                orbit.shift.push_back(fields.expression("shift", value));
+            });
+        });
+    reading.system.orbit = std::move(orbit);
+}
+
 void read_pictures(Reading& reading) {
     SystemDescription& system = reading.system;
     Mistakes& mistakes = reading.mistakes;
@@ -312,6 +355,7 @@ FileReading read_tables(std::string text, std::string name) {
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
+    if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);
     return read;

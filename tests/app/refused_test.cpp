@@ -81,8 +81,8 @@ const Refusal refusals[] = {
     {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; did you mean 'simulate'?\n"
-     "the commands are: explore, simulate, prove, sweep, figure, frames, paper, screenshot, reproduce, check, list, "
-     "help, "
+     "the commands are: explore, simulate, prove, sweep, orbit, figure, frames, paper, screenshot, reproduce, check, "
+     "list, help, "
      "new\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
      "achilles: '--tolerence' is not expected here; did you mean '--tolerance'?" + more},

@@ -19,6 +19,7 @@ void add_simulate(CLI::App& program, int& status);
 // Those that make pictures.
 void add_figure(CLI::App& program, int& status, PictureJob& job);
 void add_frames(CLI::App& program, int& status, PictureJob& job);
+void add_orbit(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 // `ranks`: the processes that share the runs (study/ranks.hpp); null where this one is alone.

@@ -79,6 +79,7 @@ int reproduce(const std::string& picture, const std::string& out) {
 
 void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks) {
     add_sweep(program, status, job, ranks);
+    add_orbit(program, status, job);
     add_figure(program, status, job);
     add_frames(program, status, job);
     add_paper(program, status, job);
@@ -94,7 +95,7 @@ void add_reproduce(CLI::App& program, int& status) {
         "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
     command
         ->add_option("PICTURE", arguments->picture,
-                     "a PNG, SVG or PDF file of figure, sweep, frames, paper or screenshot")
+                     "a PNG, SVG or PDF file of figure, sweep, orbit, frames, paper or screenshot")
         ->required()
         ->type_name("");
     command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")

@@ -1,0 +1,225 @@
+#include "output/orbit.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "model/model.hpp"
+#include "output/json_parts.hpp"
+#include "output/output.hpp"
+#include "system/input_error.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x + 0.0) : Json(nullptr); }
+Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
+
+template <class List>
+Json list(const List& x) {
+    Json result = Json::array();
+    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number(x[i]));
+    return result;
+}
+
+void add_point(Json& json, const OrbitPoint& point) {
+    json["period"] = number(point.period);
+    json["state"] = {{"t", number(point.state.t)}, {"q", list(point.state.q)}, {"v", list(point.state.v)}};
+    Json& multipliers = json["multipliers"] = Json::array();
+    for (const auto& mu : point.multipliers) multipliers.push_back({number(mu.real()), number(mu.imag())});
+    json["zero_multipliers"] = point.zero_multipliers;
+    json["stable"] = point.stable;
+    json["margins"] = {{"grazing_speed", number(point.margins.grazing_speed)},
+                       {"gap_minimum", number(point.margins.gap_minimum)},
+                       {"a_inf", number(point.margins.a_inf)},
+                       {"release_jerk", number(point.margins.release_jerk)}};
+    json["psi"] = number(point.psi);
+}
+
+Json branch_of(const Branch& branch, const SystemDescription& description) {
+    const std::string& name = description.parameters[branch.parameter].name;
+    const auto points = [&](const std::vector<OrbitPoint>& all) {
+        Json result = Json::array();
+        for (const OrbitPoint& point : all) {
+            Json json = {{"value", number(branch.value(point))}};
+            add_point(json, point);
+            result.push_back(std::move(json));
+        }
+        return result;
+    };
+    return {{"parameter", name},
+            {"points", points(branch.points)},
+            {"folds", points(branch.folds)},
+            {"flips", points(branch.flips)},
+            {"circles", points(branch.circles)},
+            {"lost", points(branch.lost)},
+            {"changes", points(branch.changes)},
+            {"ends", branch.ends}};
+}
+
+}  // namespace
+
+std::string to_json(const Orbit& orbit, const Branch* branch) {
+    const SystemDescription& description = orbit.run.model->description();
+    Json result = {{"achilles", version()},
+                   {"system", system_json(orbit.run)},
+                   {"options", options_json(orbit.run)},
+                   {"section", orbit.is_at_release ? "release"
+                               : orbit.has_flow    ? "flight"
+                                                   : "time"}};
+    add_point(result, orbit);
+    result["events"] = events_json(orbit.run);
+    Json by = Json::object();
+    const Eigen::Index n = orbit.state.q.size();
+    for (std::size_t k = 0; k < orbit.parameters.size(); ++k) {
+        const Eigen::VectorXd column = orbit.by_parameters.col(static_cast<Eigen::Index>(k));
+        by[description.parameters[k].name] = {
+            {"period", number(column[2 * n])}, {"q", list(column.head(n))}, {"v", list(column.segment(n, n))}};
+    }
+    result["derivatives"] = std::move(by);
+    result["newton"] = {{"steps", orbit.iterations}, {"error", number(orbit.error)}};
+    result["branch"] = branch != nullptr ? branch_of(*branch, description) : Json(nullptr);
+    return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
+
+namespace {
+
+std::string named(const SystemDescription& description, const Vector& values, const char* prime) {
+    std::string text;
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+        const std::string name = description.coordinates[static_cast<std::size_t>(i)].name + prime;
+        const std::string unit = unit_of(description, name);
+        text +=
+            fmt::format("{}{} = {:.12g}{}{}", i > 0 ? ", " : "", name, values[i] + 0.0, unit.empty() ? "" : " ", unit);
+    }
+    return text;
+}
+
+std::string told(const std::complex<double>& mu) {
+    if (mu.imag() == 0.0) return fmt::format("{:.11g}", mu.real() + 0.0);
+    return fmt::format("{:.11g} {} {:.11g}i", mu.real() + 0.0, mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()));
+}
+
+std::string multipliers_of(const OrbitPoint& point) {
+    std::string text;
+    const std::size_t rest = point.multipliers.size() - point.zero_multipliers;
+    for (std::size_t i = 0; i < point.multipliers.size(); ++i) {
+        text += fmt::format("{}{}", i > 0 ? ", " : "", told(point.multipliers[i]));
+        if (i == 0 && point.has_flow) text += " (along the motion)";
+        if (i + 1 == point.multipliers.size() && i >= rest)
+            text += fmt::format(" (the last {} exactly)", point.zero_multipliers);
+    }
+    return text;
+}
+
+std::string stability_of(const OrbitPoint& point) {
+    const std::size_t first = point.has_flow ? 1 : 0;
+    const double most = point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
+    if (!point.stable) return fmt::format("not stable: a small change becomes {:.4g} times as large in a period", most);
+    if (most == 0.0) return "stable: of a small change nothing is left";
+    return fmt::format("stable: of a small change {:.4g} is left after a period", most);
+}
+
+std::string events_of(const Orbit& orbit) {
+    std::string text;
+    int impacts = 0;
+    const auto tell_impacts = [&](const std::string& behind) {
+        if (impacts > 0) text += fmt::format("  {} impact{}{}\n", impacts, impacts == 1 ? "" : "s", behind);
+        impacts = 0;
+    };
+    for (const Event& event : orbit.run.events) {
+        if (event.kind == Event::Kind::impact) {
+            if (++impacts <= 2)
+                text += fmt::format("  {:<9} t = {:<18.13g} gap speed {:.6g}\n", "impact", event.t, event.impact_speed);
+            continue;
+        }
+        impacts = std::max(impacts - 2, 0);
+        tell_impacts(" more");
+        impacts = 0;
+        text += fmt::format("  {:<9} t = {:<18.13g} {}\n", is_plastic_landing(event) ? "landing" : to_text(event.kind),
+                            event.t, named(orbit.run.model->description(), event.q, ""));
+    }
+    impacts = std::max(impacts - 2, 0);
+    tell_impacts(" more");
+    return text.empty() ? "  nothing\n" : text;
+}
+
+std::string margins_of(const OrbitPoint& point) {
+    std::string text;
+    const auto add = [&](const char* what, const std::optional<double>& x) {
+        if (x) text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", what, *x);
+    };
+    add("a_inf", point.margins.a_inf);
+    add("h''' at release", point.margins.release_jerk);
+    add("least speed of an impact that may graze", point.margins.grazing_speed);
+    add("least gap it passes", point.margins.gap_minimum);
+    return text.empty() ? "" : "margins: " + text + "\n";
+}
+
+std::string branch_text(const Branch& branch, const SystemDescription& description) {
+    const std::string& name = description.parameters[branch.parameter].name;
+    std::string text = fmt::format("\nbranch in {}: {} points from {:.10g} to {:.10g}\n", name, branch.points.size(),
+                                   branch.value(branch.points.front()), branch.value(branch.points.back()));
+    const auto tell = [&](const char* what, const std::vector<OrbitPoint>& all) {
+        for (const OrbitPoint& point : all)
+            text += fmt::format("  {:<26} {} = {:.12g}: period {:.10g} s, {}; {}\n", what, name, branch.value(point),
+                                point.period, named(description, point.state.q, ""), multipliers_of(point));
+    };
+    tell("fold", branch.folds);
+    tell("flip (mu = -1)", branch.flips);
+    tell("|mu| = 1, complex", branch.circles);
+    tell("the Zeno point is lost", branch.lost);
+    tell("other events from here on", branch.changes);
+    return text + fmt::format("  it ends at the first point: {}\n           at the last point: {}\n", branch.ends[0],
+                              branch.ends[1]);
+}
+
+}  // namespace
+
+std::string orbit_text(const Orbit& orbit, const Branch* branch) {
+    const SystemDescription& description = orbit.run.model->description();
+    const Options& o = orbit.run.run.options;
+    std::string text = fmt::format("{}\n  {}", description.title, to_text(o.method));
+    for (const Option* option : told_options())
+        if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
+    text += fmt::format("\n  {} steps of Newton's method, the last of {:.1e} of the state\n\n", orbit.iterations,
+                        orbit.error);
+    text += fmt::format("period {:.14g} s, from {} t = {:.10g} s\n  {}\n  {}\n", orbit.period,
+                        orbit.is_at_release ? "the release at" : "the flight at", orbit.state.t,
+                        named(description, orbit.state.q, ""), named(description, orbit.state.v, "'"));
+    text += fmt::format("multipliers {}\n{}\n\n{}\n{}", multipliers_of(orbit), stability_of(orbit), events_of(orbit),
+                        margins_of(orbit));
+    if (branch != nullptr) text += branch_text(*branch, description);
+    return text;
+}
+
+OrbitGuess orbit_guess(const std::string& json, const std::string& file, std::size_t dof) {
+    const auto refuse = [&](const std::string& why) {
+        return InputError(file, {}, why, "what achilles orbit --json or achilles simulate --json wrote");
+    };
+    const Json root = Json::parse(json, nullptr, false);
+    if (root.is_discarded() || !root.is_object()) throw refuse("it is no JSON of Achilles");
+    const char* const key = root.contains("state") ? "state" : "end";
+    if (!root.contains(key)) throw refuse("it has no state to begin from");
+    const Json& at = root[key];
+    const auto read = [&](const char* name) {
+        if (!at.is_object() || !at.contains(name) || !at[name].is_array() || at[name].size() != dof)
+            throw refuse(fmt::format("its {}.{} has not a number for each of {} coordinates", key, name, dof));
+        Vector values(static_cast<Eigen::Index>(dof));
+        for (std::size_t i = 0; i < dof; ++i) {
+            if (!at[name][i].is_number()) throw refuse(fmt::format("its {}.{} is not all numbers", key, name));
+            values[static_cast<Eigen::Index>(i)] = at[name][i].template get<double>();
+        }
+        return values;
+    };
+    OrbitGuess guess;
+    guess.state = {read("q"), read("v"), 0.0};
+    if (at.contains("t") && at["t"].is_number()) guess.state.t = at["t"].get<double>();
+    if (root.contains("period") && root["period"].is_number()) guess.period = root["period"].get<double>();
+    return guess;
+}
+
+}  // namespace achilles

@@ -1,0 +1,264 @@
+#include "study/orbit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "simulate/surfaces.hpp"
+#include "study/orbit_start.hpp"
+
+namespace achilles {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+double loss_exponent(double e) {
+    // The first flight theta in units of the time to sigma: e (3 - 2 theta) = (3 - theta) (1 - theta)^2 falls from 3 (1 - e) to -e.
+    double low = 0.0, high = 1.0;
+    for (int round = 0; round < 100; ++round) {
+        const double theta = 0.5 * (low + high), rho = 1.0 - theta;
+        ((3.0 - theta) * rho * rho > e * (3.0 - 2.0 * theta) ? low : high) = theta;
+    }
+    const double theta = 0.5 * (low + high), rho = 1.0 - theta;
+    const double m =
+        e * ((0.5 - 2.0 * theta / 3.0) / (rho * rho) + (theta - 2.0 * theta * theta / 3.0) / (rho * rho * rho)) /
+        (0.5 - theta / 3.0);
+    return std::log(1.0 / rho) / std::log(m);
+}
+
+Options exact_options() {
+    Options options;
+    options.tolerance = 1e-14;
+    Truncation& bounds = options.truncation;
+    bounds.eps_q = bounds.eps_v = bounds.eps_t = 1e-11;
+    return options;
+}
+
+namespace {
+
+// The least psi of the Zeno points of a run, and the shortest contact past one; nothing where it has none, or where e = 0 leaves no
+// bouncing.
+void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+        const Event& event = run.events[i];
+        if (event.kind != Event::Kind::zeno || !event.contacts.has_one()) continue;
+        const std::size_t contact = event.contacts.only();
+        const double e = model.restitution(run.run.parameters, contact);
+        if (!(e > 0.0 && e < 1.0)) continue;
+        auto hddot = model.evaluator(model.programs_of(contact, event.held.without(contact)).normal_acceleration,
+                                     run.run.parameters);
+        set_state(hddot, {event.q, event.v_after, event.t});
+        hddot.run();
+        const double psi = std::pow(std::max(-hddot.output(0), 0.0), 1.0 / loss_exponent(e));
+        const double contact_lasts = (i + 1 < run.events.size() ? run.events[i + 1].t : run.end_time) - event.t;
+        point.shortest_contact = point.psi ? std::min(point.shortest_contact, contact_lasts) : contact_lasts;
+        point.psi = std::min(psi, point.psi.value_or(psi));
+    }
+}
+
+// Two for every contact held at one time, and for an impact that takes the whole speed.
+std::size_t forgotten(const Model& model, const Trajectory& run) {
+    int most = 0;
+    for (const Phase& phase : run.phases) most = std::max(most, phase.held.count());
+    for (const Event& event : run.events)
+        for (std::size_t i = 0; i < model.contacts(); ++i)
+            if (event.contacts.contains(i) && model.restitution(run.run.parameters, i) == 0.0) most = std::max(most, 1);
+    return std::min(2 * static_cast<std::size_t>(most), 2 * static_cast<std::size_t>(model.dof()));
+}
+
+}  // namespace
+
+std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const Shot& shot, std::size_t& zeros) {
+    const Index m = shot.M.rows();
+    zeros = forgotten(*map.model(), shot.run);
+    const Index r = m - static_cast<Index>(zeros), flow = map.is_driven() ? 0 : 1;
+    if (r <= flow) return {};
+    // What M reaches has r dimensions; its multipliers there are all but the zeros. The flow's direction first: its column is 1, 0, ...
+    MatrixXd reached(m, flow + r);
+    if (flow > 0) reached.col(0) = shot.F1.normalized();
+    reached.rightCols(r) = shot.M.jacobiSvd(Eigen::ComputeFullU).matrixU().leftCols(r);
+    // Of the basis, what lies across the flow.
+    for (Index round = 0; flow > 0 && round < 2; ++round)
+        reached.rightCols(r) -= reached.col(0) * (reached.col(0).transpose() * reached.rightCols(r));
+    const MatrixXd across = MatrixXd(reached.rightCols(r)).jacobiSvd(Eigen::ComputeFullU).matrixU().leftCols(r - flow);
+    const MatrixXd B = across.transpose() * shot.M * across;
+    const Eigen::VectorXcd values = B.eigenvalues();
+    std::vector<std::complex<double>> all(values.begin(), values.end());
+    std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+        return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
+    });
+    return all;
+}
+
+// ---- what there is ----
+
+namespace {
+
+// The state where the period is said to begin, and how it and the period depend on the parameters.
+void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
+    const Index n = map.dof(), P = static_cast<Index>(orbit.parameters.size());
+    const Shot& shot = closed.shot;
+    const Lap& lap = closed.lap;
+    // (dx, dT)/dp, of the start of the lap, across the motion where there is no drive.
+    MatrixXd A = MatrixXd::Zero(2 * n + 1, 2 * n + 1), r = MatrixXd::Zero(2 * n + 1, P);
+    A.topLeftCorner(2 * n, 2 * n) = shot.M - MatrixXd::Identity(2 * n, 2 * n);
+    A.topRightCorner(2 * n, 1) = shot.F1;
+    r.topRows(2 * n) = -shot.P;
+    if (map.is_driven()) {
+        A(2 * n, 2 * n) = 1.0;
+        if (P > 0) r.row(2 * n) = map.period(lap.parameters).slope;
+    } else {
+        A.row(2 * n).head(2 * n) = shot.F0.transpose();
+    }
+    const MatrixXd by = A.completeOrthogonalDecomposition().solve(r);
+    orbit.by_parameters = by;
+    orbit.state = shot.run.run.start();
+    const double start_time = map.run().options.start_time;
+    const Event* const last = shot.run.events.empty() ? nullptr : &shot.run.events.back();
+    const auto unshift = [&] {
+        for (Index i = 0; i < n; ++i) {
+            const auto shift = map.shift(static_cast<std::size_t>(i), lap.parameters);
+            orbit.state.q[i] -= shift.value;
+            if (P > 0) orbit.by_parameters.row(i) -= shift.slope;
+        }
+    };
+    if (!map.is_driven() && last != nullptr && last->kind == Event::Kind::release) {
+        orbit.is_at_release = true;
+        const Derivatives::AtEvent& at = shot.derivatives.events.back();
+        MatrixXd there(2 * n, 2 * n + P);
+        there << at.q, at.v_after;
+        orbit.by_parameters.topRows(2 * n) = there.leftCols(2 * n) * by.topRows(2 * n) + there.rightCols(P);
+        orbit.state = {last->q, last->v_after, start_time};
+        unshift();
+    } else if (map.is_driven() && lap.start_time > start_time) {
+        const double t = start_time + lap.period;
+        const Trajectory run = map.run_of(lap, t - lap.start_time);
+        const Derivatives d = differentiate(run);
+        if (!d.end) return;
+        MatrixXd there(2 * n, 2 * n + P);
+        there << d.end->q, d.end->v;
+        orbit.by_parameters.topRows(2 * n) = there.leftCols(2 * n) * by.topRows(2 * n) + there.rightCols(P);
+        // At a start time that stands, the end time moves with the period.
+        const VectorXd F = map.rate(lap.parameters, run.end, run.end_held);
+        if (P > 0) orbit.by_parameters.topRows(2 * n) += F * by.row(2 * n);
+        orbit.state = run.end;
+        orbit.state.t = start_time;
+        unshift();
+    }
+}
+
+}  // namespace
+
+Orbit orbit_of(const ReturnMap& map, const ClosedLap& closed) {
+    Orbit orbit;
+    orbit.parameters = closed.lap.parameters;
+    orbit.period = closed.lap.period;
+    orbit.iterations = closed.iterations;
+    orbit.error = closed.error;
+    orbit.has_flow = !map.is_driven();
+    orbit.multipliers = free_multipliers(map, closed.shot, orbit.zero_multipliers);
+    constexpr double rounding = 1e-9;
+    orbit.stable = std::all_of(orbit.multipliers.begin(), orbit.multipliers.end(),
+                               [](const auto& mu) { return std::abs(mu) < 1.0 - rounding; });
+    if (orbit.has_flow) orbit.multipliers.insert(orbit.multipliers.begin(), 1.0);
+    orbit.multipliers.resize(static_cast<std::size_t>(2 * map.dof()));
+    orbit.margins = closed.shot.derivatives.margins;
+    set_psi(*map.model(), closed.shot.run, orbit);
+    orbit.word = closed.shot.word;
+    set_section(map, closed, orbit);
+    orbit.run = closed.shot.run;
+    return orbit;
+}
+
+namespace {
+
+// So many shifts lie between where the period begins and where the search did.
+double shifts_from_start(const ReturnMap& map, const ClosedLap& closed) {
+    double along = 0.0, square = 0.0;
+    const auto& events = closed.shot.run.events;
+    const bool at_release = !map.is_driven() && !events.empty() && events.back().kind == Event::Kind::release;
+    for (Index i = 0; i < map.dof(); ++i) {
+        const double shift = map.shift(static_cast<std::size_t>(i), closed.lap.parameters).value;
+        const double begins = at_release ? events.back().q[i] - shift : closed.lap.x[i];
+        along += (begins - map.run().q[i]) * shift;
+        square += shift * shift;
+    }
+    return square > 0.0 ? std::round(along / square) : 0.0;
+}
+
+// The same periodic run where it is told: moved by shifts to where the search began, and without a drive with a clock by which it
+// begins at the start time, at a release where there is one.
+ClosedLap put_in_place(const ReturnMap& map, const Newton& newton, ClosedLap closed) {
+    const auto last_is_release = [&] {
+        const auto& events = closed.shot.run.events;
+        return !events.empty() && events.back().kind == Event::Kind::release;
+    };
+    const auto& events = closed.shot.run.events;
+    const bool any = std::any_of(events.begin(), events.end(), [](const Event& event) {
+        return event.kind == Event::Kind::release && event.held.empty();
+    });
+    if (!map.is_driven() && any && !last_is_release()) closed = newton.close(rebased(map, closed.lap, true));
+    Lap lap = closed.lap;
+    const double shifts = shifts_from_start(map, closed);
+    for (Index i = 0; i < map.dof(); ++i)
+        lap.x[i] -= shifts * map.shift(static_cast<std::size_t>(i), lap.parameters).value;
+    if (!map.is_driven())
+        lap.start_time = map.run().options.start_time +
+                         (last_is_release() ? lap.period - (closed.shot.run.events.back().t - lap.start_time) : 0.0);
+    return lap.start_time == closed.lap.start_time && shifts == 0.0 ? closed : newton.close(lap);
+}
+
+ClosedLap search(const ReturnMap& map, int periods) {
+    const Lap lap = guess_of(map, periods);
+    const Newton newton(map, scale_of(map, lap, 1.0), 0);
+    ClosedLap closed = newton.close(lap);
+    const int iterations = closed.iterations;
+    constexpr double shrunk = 1e-3;
+    const Index n = map.dof();
+    const double before = newton.scale().segment(n, n).maxCoeff(),
+                 now = scale_of(map, closed.lap, 1.0).segment(n, n).maxCoeff();
+    if (!(closed.lap.period > shrunk * lap.period && now > shrunk * before))
+        throw NoOrbit("the search has ended in a point at rest, whose period is none");
+    closed = put_in_place(map, newton, std::move(closed));
+    closed.iterations = iterations;
+    closed.shot = map.shoot(closed.lap);
+    return closed;
+}
+
+// A guess that lies below a surface is put to rest on it.
+void lift(const Model& model, Run& run) {
+    State state = run.start();
+    Surfaces surfaces(model, run);
+    ContactSet below;
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (surfaces.of(i).at(state).h < 0.0) below = below.with(i);
+    if (below.empty() || !surfaces.project(state, below, below)) return;
+    run.q = state.q;
+    run.v = state.v;
+}
+
+}  // namespace
+
+OrbitSearch find_orbit(const std::shared_ptr<const Model>& model, const OrbitAsked& asked) {
+    Chain::check(asked.run);
+    Run run = asked.run;
+    if (asked.is_guess) lift(*model, run);
+    model->check(run);
+    const ReturnMap map(model, run, asked.closing);
+    OrbitSearch found;
+    // What forgets its start comes nearer to where it repeats by itself.
+    for (const int periods : {0, 1, 3, 8, 20}) {
+        try {
+            found.orbit = orbit_of(map, search(map, periods));
+            return found;
+        } catch (const NoOrbit& none) {
+            if (found.why.empty()) found.why = none.what();
+        }
+    }
+    return found;
+}
+
+}  // namespace achilles
