@@ -86,6 +86,7 @@ void Session::settle() {
     receive_proof({});
     receive_estimate({});
     sweep_job_->update({});
+    follow_dependence({});
 }
 
 }  // namespace achilles
