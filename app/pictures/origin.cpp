@@ -101,8 +101,8 @@ namespace {
 // Where a picture goes and how it is worked at, rather than what it shows.
 bool is_where(const std::string& option) {
     return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite" ||
-           option == "--progress" || option == "--csv" || option == "--json" || option == "--hdf5" || option == "--units" ||
-           option == "--resume" || option == "--threads";
+           option == "--progress" || option == "--csv" || option == "--json" || option == "--hdf5" ||
+           option == "--units" || option == "--resume" || option == "--threads";
 }
 
 bool is_flag(const std::string& option) {

@@ -108,7 +108,8 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
         throw NoOrbit(fmt::format("a run that was tried stopped at t = {:.10g} s: {}", shot.run.end_time,
                                   shot.run.outcome.message));
     if (!shot.run.phases.front().held.empty() || !shot.run.end_held.empty())
-        throw NoOrbit("the section came to lie in a contact, where it must be in a flight");
+        throw NoOrbit(
+            "the search was led to where the period begins in a contact, not in a flight; another guess may help");
     const auto P = static_cast<Index>(lap.parameters.size());
     MatrixXd directions = MatrixXd::Identity(2 * n + P + 1, 2 * n + P);
     for (Index k = 0; parameter && k < P; ++k)

@@ -40,10 +40,10 @@ const Change in_keys[] = {
     {"[lagrangian]", "[langrangian]",
      "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
      "^\nknown here: title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, "
-     "extra"},
+     "orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
      "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown here: "
-     "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, extra"},
+     "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, orbit, extra"},
     {"end_time = 5", "zeno = 5",
      "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown here: start_time, end_time, tolerance, "
      "method, "
