@@ -8,8 +8,7 @@ Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_m
 }
 
 double estimated_wait(const Trend& trend, double e, double w) {
-    const double T0 = 2.0 * e * w / (trend.a * (1.0 - e));
-    return T0 - T0 * T0 * (trend.b / (3.0 * trend.a) + trend.c / 6.0);
+    return estimated_wait(trend.a, trend.b, trend.c, e, w);
 }
 
 namespace {

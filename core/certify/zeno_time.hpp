@@ -21,6 +21,12 @@ struct Trend {
 // The wait to second order in w, an estimate (theory-truncation.md 3):
 //     T0 - T0^2 (b/(3a) + c/6),   T0 = 2 e w/(a (1 - e)).    Needs a > 0, e < 1.
 double estimated_wait(const Trend& trend, double e, double w);
+// The same over any number.
+template <class Number>
+Number estimated_wait(const Number& a, const Number& b, const Number& c, const Number& e, const Number& w) {
+    const Number T0 = 2.0 * e * w / (a * (1.0 - e));
+    return T0 - T0 * T0 * (b / (3.0 * a) + c / 6.0);
+}
 
 // What is proved of -hddot = G(q, s, sigma) over a box that contains the bouncing, its bounds a_min and a_max apart. P,
 // Phi and Xi are those of model/bouncing.hpp with G for hddot.

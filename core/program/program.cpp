@@ -95,4 +95,18 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
     if (code_) run_code_ = code_->as<void(double*)>();
 }
 
+// From the results down to what they are made of.
+bool Program::depends_on(std::uint32_t slot, std::size_t outputs) const {
+    const std::size_t first = slots_.count + constants_.size();
+    std::vector<bool> needed(first + instructions_.size(), false);
+    for (std::size_t i = 0; i < outputs; ++i) needed[outputs_[i]] = true;
+    for (std::size_t i = instructions_.size(); i-- > 0;) {
+        const Instruction& in = instructions_[i];
+        if (!needed[first + i] || is_leaf(in.operation)) continue;
+        needed[in.a] = true;
+        if (is_binary(in.operation)) needed[in.b] = true;
+    }
+    return needed[slot];
+}
+
 }  // namespace achilles

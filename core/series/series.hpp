@@ -35,6 +35,8 @@ class SeriesProgram {
     std::size_t rules() const { return plan_.rules.size(); }
     // Whether a function in it has an edge, past which it is no number: a root, a logarithm.
     bool is_partial() const { return partial_; }
+    // Whether a series depends on an input.
+    bool depends_on(std::uint32_t slot) const { return program_.depends_on(slot, plan_.coordinates() + plan_.events); }
 
  private:
     template <class Number>

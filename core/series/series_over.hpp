@@ -1,5 +1,6 @@
 // The Taylor coefficients of a motion over any number, an interval or one with its derivatives: the plan that runs have,
-// order by order (recurrence.hpp), with every constant as that number sees it. For proofs; there is no machine code in it.
+// order by order (recurrence.hpp), with every constant as that number sees it. For proofs and derivatives; there is no machine
+// code in it.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +45,20 @@ class SeriesOver {
 
     // Makes orders 0 .. last of the event functions, 0 .. last + 1 of the state, from (q, v) and the time; 1 <= last < 34.
     void expand(const Number* state, const Number& time, int last) {
+        begin(state, time);
+        for (int k = 1; k <= last; ++k) extend(k);
+        const std::size_t n = program_->plan_.coordinates(), width = program_->plan_.states();
+        Number* const row = rows_.data() + static_cast<std::size_t>(last + 1) * width;
+        const Number inverse = Number(1.0) / Number(static_cast<double>(last + 1));
+        for (std::size_t i = 0; i < n; ++i) {
+            row[i] = inverse * row[n + i - width];
+            row[n + i] = inverse * now_[program_->plan_.outputs[i]];
+        }
+    }
+    // The same order by order: order 0, then those of all from 1 on, one after the other, to highest_order at most.
+    void begin(const Number* state, const Number& time) {
         const SeriesPlan& plan = program_->plan_;
-        const std::size_t n = plan.coordinates(), width = plan.states();
+        const std::size_t n = plan.coordinates();
         std::fill(now_.begin(), now_.end(), Number(0.0));
         for (std::size_t i = 0; i < 2 * n; ++i) zero_.input(i) = rows_[i] = state[i];
         if (plan.clock != 0) {
@@ -55,19 +68,19 @@ class SeriesOver {
         zero_.run();
         program_->start(registers(), coefficients_.data(), factors_.data());
         for (std::size_t i = 0; i < plan.events; ++i) rows_[2 * n + i] = start(n + i);
-        Number* row = rows_.data() + width;
+        Number* const row = rows_.data() + plan.states();
         for (std::size_t i = 0; i < n; ++i) {
             row[i] = state[n + i];
             row[n + i] = start(i);
         }
-        for (int k = 1; k <= last; ++k, row += width)
-            make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
-        const Number inverse = Number(1.0) / Number(static_cast<double>(last + 1));
-        for (std::size_t i = 0; i < n; ++i) {
-            row[i] = inverse * row[n + i - width];
-            row[n + i] = inverse * now_[plan.outputs[i]];
-        }
     }
+    void extend(int k) {
+        const SeriesPlan& plan = program_->plan_;
+        make_motion_order(plan, sums_, tables_, rows_.data() + static_cast<std::size_t>(k) * plan.states(),
+                          static_cast<std::size_t>(k));
+    }
+    // Whether the series depend on the time by itself.
+    bool has_clock() const { return program_->plan_.clock != 0; }
     // Order k: q and v, then the event functions.
     const Number& coefficient(int k, std::size_t i) const {
         return rows_[static_cast<std::size_t>(k) * program_->plan_.states() + i];

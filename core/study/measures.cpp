@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "expression/parse.hpp"
+#include "model/behind.hpp"
 #include "simulate/least_gap.hpp"
-#include "system/input_error.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -32,17 +32,6 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     if (word == "impact_speed") return several ? "" : unit_of_expression(description, "gap'");
     if (word == "least_gap") return several ? "" : unit_of_expression(description, "gap");
     return unit_of_expression(description, print);
-}
-
-// Compiles, and says of what is wrong behind which option it stands.
-template <class Compile>
-auto behind(const char* flag, const std::string& text, const Compile& compile) {
-    const Text given{text, {}};
-    try {
-        return compile(std::span(&given, 1));
-    } catch (const InputError& error) {
-        throw InputError(fmt::format("{} {}", flag, shown(text)), error.at, error.message, error.hint, text);
-    }
 }
 
 }  // namespace

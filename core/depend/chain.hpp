@@ -1,0 +1,137 @@
+// A finished run as a chain of linear maps: what a small change of its start, or of a parameter, becomes of it, event by event
+// (theory-derivatives.md). It is made from what the run has recorded, so that every decision is the run's.
+//
+//     Chain chain(trajectory);
+//     Matrix Z = ...;  chain.complete(Z);                  one column a change, its rows as Tangent says
+//     while (const Link* link = chain.next()) link->apply(Z);
+//
+// Z after a link is the change following the event, (t', X'): that of the state where the run stands then, which each member of
+// the change reaches at its own time. At a fixed time it is  X' - F t', F = chain.rate().
+//
+// Who carries something else through the run, the error that steps have made and its covariance (theory-enclosure.md 9), takes
+// the same links: e := J e + what the link has left out, P := J P J' + ..., with J = link->matrix().
+#pragma once
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "depend/flow_slope.hpp"
+#include "depend/gradient.hpp"
+#include "run/trajectory.hpp"
+#include "simulate/surfaces.hpp"
+
+namespace achilles {
+
+struct Link {
+    enum class Kind {
+        step,      // a step of smooth motion, or a part of one, for a fixed time: Z := J Z
+        crossing,  // every member goes on, or back, to where the event is its own: Z := Z - F (G Z)/(G F)
+        jump       // what happens at the event at once: Z := J Z
+    };
+    Kind kind = Kind::step;
+    std::optional<std::size_t> event;  // of the trajectory; a crossing and then a jump have it
+    double length = 0.0;               // s, of a step
+
+    Eigen::MatrixXd J;      // of a step and a jump
+    Eigen::VectorXd F;      // of a crossing: the rates of all components before the event,
+    Eigen::RowVectorXd G;   // the gradient of what vanishes there,
+    double residual = 0.0;  // and its value
+    // Of a step, in the rows of q, v, h and u: the first two terms that the run's polynomials leave out, (c_{K+1} + c_{K+2} t)
+    // t^(K+1); where they were asked for.
+    Eigen::VectorXd left_out;
+    // Of the jump at which a bouncing is cut.
+    struct Completion {
+        std::size_t contact;
+        ContactSet held;         // the others that are
+        double speed;            // w
+        Eigen::MatrixXd newton;  // the impact that is drawn there, in place of the J that the run goes on from
+    };
+    std::optional<Completion> completion;
+
+    void apply(Eigen::MatrixXd& Z) const;
+    Eigen::MatrixXd matrix() const;
+};
+
+// How near the run comes to where it has no derivative (theory-derivatives.md 8), as far as the chain has gone.
+struct DerivativeMargins {
+    std::optional<double> grazing_speed;  // the least speed of an impact with hddot > 0
+    std::optional<double> gap_minimum;    // the least minimum of a gap along a flight
+    std::optional<double> a_inf;          // the least -hddot at a Zeno point
+    std::optional<double> release_jerk;   // the least h''' at a release
+};
+
+class Chain {
+ public:
+    struct Options {
+        bool left_out = false;  // links tell what steps leave out
+    };
+    // The trajectory, of which everything must have been kept, outlives this. Throws InputError where bouncings were restarted by
+    // the Euclidean projection: their derivatives converge no faster than O(w ln w).
+    explicit Chain(const Trajectory& trajectory, Options options = {false});
+    ~Chain();
+    // Throws the same of a run that has not been made yet.
+    static void check(const Run& run);
+
+    const Tangent& tangent() const { return tangent_; }
+    // Fills the rows of h and u at the start from those of t, q, v and p.
+    void complete(Eigen::MatrixXd& Z);
+    // The contacts on which the run starts at rest: a change must leave their h and u at 0.
+    ContactSet resting_at_start() const { return resting_; }
+
+    // The next link, which stands until the next call; null at the end of the run, or where there is no derivative any more.
+    const Link* next();
+    // Why there is none from where the run now stands; empty where the chain goes on.
+    const std::string& broken() const { return broken_; }
+    // Where the run stands after the last link, and F there.
+    const State& state() const { return state_; }
+    Eigen::VectorXd rate();
+    ContactSet held() const { return held_; }
+    const DerivativeMargins& margins() const { return margins_; }
+
+ private:
+    void step();
+    void happen(std::size_t event);
+    void land(std::size_t event);
+    void reach_zeno_point(std::size_t event);
+    void release(std::size_t event);
+    void break_off(std::string reason) { broken_ = std::move(reason); }
+
+    Link& add(Link::Kind kind, std::optional<std::size_t> event = {});
+    void cross(std::size_t event, Eigen::RowVectorXd G, double residual);
+    void take_out_rate(Eigen::MatrixXd& J, ContactGradient& surface, double times, double u,
+                       const Eigen::RowVectorXd& du);
+    void retract(Eigen::MatrixXd& J, ContactSet onto);
+    Eigen::RowVectorXd wait_row(const Eigen::MatrixXd& J, std::size_t contact, ContactSet others, double speed);
+    std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
+    void set_gaps();
+    void watch_minima(const FlowSlope& slope, double span);
+
+    ContactGradient& surface(std::size_t contact, ContactSet held);
+    FlowSlope& slope(ContactSet held);
+
+    const Trajectory* trajectory_;
+    const Model* model_;
+    Options options_;
+    Tangent tangent_;
+    Surfaces surfaces_;
+    std::map<std::pair<ContactSet, std::size_t>, std::unique_ptr<ContactGradient>> contacts_;
+    std::map<std::pair<ContactSet, std::size_t>, std::unique_ptr<Gradient>> trends_, normals_;
+    std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
+    std::map<ContactSet, std::unique_ptr<FlowSlope>> slopes_;
+    Model::MotionEvaluators motions_;
+
+    State state_;
+    ContactSet held_, resting_;
+    std::size_t next_piece_ = 0, next_event_ = 0;
+    bool waiting_ = false;       // between a cut and its Zeno point
+    std::vector<double> h_, u_;  // of every contact, at the state
+    std::deque<Link> links_;
+    Link link_;
+    std::string broken_;
+    DerivativeMargins margins_;
+};
+
+}  // namespace achilles

@@ -1,0 +1,106 @@
+#include "depend/derivatives.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "model/model.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+// Directions that leave a surface on which the run starts at rest: the run beside it would start in the air, or below it.
+void refuse(Chain& chain, const Model& model, const MatrixXd& Z, std::vector<std::string>& refused) {
+    const Tangent& tangent = chain.tangent();
+    constexpr double rounding = 1e-12;
+    for (Index k = 0; k < Z.cols(); ++k) {
+        const double size = Z.col(k).head(tangent.h(0)).cwiseAbs().maxCoeff() +
+                            Z.col(k).tail(Z.rows() - tangent.u(tangent.contacts)).cwiseAbs().sum();
+        for (std::size_t i = 0; i < tangent.contacts; ++i) {
+            if (!chain.resting_at_start().contains(i)) continue;
+            const std::string& name = model.description().constraints[i].name;
+            if (std::abs(Z(tangent.h(i), k)) > rounding * size)
+                refused[static_cast<std::size_t>(k)] =
+                    fmt::format("the run starts in contact ('{}'), and this direction leaves the surface", name);
+            else if (std::abs(Z(tangent.u(i), k)) > rounding * size)
+                refused[static_cast<std::size_t>(k)] =
+                    fmt::format("the run starts at rest on '{}', and this direction has a speed across it", name);
+        }
+    }
+}
+
+}  // namespace
+
+Derivatives differentiate(const Trajectory& trajectory) {
+    const SystemDescription& system = trajectory.model->description();
+    const auto n = static_cast<Index>(system.coordinates.size()), P = static_cast<Index>(system.parameters.size());
+    Derivatives result = differentiate(trajectory, MatrixXd::Identity(2 * n + P + 1, 2 * n + P));
+    for (const auto& coordinate : system.coordinates) result.directions.push_back(coordinate.name);
+    for (const auto& coordinate : system.coordinates) result.directions.push_back(coordinate.name + "'");
+    for (const auto& parameter : system.parameters) result.directions.push_back(parameter.name);
+    return result;
+}
+
+Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directions) {
+    Chain chain(trajectory);
+    const Tangent& tangent = chain.tangent();
+    const auto n = static_cast<Index>(tangent.dof), P = static_cast<Index>(tangent.parameters), K = directions.cols();
+    Derivatives result;
+    result.refused.resize(static_cast<std::size_t>(K));
+    MatrixXd Z = MatrixXd::Zero(tangent.size(), K);
+    Z.middleRows(tangent.q(0), 2 * n) = directions.topRows(2 * n);
+    Z.middleRows(tangent.p(0), P) = directions.middleRows(2 * n, P);
+    Z.row(Tangent::t()) = directions.row(2 * n + P);
+    chain.complete(Z);
+    refuse(chain, *trajectory.model, Z, result.refused);
+    for (Index k = 0; k < K; ++k)
+        if (!result.refused[static_cast<std::size_t>(k)].empty())
+            Z.col(k).setConstant(std::numeric_limits<double>::quiet_NaN());
+
+    const auto positions = [&] { return Z.middleRows(tangent.q(0), n); };
+    const auto velocities = [&] { return Z.middleRows(tangent.v(0), n); };
+    const auto take = [&](std::size_t event) {
+        if (result.events.size() == event) {
+            Derivatives::AtEvent& at = result.events.emplace_back();
+            at.v_before = velocities();
+        }
+        Derivatives::AtEvent& at = result.events[event];
+        at.t = Z.row(Tangent::t()).transpose();
+        at.q = positions();
+        at.v_after = velocities();
+    };
+    while (const Link* link = chain.next()) {
+        if (link->event && link->kind == Link::Kind::jump) {
+            const Event& event = trajectory.events[*link->event];
+            // Before the jump, where a crossing has led.
+            if (event.kind == Event::Kind::impact) {
+                take(*link->event);
+                result.events.back().impact_speed = -Z.row(tangent.u(event.contacts.only())).transpose();
+            }
+            const MatrixXd before = Z;
+            link->apply(Z);
+            take(*link->event);
+            Derivatives::AtEvent& at = result.events.back();
+            if (event.kind != Event::Kind::impact) at.v_before = at.v_after;
+            // The impact itself is drawn as Newton's law has it, whatever the run restarts from.
+            if (link->completion) at.v_after = (link->completion->newton * before).middleRows(tangent.v(0), n);
+            continue;
+        }
+        link->apply(Z);
+    }
+    result.margins = chain.margins();
+    result.broken = chain.broken();
+    if (!result.broken.empty()) {
+        result.broken_from = chain.state().t;
+        return result;
+    }
+    const VectorXd F = chain.rate();
+    const MatrixXd fixed = Z - F * Z.row(Tangent::t());
+    result.end = Derivatives::AtEnd{fixed.middleRows(tangent.q(0), n), fixed.middleRows(tangent.v(0), n)};
+    return result;
+}
+
+}  // namespace achilles

@@ -1,0 +1,86 @@
+// The outputs of a program with their derivatives by q, v, the parameters and the time.
+#pragma once
+
+#include <vector>
+
+#include "depend/tangent.hpp"
+#include "model/model.hpp"
+#include "number/jet.hpp"
+
+namespace achilles {
+
+class Gradient {
+ public:
+    Gradient(const Model& model, const Program& program, const Tangent& tangent, std::span<const double> parameters)
+        : tangent_(tangent) {
+        for (std::size_t first = 0; first < tangent.variables(); first += lanes) {
+            Evaluator<Number>& evaluator = evaluators_.emplace_back(program);
+            for (std::size_t k = 0; k < parameters.size(); ++k)
+                evaluator.input(model.layout().parameter(k)) = number(parameters[k], 2 * tangent.dof + k, first);
+            evaluator.fix();
+        }
+        values_.resize(program.output_count());
+        rows_.setZero(static_cast<Eigen::Index>(program.output_count()), tangent.size());
+    }
+
+    // Evaluates at a state.
+    void at(const State& state) {
+        const std::size_t n = tangent_.dof;
+        for (std::size_t part = 0; part < evaluators_.size(); ++part) {
+            Evaluator<Number>& evaluator = evaluators_[part];
+            const std::size_t first = part * lanes;
+            for (std::size_t i = 0; i < n; ++i) {
+                const auto k = static_cast<Eigen::Index>(i);
+                evaluator.input(i) = number(state.q[k], i, first);
+                evaluator.input(n + i) = number(state.v[k], n + i, first);
+            }
+            evaluator.clock() = number(state.t, tangent_.variables() - 1, first);
+            evaluator.run();
+            for (std::size_t i = 0; i < values_.size(); ++i) {
+                const Number& output = evaluator.output(i);
+                values_[i] = output.value;
+                for (std::size_t j = 0; j < lanes && first + j < tangent_.variables(); ++j)
+                    rows_(static_cast<Eigen::Index>(i), tangent_.variable(first + j)) = output.slope[j];
+            }
+        }
+    }
+    double value(std::size_t output) const { return values_[output]; }
+    // Its derivatives, component by component of a change.
+    auto row(std::size_t output) const { return rows_.row(static_cast<Eigen::Index>(output)); }
+
+ private:
+    static constexpr std::size_t lanes = 8;
+    using Number = Jet<double, lanes>;
+    static Number number(double x, std::size_t variable, std::size_t first) {
+        return variable >= first && variable < first + lanes ? Number::variable(x, variable - first) : Number(x);
+    }
+
+    Tangent tangent_;
+    std::vector<Evaluator<Number>> evaluators_;  // each of so many variables
+    std::vector<double> values_;
+    Eigen::MatrixXd rows_;
+};
+
+// A contact's quantities with their derivatives, by name.
+class ContactGradient : public Gradient {
+ public:
+    ContactGradient(const Model& model, const ProgramOf<ContactTerms>& program, const Tangent& tangent,
+                    std::span<const double> parameters)
+        : Gradient(model, program, tangent, parameters), places_({}, tangent.dof), dof_(tangent.dof) {}
+    double h() const { return value(places_.h()); }
+    double hdot() const { return value(places_.hdot()); }
+    double n(std::size_t i) const { return value(places_.impulse_direction(i)); }
+    auto h_row() const { return row(places_.h()); }
+    auto hdot_row() const { return row(places_.hdot()); }
+    auto n_row(std::size_t i) const { return row(places_.impulse_direction(i)); }
+
+ private:
+    // What has outputs that are their own places.
+    struct Place {
+        std::size_t output(std::size_t index) const { return index; }
+    };
+    ContactTerms<Place> places_;
+    std::size_t dof_;
+};
+
+}  // namespace achilles

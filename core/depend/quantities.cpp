@@ -1,0 +1,192 @@
+#include "depend/quantities.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "expression/parse.hpp"
+#include "model/behind.hpp"
+#include "simulate/contact_forces.hpp"
+#include "simulate/least_gap.hpp"
+#include "simulate/sampler.hpp"
+
+namespace achilles {
+
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd;
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+// What a program has as input at the end of a run, by slot: values, and a row of derivatives where it has any.
+class Inputs {
+ public:
+    Inputs(const Trajectory& trajectory, const Derivatives& derivatives, const Model::MeasureProgram& measures)
+        : trajectory_(trajectory), derivatives_(derivatives), model_(*trajectory.model), layout_(model_.layout()) {
+        K_ = static_cast<Index>(derivatives.refused.size());
+        values_.assign(layout_.count() + measures.quantities.size(), 0.0);
+        rows_.setZero(static_cast<Index>(values_.size()), K_);
+        set_end();
+        for (std::size_t i = 0; i < measures.quantities.size(); ++i)
+            set_quantity(layout_.count() + i, measures.quantities[i]);
+    }
+    double value(std::size_t slot) const { return values_[slot]; }
+    double row(std::size_t slot, Index k) const { return rows_(static_cast<Index>(slot), k); }
+    std::size_t count() const { return values_.size(); }
+
+ private:
+    void set(std::size_t slot, double value) { values_[slot] = value; }
+    void set(std::size_t slot, double value, const RowVectorXd& row) {
+        values_[slot] = value;
+        rows_.row(static_cast<Index>(slot)) = row;
+    }
+
+    void set_end() {
+        const Trajectory& run = trajectory_;
+        const std::size_t n = layout_.dof;
+        const auto& end = derivatives_.end;
+        const RowVectorXd none = RowVectorXd::Constant(K_, nothing);
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto k = static_cast<Index>(i);
+            set(layout_.q(i), run.end.q[k], end ? RowVectorXd(end->q.row(k)) : none);
+            set(layout_.v(i), run.end.v[k], end ? RowVectorXd(end->v.row(k)) : none);
+        }
+        for (std::size_t i = 0; i < layout_.p; ++i) {
+            set(layout_.parameter(i), run.run.parameters[i]);
+            const auto column = static_cast<Index>(2 * n + i);
+            rows_(static_cast<Index>(layout_.parameter(i)), column) = 1.0;
+        }
+        set(layout_.t(), run.end_time);
+        set(layout_.work(), run.work, none);
+        set(layout_.loss(), run.loss, none);
+        if (layout_.contacts == 1) return set(layout_.contact(), run.end_held.empty() ? 0.0 : 1.0);
+        set_contacts(end, none);
+    }
+
+    // hddot and lambda of each contact, at the end.
+    void set_contacts(const std::optional<Derivatives::AtEnd>& end, const RowVectorXd& none) {
+        const Trajectory& run = trajectory_;
+        ContactForces forces(model_, run.run.parameters);
+        forces.set(run.end, run.end_held, run.phases.back().carriers);
+        const Tangent tangent{layout_.dof, layout_.contacts, layout_.p};
+        MatrixXd Z = MatrixXd::Zero(tangent.size(), K_);
+        if (end) {
+            Z.middleRows(tangent.q(0), static_cast<Index>(layout_.dof)) = end->q;
+            Z.middleRows(tangent.v(0), static_cast<Index>(layout_.dof)) = end->v;
+            for (std::size_t i = 0; i < layout_.p; ++i) Z(tangent.p(i), static_cast<Index>(2 * layout_.dof + i)) = 1.0;
+        }
+        const auto derivatives_of = [&](const Program& program, std::size_t output) {
+            Gradient gradient(model_, program, tangent, run.run.parameters);
+            gradient.at(run.end);
+            return RowVectorXd(gradient.row(output) * Z);
+        };
+        for (std::size_t i = 0; i < layout_.contacts; ++i) {
+            const bool held = run.end_held.contains(i);
+            const double a = forces.acceleration(i), f = forces.force(i);
+            if (!end) {
+                set(layout_.acceleration(i), a, none);
+                set(layout_.force(i), f, none);
+            } else if (held) {
+                set(layout_.acceleration(i), a);
+                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, run.end_held.without(i)).force, 0));
+            } else {
+                set(layout_.force(i), f);
+                set(layout_.acceleration(i), a,
+                    derivatives_of(model_.motion(run.end_held).program, 2 * layout_.dof + i));
+            }
+        }
+    }
+
+    // Of the k-th event of a kind, or the last.
+    void set_quantity(std::size_t slot, const RunQuantity& quantity) {
+        using Kind = RunQuantity::Kind;
+        const auto& events = trajectory_.events;
+        const auto kind_of = [&] {
+            if (quantity.kind == Kind::zeno_time || quantity.kind == Kind::zeno_points) return Event::Kind::zeno;
+            if (quantity.kind == Kind::release_time || quantity.kind == Kind::releases) return Event::Kind::release;
+            return Event::Kind::impact;
+        }();
+        const RowVectorXd none = RowVectorXd::Constant(K_, nothing);
+        if (quantity.kind == Kind::least_gap) return set(slot, least_gap(trajectory_), none);
+        int count = 0;
+        std::optional<std::size_t> found;
+        for (std::size_t i = 0; i < events.size(); ++i)
+            if (events[i].kind == kind_of && (++count == quantity.k || quantity.k == 0)) found = i;
+        if (quantity.kind == Kind::zeno_points || quantity.kind == Kind::impacts || quantity.kind == Kind::releases)
+            return set(slot, count);
+        if (!found) return set(slot, nothing, none);
+        const bool is_speed = quantity.kind == Kind::impact_speed;
+        const double value = is_speed ? events[*found].impact_speed : events[*found].t;
+        if (*found >= derivatives_.events.size()) return set(slot, value, none);
+        const Derivatives::AtEvent& at = derivatives_.events[*found];
+        set(slot, value, (is_speed ? at.impact_speed : at.t).transpose());
+    }
+
+    const Trajectory& trajectory_;
+    const Derivatives& derivatives_;
+    const Model& model_;
+    const Layout layout_;
+    Index K_ = 0;
+    std::vector<double> values_;
+    MatrixXd rows_;
+};
+
+// Why an expression has no derivatives.
+std::string reason_of(const std::string& expression, const Derivatives& derivatives, double value) {
+    if (!(value == value)) return "it does not exist in this run";
+    for (const std::string& name : names_in(expression))
+        if (name == "work" || name == "loss" || name == "least_gap")
+            return "derivatives of " + name + " are not carried";
+    if (!derivatives.broken.empty()) return derivatives.broken;
+    return "it has none there";
+}
+
+}  // namespace
+
+Quantities::Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions)
+    : model_(std::move(model)), expressions_(std::move(expressions)) {
+    std::vector<Text> texts;
+    for (const std::string& expression : expressions_) {
+        behind("--of", expression, [&](std::span<const Text> one) { return model_->compile_measures(one); });
+        texts.push_back({expression, {}});
+    }
+    if (!texts.empty()) measures_ = model_->compile_measures(texts);
+}
+
+std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivatives& derivatives) const {
+    std::vector<Quantity> result;
+    if (expressions_.empty()) return result;
+    const Inputs inputs(trajectory, derivatives, measures_);
+    constexpr std::size_t lanes = 8;
+    using Number = Jet<double, lanes>;
+    const auto K = static_cast<Index>(derivatives.refused.size());
+    for (const std::string& expression : expressions_)
+        result.push_back({expression, nothing, Eigen::VectorXd::Constant(K, nothing), ""});
+    for (Index first = 0; first < K; first += lanes) {
+        Evaluator<Number> evaluator(measures_.program);
+        for (std::size_t slot = 0; slot < inputs.count(); ++slot) {
+            Number input(inputs.value(slot));
+            for (Index k = first; k < std::min<Index>(first + lanes, K); ++k)
+                input.slope[static_cast<std::size_t>(k - first)] = inputs.row(slot, k);
+            evaluator.input(slot) = input;
+        }
+        evaluator.fix();
+        evaluator.run();
+        for (std::size_t i = 0; i < result.size(); ++i) {
+            result[i].value = evaluator.output(i).value;
+            for (Index k = first; k < std::min<Index>(first + lanes, K); ++k)
+                result[i].derivatives[k] = evaluator.output(i).slope[static_cast<std::size_t>(k - first)];
+        }
+    }
+    for (Quantity& quantity : result) {
+        // Those of a direction that is refused are none either.
+        bool any = false;
+        for (Index k = 0; k < K; ++k) {
+            if (!derivatives.refused[static_cast<std::size_t>(k)].empty()) quantity.derivatives[k] = nothing;
+            any = any || quantity.derivatives[k] == quantity.derivatives[k];
+        }
+        if (!any) quantity.refused = reason_of(quantity.expression, derivatives, quantity.value);
+    }
+    return result;
+}
+
+}  // namespace achilles
