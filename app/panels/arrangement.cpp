@@ -65,7 +65,7 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
     const bool has_sweep = scene.shows("sweep"), has_plots = scene.shows("plots") || has_sweep;
-    const bool has_events = scene.shows("events") || scene.shows("equations");
+    const bool has_events = scene.shows("events") || scene.shows("equations") || scene.shows("depend");
     const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
     Arrangement parts;
     parts.bar = {0.0F, 0.0F, m.width, m.bar};

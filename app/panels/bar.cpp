@@ -19,8 +19,11 @@ struct Shown {
     const char *what, *name;
     int key;
 };
-constexpr std::array<Shown, 4> panels{
-    {{"controls", "Controls", '1'}, {"plots", "Plots", '2'}, {"events", "Events", '3'}, {"sweep", "Sweep", '4'}}};
+constexpr std::array<Shown, 5> panels{{{"controls", "Controls", '1'},
+                                       {"plots", "Plots", '2'},
+                                       {"events", "Events", '3'},
+                                       {"sweep", "Sweep", '4'},
+                                       {"depend", "What it depends on", '5'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {

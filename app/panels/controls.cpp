@@ -9,6 +9,7 @@
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
+#include "panels/dependence.hpp"
 #include "panels/print.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
@@ -91,6 +92,7 @@ void parameters(const Session& session, const Run& file, PanelState& state, Comm
                       file.parameters[i],
                       is_angle ? degrees(1.0) : 1.0};
         slider.varies = p.name;
+        put_bar(session, slider);
         if (moved(slider, state)) commands.emplace_back(command::Set{p.name, slider.value});
     }
 }
@@ -115,6 +117,7 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
                   is_rate ? file.v[at] : file.q[at],
                   is_angle ? degrees(1.0) : 1.0};
     slider.varies = name;
+    put_bar(session, slider);
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
 }
 
@@ -266,11 +269,11 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     if (!accuracy_heading(session, file, state, commands)) return;
     const Options& now = session.run().options;
     bounds(now, file.options, state, commands);
-    choice(
-        {"conditions", "", "conditions",
-         "what must be certified before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp ones, "
-         "which choose their own neighbourhood and certify the restarted motion"},
-        now, file.options, state, commands);
+    choice({"conditions", "", "conditions",
+            "what must be certified before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp "
+            "ones, "
+            "which choose their own neighbourhood and certify the restarted motion"},
+           now, file.options, state, commands);
     choice({"reinitialization", "", "restart",
             "the velocity the constrained motion starts with: the paper's "
             "euclidean projection, or the kinetic one of a plastic impact"},

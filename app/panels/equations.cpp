@@ -22,7 +22,7 @@ namespace {
 
 constexpr float page_padding = 12.0F;
 
-// One of the two that share the place; the one that is seen is underlined.
+// One of those that share the place; the one that is seen is underlined.
 bool tab(const char* title, const char* place, const char* about, bool is_seen, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), text = ImGui::CalcTextSize(title);
     const bool is_pressed = ImGui::InvisibleButton(place, {text.x, ImGui::GetFrameHeight()});
@@ -150,14 +150,17 @@ class PageDrawing {
 }  // namespace
 
 void show_lower_tabs(const Session& session, PanelState& state, Commands& commands) {
-    const bool equations = session.scene().shows("equations");
-    if (tab("Events", "tab events", "what happens in the run", !equations, state)) {
-        commands.emplace_back(command::Show{"equations", false});
+    const bool equations = session.scene().shows("equations"), depends = session.scene().shows("depend");
+    if (tab("Events", "tab events", "what happens in the run", !equations && !depends, state)) {
+        commands.emplace_back(command::Show{equations ? "equations" : "depend", false});
         if (!session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
     }
     ImGui::SameLine(0.0F, units(14.0F));
     if (tab("Equations", "tab equations", "the equations of motion and the Zeno condition", equations, state))
         commands.emplace_back(command::Show{"equations", true});
+    if (!depends) return;
+    ImGui::SameLine(0.0F, units(14.0F));
+    tab("Dependence", "tab depend", "what a quantity of the run depends on", true, state);
 }
 
 bool derives_equations(const PanelState& state) {

@@ -206,7 +206,9 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     });
     part("sweep", parts.sweep, still_window, [&] { show_sweep(session, state, commands); });
     part("events", parts.events, still_window, [&] {
-        if (session.scene().shows("equations"))
+        if (session.scene().shows("depend"))
+            show_dependence(session, state, commands);
+        else if (session.scene().shows("equations"))
             show_equations(session, state, commands);
         else
             show_events(session, state, commands);

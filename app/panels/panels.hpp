@@ -228,6 +228,7 @@ struct PanelState {
     HeldMechanism held;
     PlaneView plane;
     SweepState sweep;
+    std::string depend;  // a quantity, as it is typed
     ResultStrip strip;
     bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
@@ -314,7 +315,9 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
 // In the same place: the equations of motion, each contact's, and the Zeno conditions with their present values.
 void show_equations(const Session& session, PanelState& state, Commands& commands);
-// Which of the two.
+// In the same place: what a quantity of the run depends on.
+void show_dependence(const Session& session, PanelState& state, Commands& commands);
+// Which of these.
 void show_lower_tabs(const Session& session, PanelState& state, Commands& commands);
 // Frames must go on until they are there.
 bool derives_equations(const PanelState& state);

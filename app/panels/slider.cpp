@@ -21,7 +21,7 @@ namespace achilles {
 
 namespace {
 
-bool is_logarithmic(const Slider& slider) { return slider.low > 0.0 && slider.high / slider.low >= 100.0; }
+bool is_logarithmic(const Slider& slider) { return goes_by_ratios(slider.low, slider.high); }
 
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 
@@ -44,9 +44,7 @@ float grab_at(float left, float width, double share) {
 
 // "30°", "2 m", with so many digits.
 std::string shown(const Slider& slider, double value, int digits = 6) {
-    const bool joined = slider.unit.empty() || slider.unit[0] == '\xc2';
-    return number(rounded(value * slider.factor, std::min(digits, slider.digits + 2))) +
-           (joined ? slider.unit : "\u00a0" + slider.unit);
+    return number_with_unit(number(rounded(value * slider.factor, std::min(digits, slider.digits + 2))), slider.unit);
 }
 
 // With as many digits as there is room for.
@@ -65,7 +63,7 @@ std::string explanation(const Slider& slider) {
     return text +
            (slider.factor == 1.0 ? "\ndouble click: type a value, 1/3 too; "
                                  : "\ndouble click: type degrees, or pi/6; ") +
-           "right click: as the file has it; Shift: fine";
+           "right click: as the file has it; Shift: fine" + (slider.bar_about.empty() ? "" : "\n" + slider.bar_about);
 }
 
 // A thin track behind a slider whose own frame is invisible, with a mark where the file's value is.
@@ -77,6 +75,17 @@ void paint_track(const Slider& slider, float width) {
     if (slider.value == slider.original || !(slider.original >= slider.low && slider.original <= slider.high)) return;
     const float x = std::floor(grab_at(at.x, width, share_of(slider, slider.original * slider.factor)));
     list->AddRectFilled({x - units(1.0F), y - units(6.0F)}, {x + units(1.0F), y + units(6.0F)}, packed(faint_color()));
+}
+
+// Under the track what the slider does to a quantity: from its middle to the left or the right.
+void paint_bar(const Slider& slider, const ImVec2& at, float width) {
+    if (!slider.bar) return;
+    const float middle = std::floor(at.x + 0.5F * width), low = at.y + ImGui::GetFrameHeight() - units(1.0F);
+    const float end = middle + std::clamp(*slider.bar, -1.0F, 1.0F) * 0.5F * usable(width);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({std::min(middle, end), low}, {std::max(middle, end), low + units(2.0F)},
+                        packed(slider.bar_is_old ? faint_color() : current_theme().accent, 0.8F));
+    list->AddRectFilled({middle, low - units(1.0F)}, {middle + units(1.0F), low + units(3.0F)}, packed(faint_color()));
 }
 
 // What a press does to the value under it, where the hand is at `target`: true when that is to be the value now. A press
@@ -329,8 +338,10 @@ bool moved(Slider& slider, PanelState& state) {
     const float width = ImGui::GetContentRegionAvail().x;
     if (state.typed.id == slider.id) return typed_over(slider, state, width) || was_reset;
     const float track = std::floor(std::max(0.4F * width, width - units(value_width)));
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
     bool changed = dragged(slider, track, state.pressed) || was_reset;
     remember(state, slider.id);
+    paint_bar(slider, corner, track);
     tooltip(about);
     changed = moved_by_keys(slider, state) || clicked(slider, state) || changed;
     ImGui::SameLine(0.0F, 0.0F);

@@ -2,6 +2,7 @@
 // that lies within a pixel of the hand; with Shift within a twentieth of one, and goes so much slower.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "panels/panels.hpp"
@@ -15,6 +16,10 @@ struct Slider {
     double factor = 1.0;                        // to the unit that is shown: 180/pi for an angle
     int digits = 4;                             // that are shown of it, and two more
     std::string varies{};                       // its name along an axis of the sweep; empty: it cannot be there
+    // Under it, -1 to 1: what it does to a quantity, beside all others; nothing: nobody asks, or there is no derivative.
+    std::optional<float> bar{};
+    bool bar_is_old = false;  // it is of the run before
+    std::string bar_about{};
 };
 
 // The number between two that is written with the fewest digits: 0, else a multiple of the largest 1, 2 or 5 times a power of

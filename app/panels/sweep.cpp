@@ -69,6 +69,20 @@ std::optional<double> present_number(const Session& session, SweepState& state) 
     return state.measure;
 }
 
+// At the cross hair the line that touches the curve: straight, as the picture's axes go as the line does.
+void show_tangent(const Session& session, const Rectangle& area, const PanelMap& map, ImDrawList* list) {
+    const std::optional<TangentLine> tangent = session.sweep_tangent();
+    if (!tangent) return;
+    const double x = map.x(tangent->x), y = map.y(tangent->y), step = x > area.x + 1.0 ? -1.0 : 1.0;
+    const double rise = (map.y(tangent->at(map.x.value(x + step))) - y) / step;
+    const double reach = std::min<double>(0.3 * area.width, 2.0 * area.height / std::max(std::abs(rise), 1e-9));
+    const auto point = [&](double side) {
+        return ImVec2{static_cast<float>(x + side * reach), static_cast<float>(y + side * reach * rise)};
+    };
+    list->AddLine(point(-1.0), point(1.0), packed(session.theme().background, 0.75F), units(3.5F));
+    list->AddLine(point(-1.0), point(1.0), packed(text_color()), units(1.5F));
+}
+
 void show_cross_hair(const Session& session, const SweepData& data, const Rectangle& area, const PanelMap& map,
                      SweepState& state) {
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -89,6 +103,7 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
         }
     } else if (!data.is_section() && session.sweep_job().is_current()) {
         y = present_number(session, state);
+        show_tangent(session, area, map, list);
     }
     if (x && y) {
         const ImVec2 center{across, static_cast<float>(map.y(*y))};

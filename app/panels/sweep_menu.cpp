@@ -1,7 +1,6 @@
 // What a sweep varies and asks is chosen here.
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
@@ -34,33 +33,6 @@ std::vector<std::string> usual_prints(const SystemDescription& description, bool
     return prints;
 }
 
-// A quiet button with a triangle: what it says now opens a menu. Returns where it ends.
-float menu_button(const char* popup, const std::string& text, float x, const Rectangle& row, float right,
-                  PanelState& state) {
-    const float size = ImGui::GetFontSize(), arrow = units(14.0F);
-    const std::string shown = fitted(text, std::max(units(20.0F), right - x - arrow));
-    const float width = label_width(shown, size) + arrow;
-    ImGui::SetCursorScreenPos({x, row.y});
-    const bool pressed = ImGui::InvisibleButton(popup, {width, row.height});
-    remember(state, popup);
-    const bool lit = ImGui::IsItemHovered();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    paint_label(list, x, row.y + 0.5F * (row.height - 1.2F * size), shown, text_color(), size);
-    const float at = x + width - arrow + units(4.0F), y = std::floor(row.y + 0.5F * row.height);
-    paint_menu_arrow(at, y, lit);
-    if (pressed) ImGui::OpenPopup(popup);
-    return x + width + units(10.0F);
-}
-
-bool field(const char* name, const std::string& id, std::string& text, float width, PanelState& state) {
-    label(name, units(64.0F));
-    ImGui::SameLine();
-    ImGui::SetNextItemWidth(units(width));
-    const bool entered = ImGui::InputText(("##" + id).c_str(), &text, ImGuiInputTextFlags_EnterReturnsTrue);
-    remember(state, id);
-    return entered;
-}
-
 // The limits of one axis, as they are typed; true when they are entered.
 bool limits_entered(const std::string& unit, SweepAxis& axis, SweepMenu& menu, std::size_t place, PanelState& state) {
     if (menu.of != axis) {
@@ -69,8 +41,8 @@ bool limits_entered(const std::string& unit, SweepAxis& axis, SweepMenu& menu, s
         menu.wrong.clear();
     }
     const std::string which = place == 0 ? "x" : "y";
-    bool entered = field("from", "sweep " + which + " from", menu.low, 120.0F, state);
-    entered = field("to", "sweep " + which + " to", menu.high, 120.0F, state) || entered;
+    bool entered = text_row("from", "sweep " + which + " from", menu.low, 120.0F, state);
+    entered = text_row("to", "sweep " + which + " to", menu.high, 120.0F, state) || entered;
     bool logarithmic = axis.logarithmic;
     if (ImGui::Checkbox("logarithmic", &logarithmic)) entered = true;
     remember(state, "sweep " + which + " logarithmic");
@@ -154,7 +126,8 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
         remember(state, std::string("sweep ") + names[i]);
     }
     std::string& zero = state.sweep.zero;
-    if (field("where", "sweep zero", zero, 150.0F, state) && !zero.empty()) ask(Section{Section::Kind::zero, zero, {}});
+    if (text_row("where", "sweep zero", zero, 150.0F, state) && !zero.empty())
+        ask(Section{Section::Kind::zero, zero, {}});
     tooltip("an expression: where it passes zero upwards, as gap' or x - 1. Enter takes it");
 }
 
@@ -178,7 +151,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
         paint_label(ImGui::GetWindowDrawList(), at.x, at.y, typeset(print), text_color(), ImGui::GetFontSize());
     }
     std::string& typed = state.sweep.print;
-    if (field("other", "sweep expression", typed, 150.0F, state) && !typed.empty()) ask(typed);
+    if (text_row("other", "sweep expression", typed, 150.0F, state) && !typed.empty()) ask(typed);
     tooltip(
         "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
         "Enter takes it");

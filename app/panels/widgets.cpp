@@ -1,6 +1,7 @@
 #include "panels/widgets.hpp"
 
 #include <fmt/format.h>
+#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cctype>
@@ -244,6 +245,37 @@ void paint_menu_arrow(float x, float y, bool lit) {
     ImGui::GetWindowDrawList()->AddTriangleFilled({x, y - units(2.0F)}, {x + units(7.0F), y - units(2.0F)},
                                                   {x + units(3.5F), y + units(3.0F)},
                                                   packed(lit ? text_color() : faint_color()));
+}
+
+float menu_button(const char* popup, const std::string& text, float x, const Rectangle& row, float right,
+                  PanelState& state) {
+    const float size = ImGui::GetFontSize(), arrow = units(14.0F);
+    const std::string shown = fitted(text, std::max(units(20.0F), right - x - arrow));
+    const float width = label_width(shown, size) + arrow;
+    ImGui::SetCursorScreenPos({x, row.y});
+    const bool pressed = ImGui::InvisibleButton(popup, {width, row.height});
+    remember(state, popup);
+    const bool lit = ImGui::IsItemHovered();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    paint_label(list, x, row.y + 0.5F * (row.height - 1.2F * size), shown, text_color(), size);
+    const float at = x + width - arrow + units(4.0F), y = std::floor(row.y + 0.5F * row.height);
+    paint_menu_arrow(at, y, lit);
+    if (pressed) ImGui::OpenPopup(popup);
+    return x + width + units(10.0F);
+}
+
+bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state) {
+    label(name, units(64.0F));
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(units(width));
+    const bool entered = ImGui::InputText(("##" + id).c_str(), &text, ImGuiInputTextFlags_EnterReturnsTrue);
+    remember(state, id);
+    return entered;
+}
+
+std::string number_with_unit(const std::string& number, const std::string& unit) {
+    const bool is_joined = unit.empty() || unit[0] == '\xc2';  // a degree
+    return is_joined ? number + unit : number + "\u00a0" + unit;
 }
 
 }  // namespace achilles

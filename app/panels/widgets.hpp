@@ -71,6 +71,11 @@ struct PlotCard {
 PlotCard paint_plot_card(const Rectangle& cell);
 // The sign of what opens a menu; x is its left end, y its middle.
 void paint_menu_arrow(float x, float y, bool lit);
+// A quiet button with such a sign: what it says now opens a menu of that name. Returns where it ends.
+float menu_button(const char* popup, const std::string& text, float x, const Rectangle& row, float right,
+                  PanelState& state);
+// A line to type in, with its name before it, so wide at scale 1; true when Enter was pressed there.
+bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state);
 // How far from a marker, in pixels at scale 1, a click is meant for it.
 constexpr float marker_reach = 8.0F;
 // Of the events that are asked, the one whose sign a hand means: the nearest within reach, but over the sign of a Zeno
@@ -95,6 +100,8 @@ Vector start_towards(const Session& session, const Vector& q);
 std::string typeset_sentence(std::string text);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
+// "3 m", "30°": a number and a unit that are not torn apart.
+std::string number_with_unit(const std::string& number, const std::string& unit);
 // A text of numbers with minus signs in place of hyphens.
 std::string with_minus(std::string text);
 // One of many numbers of this size below or beside one another, with so many decimals; powers of ten where these would show

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "session/command_fields.hpp"
+#include "session/command_studies.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -94,15 +95,17 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{
-    "accuracy", "contours", "controls", "editor", "energy", "equations", "events", "export", "force", "gallery", "help",
-    "lens",     "palette",  "plane",    "plots",  "runs",   "sides",     "strobe", "sweep",  "trail", "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy",  "contours", "controls", "depend",  "editor",  "energy",
+                                                   "equations", "events",   "export",   "force",   "gallery", "help",
+                                                   "lens",      "palette",  "plane",    "plots",   "runs",    "sides",
+                                                   "strobe",    "sweep",    "trail",    "velocity"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
                        // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
                        // events); the section accuracy of the controls; in place of the mechanism the configuration
     // plane, with contours of the energy, or of a system in space two sides; help: the card of keys and words; runs: the table
-    // of the pinned ones beside the events; the gallery; the dialog of export; under the plots the sweep
+    // of the pinned ones beside the events; the gallery; the dialog of export; under the plots the sweep; depend, in place of
+    // the events: on what a quantity of the run depends
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -119,21 +122,6 @@ struct ShowPlane {
     static constexpr auto said =
         Said("plane", "write: plane X Y, expressions with spaces in double quotes, or: plane default", Change::view,
              &ShowPlane::x, &ShowPlane::y);
-};
-struct ShowSweep {
-    std::string text;  // as on the command line, but for --set and the options: these are what the session has
-    static constexpr auto said = Said("sweep", "write: sweep \"--over e=0:0.95:512 --print zeno_time(1)\"",
-                                      Change::view, Field(&ShowSweep::text, in_quotes));
-};
-struct StopProof {  // and forgets what was proved
-    static constexpr auto said = Said("prove off", alone, Change::view);
-};
-struct Prove {
-    double width = 0.0;                  // half, for all coordinates and rates of the start
-    std::vector<std::string> intervals;  // NAME=LOW..HIGH, which hold what the present run has
-    static constexpr auto said =
-        Said("prove", "write: prove [width W] [NAME=LOW..HIGH ...], or: prove off", Change::view,
-             Field(&Prove::width, length_after("width")), Field(&Prove::intervals, {.may_lack = true}));
 };
 struct Find {
     std::string text;  // letters of a command, in the palette, which opens
@@ -365,14 +353,14 @@ struct Replay {
 using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::DefaultPlane,
-                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::Find,
-                 command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale,
-                 command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look, command::Camera,
-                 command::Speed, command::Loop, command::Step, command::Undo, command::Redo, command::Pin,
-                 command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
-                 command::Lens, command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset,
-                 command::Done, command::Export, command::Copy, command::Wait, command::Say, command::Highlight,
-                 command::Replay>;
+                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowDependence,
+                 command::Find, command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range,
+                 command::AxisScale, command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look,
+                 command::Camera, command::Speed, command::Loop, command::Step, command::Undo, command::Redo,
+                 command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall,
+                 command::PlotDifference, command::Lens, command::UseTheme, command::Enlarge, command::Present,
+                 command::Size, command::Reset, command::Done, command::Export, command::Copy, command::Wait,
+                 command::Say, command::Highlight, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

@@ -42,6 +42,7 @@ void Scene::forget_place() {
     lens_.reset();
     plane_.reset();
     sweep_.reset();
+    depends_.reset();
 }
 
 void Scene::perform(const command::DefaultPlane&) {
@@ -59,6 +60,11 @@ void Scene::perform(const command::ShowSweep& command) {
     shown_.insert("sweep");
 }
 
+void Scene::perform(const command::ShowDependence& command) {
+    depends_ = command.quantity;
+    perform(command::Show{"depend", true});
+}
+
 void Scene::perform(const command::Show& command) {
     const auto& things = command::shown_things;
     if (std::find(things.begin(), things.end(), command.what) == things.end())
@@ -69,6 +75,9 @@ void Scene::perform(const command::Show& command) {
     };
     if (command.on && is_card(command.what)) std::erase_if(shown_, is_card);
     if (command.what == "palette") finds_.clear();
+    // These share a place.
+    if (command.on && command.what == "depend") shown_.erase("equations");
+    if (command.on && command.what == "equations") shown_.erase("depend");
     if (command.on)
         shown_.insert(command.what);
     else
@@ -136,6 +145,10 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.plane()) before.perform(*scene.plane()), steps.emplace_back(*scene.plane());
     if (scene.sweep())
         before.perform(command::ShowSweep{*scene.sweep()}), steps.emplace_back(command::ShowSweep{*scene.sweep()});
+    if (const auto& quantity = scene.depends()) {
+        steps.emplace_back(command::ShowDependence{*quantity});
+        before.perform(command::ShowDependence{*quantity});
+    }
     for (const std::string& thing : command::shown_things)
         if (thing != "export" && scene.shows(thing) != before.shows(thing))
             steps.emplace_back(command::Show{thing, scene.shows(thing)});
@@ -163,6 +176,7 @@ std::string to_text(const Scene& scene) {
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
     if (const auto& plane = scene.plane()) text += fmt::format("plane {} | {}\n", plane->x, plane->y);
     if (scene.sweep()) text += fmt::format("sweep {}\n", *scene.sweep());
+    if (scene.depends()) text += fmt::format("depend {}\n", *scene.depends());
     for (const std::string& panel : command::sized_panels)
         if (const double share = scene.share(panel); share > 0.0) text += fmt::format("size {} {:.9g}\n", panel, share);
     if (scene.speed() != 1.0) text += fmt::format("speed {:.9g}\n", scene.speed());

@@ -27,6 +27,8 @@ class Scene {
     const std::optional<command::ShowPlane>& plane() const { return plane_; }
     // The sweep that is shown, as its command has it; nothing: what it is by default.
     const std::optional<std::string>& sweep() const { return sweep_; }
+    // The quantity whose derivatives are shown, as its command has it; nothing: what it is by default.
+    const std::optional<std::string>& depends() const { return depends_; }
     // The left edge of the Zeno lens; nothing: where the row begins.
     const std::optional<double>& lens() const { return lens_; }
     const std::string& finds() const { return finds_; }      // letters that the palette opens with
@@ -49,8 +51,9 @@ class Scene {
     void perform(const command::Camera& command);
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
-    void perform(const command::ShowPlane& command);  // of a system that has what it names
-    void perform(const command::ShowSweep& command);  // that can be one of the system
+    void perform(const command::ShowPlane& command);       // of a system that has what it names
+    void perform(const command::ShowSweep& command);       // that can be one of the system
+    void perform(const command::ShowDependence& command);  // that can be one of the system
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
@@ -63,9 +66,10 @@ class Scene {
 
     // Another system: another world, but the same taste.
     void forget_place();
-    // Another text, which has not what the plane or the sweep names.
+    // Another text, which has not what they name.
     void forget_plane() { plane_.reset(); }
     void forget_sweep() { sweep_.reset(); }
+    void forget_dependence() { depends_.reset(); }
 
  private:
     CameraMode camera_ = CameraMode::fit;
@@ -75,7 +79,7 @@ class Scene {
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<command::ShowPlane> plane_;
-    std::optional<std::string> sweep_;
+    std::optional<std::string> sweep_, depends_;
     std::optional<double> lens_;
     std::map<std::string, double> shares_;
     std::string caption_, highlight_, finds_;

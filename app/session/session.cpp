@@ -75,6 +75,7 @@ void Session::apply(const Command& command) {
         history_.remember(command, before, moment());
         follow_sweep();
         follow_proof(0.0);
+        follow_dependence(0.0);
     } catch (const Forbidden&) {
         throw;
     } catch (const InputError& problem) {
@@ -211,6 +212,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     plots_ = plots;
     keep_plane();
     keep_sweep();
+    keep_dependence();
     simulated_.reset();
     rerun(run);
     if (simulated_ != nullptr) return;

@@ -17,6 +17,7 @@
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
+#include "session/influences.hpp"
 #include "session/pinned_run.hpp"
 #include "session/plots.hpp"
 #include "session/proof_job.hpp"
@@ -79,6 +80,7 @@ class Session {
         receive(0.0);
         receive_proof(0.0);
         sweep_job_->update(0.0);
+        follow_dependence(0.0);
     }
     // Waits for all that is under way: what a picture shows is finished.
     void settle();
@@ -130,6 +132,14 @@ class Session {
     const ProofWatch* proof_under_way() const;
     // The command that leads to it; nothing where there is none, nor one under way.
     std::optional<command::Prove> proof_command() const;
+    // The quantity that is asked for what it depends on, and what is known of that, while "depend" is shown; null: nothing yet. Of
+    // the run before, while those of the present one are not there: then they are not current.
+    std::string depend_text() const;
+    const Influences* influences() const { return influences_job_->influences(); }
+    bool influences_are_current() const;
+    const InfluencesJob& influences_job() const { return *influences_job_; }
+    // Where the sweep has one axis, a value whose influence on what is printed is known.
+    std::optional<TangentLine> sweep_tangent() const;
     bool can_undo() const { return history_.can_undo(); }
     bool can_redo() const { return history_.can_redo(); }
 
@@ -209,6 +219,7 @@ class Session {
     void perform(const command::Lens& command);
     void perform(const command::ShowPlane& command);
     void perform(const command::ShowSweep& command);
+    void perform(const command::ShowDependence& command);
     void perform(const command::Prove& command);
     void perform(const command::StopProof& command);
     void perform(const command::New& command);
@@ -260,6 +271,8 @@ class Session {
     void keep_plane();
     void keep_sweep();
     void follow_sweep();
+    void keep_dependence();
+    void follow_dependence(Patience patience);
     void follow_proof(Patience patience);
     void receive_proof(Patience patience);
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
@@ -316,6 +329,7 @@ class Session {
     std::optional<AskedProof> proof_asked_;       // until it is there
     std::vector<const EnclosedEvent*> enclosed_;  // for every event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
+    std::unique_ptr<InfluencesJob> influences_job_ = std::make_unique<InfluencesJob>();
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
 };

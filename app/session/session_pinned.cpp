@@ -114,6 +114,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     worker_->on_ready(ready);
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
+    influences_job_->on_ready(ready);
     for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
 }
 

@@ -85,6 +85,7 @@ void Session::settle() {
     receive({});
     receive_proof({});
     sweep_job_->update({});
+    follow_dependence({});
 }
 
 }  // namespace achilles

@@ -7,6 +7,19 @@
 
 namespace achilles {
 
+namespace {
+
+// "zeno_time(1) = 2.7, by g -0.4, ...", as far as it is known of the present run.
+std::string to_text(const Influences& known) {
+    std::string text = fmt::format("{} = {:.9g}", known.quantity.expression, known.quantity.value);
+    for (const Influences::Of& by : known.all)
+        text += by.reason.empty() ? fmt::format(", by {} {:.6g}", by.name, by.derivative)
+                                  : fmt::format(", by {} none: {}", by.name, by.reason);
+    return text + "\n";
+}
+
+}  // namespace
+
 std::string to_text(const Session& session) {
     std::string text = fmt::format("system {}\n", session.system());
     const SystemDescription& description = session.description();
@@ -25,6 +38,7 @@ std::string to_text(const Session& session) {
     if (const Proof* proof = session.proof())
         text += fmt::format("{}: {} until {:.9g}\n", to_text(*session.proof_command()),
                             to_text(proof->enclosure.outcome.kind), proof->enclosure.proved_until);
+    if (session.influences_are_current()) text += to_text(*session.influences());
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
     if (!session.error().empty()) text += "error " + session.error() + "\n";

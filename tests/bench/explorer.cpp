@@ -3,6 +3,7 @@
 //     bench_explorer everything what is first of these alone: everything open at once, and a hand that changes values
 //     bench_explorer sweep      a map of 512 x 512 runs: its first picture, 64 x 64 of them (taskset -c 0: on one core), 100 ms;
 //                               all of it, 6 s on two cores
+//     bench_explorer bars       what the last Zeno time of the paper's runs depends on, 16 ms (among what is first, too)
 //     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
 //                               of 100 000 impacts are made one after the other
 #include <fmt/format.h>
@@ -138,6 +139,34 @@ void sliders() {
     }
 }
 
+// On what the last Zeno time of the paper's runs depends, by every parameter and start: of a run that is there, and from a slider
+// on to the bars under all of them.
+void bars() {
+    for (const char* system : {"ball_on_sine", "double_pendulum"}) {
+        Desk desk(system, {"grid 3 2", "show depend"});
+        const Interface::Active active(desk.interface);
+        desk.session.settle();
+        const auto run = std::make_shared<const Trajectory>(simulate(desk.session.model(), desk.session.run()));
+        const std::string quantity = default_quantity(*run);
+        std::size_t directions = 0;
+        const double made =
+            median_ms(40, bench::thread_seconds, [&](int) { directions = influences_on(quantity, run).all.size(); });
+        say(fmt::format("{}: {} by {} values", system, quantity, directions), made, 1e3 / 60.0);
+        const double g = *desk.session.value("g");
+        int late = 0;
+        const double all = median_ms(60, wall_seconds, [&](int i) {
+            desk.session.apply(command::Set{"g", g * (1.0 + 1e-4 * i)});
+            desk.session.update();
+            late += desk.session.influences_are_current() ? 0 : 1;
+            desk.frame();
+        });
+        say(fmt::format("    slider to new bars, 6 plots ({} of 60 a frame late)", late), all, 1e3 / 60.0);
+        const double alone =
+            median_ms(40, bench::thread_seconds, [&](int) { simulate(desk.session.model(), run->run); });
+        say("    the run alone", alone, 0.0);
+    }
+}
+
 void start() {
     say("session, fonts and lists of the first frame",
         median_ms(7, wall_seconds,
@@ -250,9 +279,14 @@ int main(int count, char** words) {
         achilles::sweep();
         return 0;
     }
+    if (count > 1 && std::string(words[1]) == "bars") {
+        achilles::bars();
+        return 0;
+    }
     achilles::everything();
     if (count > 1) return 0;
     achilles::frames();
     achilles::sliders();
+    achilles::bars();
     achilles::start();
 }

@@ -1,0 +1,273 @@
+// Below, in place of the events: what a quantity of the run depends on. A bar for every slider: how much the quantity would change
+// over all of it, at the slope that it has now.
+#include "panels/dependence.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/label.hpp"
+#include "number/angle.hpp"
+#include "panels/print.hpp"
+#include "panels/sweep.hpp"
+#include "panels/widgets.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A unit as it is shown, and what a number in the file's is multiplied by.
+struct ShownUnit {
+    std::string unit;
+    double factor = 1.0;
+};
+ShownUnit shown_unit(const std::string& unit) {
+    if (unit == "rad") return {"\u00b0", degrees(1.0)};
+    if (unit == "rad/s") return {"\u00b0/s", degrees(1.0)};
+    return {typeset_unit(unit), 1.0};
+}
+
+std::string of_quantity(const Influences& known, double value, const char* format = "{:.4g}") {
+    const ShownUnit unit = shown_unit(known.unit);
+    return number_with_unit(number(value * unit.factor, format), unit.unit);
+}
+
+// What is rounding beside the others is none.
+double without_rounding(double x, double size) { return std::abs(x) < 1e-12 * size ? 0.0 : x; }
+
+double share_of(const Influences& known, const Influences::Of& by) {
+    const double most = known.largest();
+    return most > 0.0 ? without_rounding(by.over_slider / most, 1.0) : 0.0;
+}
+
+bool is_start(const SystemDescription& system, const std::string& name) {
+    return std::none_of(system.parameters.begin(), system.parameters.end(),
+                        [&](const ParameterDescription& p) { return p.name == name; });
+}
+
+std::string slider_name(const SystemDescription& system, const std::string& name) {
+    return typeset(name) + (is_start(system, name) ? "(0)" : "");
+}
+
+std::string no_derivative(const std::string& reason) { return "no derivative here: " + typeset_sentence(reason); }
+
+std::string explanation(const Session& session, const Influences& known, const Influences::Of& by) {
+    if (!by.reason.empty()) return no_derivative(by.reason);
+    const SystemDescription& system = session.description();
+    const double over = known.largest() * share_of(known, by);
+    return fmt::format("{} changes by {};\nover the whole slider at this slope by {}",
+                       typeset(known.quantity.expression), derivative_text(system, known, by),
+                       (over > 0.0 ? "+" : "") + of_quantity(known, over));
+}
+
+// ---- the quantity ----
+
+// What most people ask of this run.
+std::vector<std::string> usual_quantities(const Session& session) {
+    constexpr int most = 6;
+    std::vector<std::string> all;
+    int zeno = 0, releases = 0;
+    for (const Event& event : session.trajectory().events) {
+        if (event.kind == Event::Kind::zeno && ++zeno <= most) all.push_back(fmt::format("zeno_time({})", zeno));
+        if (event.kind == Event::Kind::release && ++releases <= most)
+            all.push_back(fmt::format("release_time({})", releases));
+    }
+    for (const CoordinateDescription& coordinate : session.description().coordinates)
+        all.insert(all.end(), {coordinate.name, coordinate.name + "'"});
+    all.emplace_back("energy");
+    return all;
+}
+
+void show_quantities(const Session& session, PanelState& state, Commands& commands) {
+    if (!ImGui::BeginPopup("depend quantity")) return;
+    for (const std::string& quantity : usual_quantities(session)) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        if (ImGui::Selectable(("##" + quantity).c_str(), session.depend_text() == quantity, 0, {units(230.0F), 0.0F}))
+            commands.emplace_back(command::ShowDependence{quantity});
+        remember(state, "depend quantity " + quantity);
+        cell(at, typeset(quantity), units(230.0F), text_color());
+    }
+    if (text_row("other", "depend expression", state.depend, 150.0F, state) && !state.depend.empty())
+        commands.emplace_back(command::ShowDependence{state.depend});
+    tooltip(
+        "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
+        "Enter takes it");
+    if (!session.error().empty()) show_message(session.error(), units(240.0F));
+    close_by_escape();
+    ImGui::EndPopup();
+}
+
+// What is known, of which run, and what the bars are.
+std::string remark(const Session& session) {
+    if (session.influences() == nullptr) return session.influences_job().is_busy() ? "under way\u2026" : "";
+    if (!session.influences_are_current()) return "of the run before: those of this one are under way";
+    if (!session.influences()->quantity.refused.empty()) return "";
+    return "bars: its change over each whole slider, at the present slope";
+}
+
+void show_head(const Session& session, PanelState& state, Commands& commands) {
+    show_lower_tabs(session, state, commands);
+    ImGui::SameLine(0.0F, units(24.0F));
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
+    const float right = ImGui::GetWindowPos().x + content_right(), y = at.y + ImGui::GetStyle().FramePadding.y;
+    float x =
+        menu_button("depend quantity", typeset(session.depend_text()), at.x, row, at.x + 0.4F * (right - at.x), state);
+    tooltip("of which quantity");
+    show_quantities(session, state, commands);
+    if (const Influences* const known = session.influences(); known != nullptr) {
+        const std::string value = "= " + of_quantity(*known, known->quantity.value, "{:.9g}");
+        const bool is_there = std::isfinite(known->quantity.value), is_old = !session.influences_are_current();
+        const float width = is_there ? std::min(width_of(value), std::max(0.0F, right - x)) : 0.0F;
+        if (is_there) cell({x, y}, value, width, is_old ? faint_color() : text_color());
+        x += width + units(16.0F);
+    }
+    const std::string told = remark(session);
+    const float width = std::min(width_of(told), right - x);
+    if (width > units(60.0F)) cell({std::floor(right - width), y}, told, width, faint_color());
+    ImGui::SetCursorScreenPos(at);
+    ImGui::Dummy({0.0F, row.height});
+}
+
+// ---- the bars ----
+
+// The widths of what a line has: name, bar, derivative.
+constexpr float name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F, most_bar = 560.0F;
+
+struct Lines {
+    Lines(std::size_t count, const Rectangle& room, float high) : height(high) {
+        const auto fit = std::max<std::size_t>(static_cast<std::size_t>(std::max(0.0F, room.height / high - 1.0F)), 1);
+        const float least = units(name_width + least_bar + number_width + between);
+        const auto most = std::max<std::size_t>(static_cast<std::size_t>(room.width / least), 1);
+        const std::size_t columns = std::clamp<std::size_t>((count + fit - 1) / fit, 1, most);
+        each = (count + columns - 1) / columns;
+        // A bar that is longer than a glance takes in tells no more.
+        const float others = units(name_width + number_width + between);
+        width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(most_bar));
+        bar = std::max(units(8.0F), width - others);
+        corner = {room.x, room.y};
+    }
+    std::size_t each = 0;  // in a column
+    float width = 0.0F, bar = 0.0F, height = 0.0F;
+    ImVec2 corner;
+    ImVec2 at(std::size_t i) const {
+        return {std::floor(corner.x + width * static_cast<float>(i / each)),
+                std::floor(corner.y + height * static_cast<float>(i % each + 1))};
+    }
+    // The middle of the bars of the column that line i stands in.
+    float middle(std::size_t i) const { return std::floor(at(i).x + units(name_width) + 0.5F * bar); }
+    float half() const { return 0.5F * bar - units(4.0F); }
+};
+
+// Over each column how long a bar would be, the least and the largest; and where all begin.
+void paint_scale(const Influences& known, const Lines& lines, std::size_t first) {
+    const float middle = lines.middle(first);
+    const auto put = [&](const std::string& text, float x, float share) {
+        const float width = width_of(text);
+        cell({std::floor(x - share * width), lines.corner.y}, text, width, faint_color());
+    };
+    const std::string end = of_quantity(known, known.largest(), "{:.3g}");
+    put("\u2212" + end, middle - lines.half(), 0.0F);
+    put("0", middle, 0.5F);
+    put("+" + end, middle + lines.half(), 1.0F);
+    const std::size_t last = std::min(first + lines.each, known.all.size()) - 1;
+    ImGui::GetWindowDrawList()->AddRectFilled({middle, lines.at(first).y},
+                                              {middle + units(1.0F), lines.at(last).y + ImGui::GetTextLineHeight()},
+                                              packed(current_theme().border));
+}
+
+void paint_line(const Session& session, const Influences& known, const Influences::Of& by, const Lines& lines,
+                std::size_t i) {
+    const ImVec2 at = lines.at(i);
+    const bool is_old = !session.influences_are_current();
+    const Color ink = is_old ? faint_color() : text_color();
+    cell(at, slider_name(session.description(), by.name), units(name_width - 6.0F), ink);
+    const float middle = lines.middle(i), low = at.y, high = at.y + ImGui::GetTextLineHeight();
+    const float left = middle - 0.5F * lines.bar;
+    if (!by.reason.empty())
+        return cell({left + units(4.0F), at.y}, no_derivative(by.reason), lines.bar + units(number_width) - units(8.0F),
+                    faint_color());
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float inset = 0.2F * (high - low), end = middle + static_cast<float>(share_of(known, by)) * lines.half();
+    list->AddRectFilled({std::min(middle, end), low + inset}, {std::max(middle, end), high - inset},
+                        packed(is_old ? faint_color() : current_theme().accent, is_old ? 0.5F : 0.85F), units(2.0F));
+    const std::string text = derivative_text(session.description(), known, by);
+    cell({left + lines.bar + units(8.0F), at.y}, text, units(number_width - 8.0F), ink);
+}
+
+void show_line(const Session& session, const Influences& known, const Influences::Of& by, const Lines& lines,
+               std::size_t i, PanelState& state, Commands& commands) {
+    const ImVec2 at = lines.at(i), size{lines.width - units(between), ImGui::GetTextLineHeight()};
+    ImGui::SetCursorScreenPos(at);
+    if (ImGui::InvisibleButton(by.name.c_str(), size))
+        commands.push_back(sweep_over(session, by.name, known.quantity.expression));
+    remember(state, "depend " + by.name);
+    const bool is_hovered = ImGui::IsItemHovered();
+    if (is_hovered) state.lights = by.name;
+    tooltip(explanation(session, known, by) + "\na click sweeps " + slider_name(session.description(), by.name));
+    if (is_hovered || by.name == state.lit || by.name == state.pointed_slider)
+        ImGui::GetWindowDrawList()->AddRectFilled({at.x - units(4.0F), at.y}, {at.x + size.x, at.y + size.y},
+                                                  packed(current_theme().accent, 0.16F), units(3.0F));
+    paint_line(session, known, by, lines, i);
+}
+
+void show_bars(const Session& session, PanelState& state, Commands& commands) {
+    const Rectangle room = remaining();
+    const std::string& problem = session.influences_job().problem();
+    const Influences* const known = session.influences();
+    if (!problem.empty()) return paragraph(no_derivative(problem), room.width, text_color());
+    if (known == nullptr) return;
+    if (!known->quantity.refused.empty())
+        return paragraph(no_derivative(known->quantity.refused), room.width, text_color());
+    const Lines lines(known->all.size(), room, ImGui::GetTextLineHeightWithSpacing());
+    for (std::size_t i = 0; i < known->all.size(); ++i) {
+        if (i % lines.each == 0) paint_scale(*known, lines, i);
+        show_line(session, *known, known->all[i], lines, i, state, commands);
+    }
+}
+
+}  // namespace
+
+std::string derivative_text(const SystemDescription& system, const Influences& known, const Influences::Of& by) {
+    if (!by.reason.empty()) return "none";
+    const ShownUnit unit = shown_unit(std::string(unit_of(system, by.name)));
+    const double share = share_of(known, by);
+    const std::string text = of_quantity(known, share == 0.0 ? 0.0 : by.derivative / unit.factor);
+    return unit.unit.empty() ? text : text + " per " + unit.unit;
+}
+
+command::ShowSweep sweep_over(const Session& session, const std::string& name, const std::string& quantity) {
+    Sweep sweep;
+    SweepAxis axis = *axis_for(session, name);
+    axis.logarithmic = goes_by_ratios(axis.low, axis.high);
+    sweep.axes = {axis};
+    sweep.prints = {quantity};
+    return showing(sweep, session.description());
+}
+
+void put_bar(const Session& session, Slider& slider) {
+    const Influences* const known = session.influences();
+    const Influences::Of* const by = known == nullptr ? nullptr : known->find(slider.varies);
+    if (by == nullptr) return;
+    slider.bar_about = explanation(session, *known, *by);
+    slider.bar_is_old = !session.influences_are_current();
+    if (slider.bar_is_old) slider.bar_about += " (of the run before)";
+    if (by->reason.empty()) slider.bar = static_cast<float>(share_of(*known, *by));
+}
+
+void show_dependence(const Session& session, PanelState& state, Commands& commands) {
+    show_head(session, state, commands);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(6.0F)});
+    begin_padded_child("dependence", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
+    show_bars(session, state, commands);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+}  // namespace achilles

@@ -1,0 +1,33 @@
+// The commands that ask more of the present run than the run itself (command.hpp has all others).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "session/command_fields.hpp"
+
+namespace achilles::command {
+
+struct ShowSweep {
+    std::string text;  // as on the command line, but for --set and the options: these are what the session has
+    static constexpr auto said = Said("sweep", "write: sweep \"--over e=0:0.95:512 --print zeno_time(1)\"",
+                                      Change::view, Field(&ShowSweep::text, in_quotes));
+};
+struct StopProof {  // and forgets what was proved
+    static constexpr auto said = Said("prove off", alone, Change::view);
+};
+struct Prove {
+    double width = 0.0;                  // half, for all coordinates and rates of the start
+    std::vector<std::string> intervals;  // NAME=LOW..HIGH, which hold what the present run has
+    static constexpr auto said =
+        Said("prove", "write: prove [width W] [NAME=LOW..HIGH ...], or: prove off", Change::view,
+             Field(&Prove::width, length_after("width")), Field(&Prove::intervals, {.may_lack = true}));
+};
+struct ShowDependence {
+    std::string quantity;  // an expression as a sweep prints it
+    static constexpr auto said =
+        Said("depend", "write: depend \"zeno_time(2)\", or another expression over the end and the events of a run",
+             Change::view, Field(&ShowDependence::quantity, in_quotes));
+};
+
+}  // namespace achilles::command
