@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cli/overrides.hpp"
+#include "depend/quantities.hpp"
 #include "figure/publication.hpp"
 #include "module.hpp"
 #include "number/ground.hpp"
@@ -223,6 +224,17 @@ void bind_runs(py::module_& module) {
                  const py::gil_scoped_release unlocked;
                  return to_json(m.trajectory, instants);
              })
+        // The same with derivatives, and those of expressions.
+        .def(
+            "dependence",
+            [](const Made& m, std::vector<std::string> of) {
+                const Ground ground;
+                const Quantities quantities(m.system->model, std::move(of));
+                Dependence dependence{differentiate(m.trajectory), {}};
+                dependence.quantities = quantities.of(m.trajectory, dependence.derivatives);
+                return to_json(m.trajectory, {}, &dependence);
+            },
+            released)
         .def("csv",
              [](const Made& m, const std::optional<Times>& times, bool plain_names, bool units) {
                  const CsvStyle style{instants_from(times), plain_names, units};

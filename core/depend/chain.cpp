@@ -34,7 +34,7 @@ MatrixXd Link::matrix() const {
 Chain::Chain(const Trajectory& trajectory, Options options)
     : trajectory_(&trajectory),
       model_(trajectory.model.get()),
-      options_(options),
+      options_(std::move(options)),
       tangent_{static_cast<std::size_t>(model_->dof()), model_->contacts(), trajectory.run.parameters.size()},
       surfaces_(*model_, trajectory.run),
       h_(model_->contacts()),
@@ -92,8 +92,8 @@ FlowSlope& Chain::slope(ContactSet held) {
     if (!known) {
         const achilles::Options& used =
             trajectory_->made_again_by ? *trajectory_->made_again_by : trajectory_->run.options;
-        const double tolerance = std::max(used.tolerance, 0x1p-53);
-        known = make_flow_slope(*model_, held, tangent_, trajectory_->run.parameters, tolerance);
+        const double tolerance = std::max(10.0 * used.tolerance, 0x1p-53);
+        known = make_flow_slope(*model_, held, tangent_, trajectory_->run.parameters, options_.parameters, tolerance);
     }
     return *known;
 }

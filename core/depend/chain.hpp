@@ -67,10 +67,13 @@ class Chain {
  public:
     struct Options {
         bool left_out = false;  // links tell what steps leave out
+        // The parameters that a change may have, if not all may: steps are cheaper for eight variables at a time.
+        std::vector<bool> parameters{};
     };
     // The trajectory, of which everything must have been kept, outlives this. Throws InputError where bouncings were restarted by
     // the Euclidean projection: their derivatives converge no faster than O(w ln w).
-    explicit Chain(const Trajectory& trajectory, Options options = {false});
+    explicit Chain(const Trajectory& trajectory) : Chain(trajectory, Options{}) {}
+    Chain(const Trajectory& trajectory, Options options);
     ~Chain();
     // Throws the same of a run that has not been made yet.
     static void check(const Run& run);

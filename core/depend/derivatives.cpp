@@ -45,9 +45,12 @@ Derivatives differentiate(const Trajectory& trajectory) {
 }
 
 Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directions) {
-    Chain chain(trajectory);
+    const auto n = static_cast<Index>(trajectory.model->dof()), K = directions.cols();
+    const auto P = static_cast<Index>(trajectory.run.parameters.size());
+    Chain::Options options;
+    for (Index k = 0; k < P; ++k) options.parameters.push_back(!directions.row(2 * n + k).isZero(0.0));
+    Chain chain(trajectory, std::move(options));
     const Tangent& tangent = chain.tangent();
-    const auto n = static_cast<Index>(tangent.dof), P = static_cast<Index>(tangent.parameters), K = directions.cols();
     Derivatives result;
     result.refused.resize(static_cast<std::size_t>(K));
     MatrixXd Z = MatrixXd::Zero(tangent.size(), K);

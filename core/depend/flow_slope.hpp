@@ -24,8 +24,9 @@ class FlowSlope {
     virtual void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const = 0;
 };
 
-// Of the motion that holds these contacts.
+// Of the motion that holds these contacts; by those parameters that may vary, or, if that is empty, by all.
 std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, ContactSet held, const Tangent& tangent,
-                                           std::span<const double> parameters, double tolerance);
+                                           std::span<const double> parameters, const std::vector<bool>& varied,
+                                           double tolerance);
 
 }  // namespace achilles

@@ -5,7 +5,8 @@
 
 #include "depend/tangent.hpp"
 #include "model/model.hpp"
-#include "number/jet.hpp"
+#include "number/directed.hpp"
+#include "number/jet.hpp"  // its functions
 
 namespace achilles {
 
@@ -50,7 +51,7 @@ class Gradient {
 
  private:
     static constexpr std::size_t lanes = 8;
-    using Number = Jet<double, lanes>;
+    using Number = Directed<16>;
     static Number number(double x, std::size_t variable, std::size_t first) {
         return variable >= first && variable < first + lanes ? Number::variable(x, variable - first) : Number(x);
     }

@@ -43,6 +43,12 @@ struct Jet {
         return result;
     }
 
+    // x, which rises by a b' besides.
+    friend Jet and_slope(Jet x, const Number& a, const Jet& b) {
+        for (std::size_t i = 0; i < N; ++i) x.slope[i] = x.slope[i] + times(a, b.slope[i]);
+        return x;
+    }
+
     friend Jet operator-(const Jet& a) {
         Jet result(-a.value);
         for (std::size_t i = 0; i < N; ++i) result.slope[i] = -a.slope[i];
@@ -89,78 +95,92 @@ struct Jet {
     static bool is_defined(const Interval& x) { return x.is_defined(); }
 };
 
-// --- Functions: the value, and what it rises by
+// --- Functions: the value, and what it rises by; of jets, and of what else has a value, chain() and and_slope()
+
+template <class Number>
+concept HasSlopes = requires {
+    typename Number::Component;
+};
 
 inline double square(double x) { return x * x; }
 
-template <class Number, std::size_t N>
-Jet<Number, N> sqrt(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J sqrt(const J& x) {
+    using Number = typename J::Component;
     using std::sqrt;
     const Number r = sqrt(x.value);
     return chain(x, r, Number(0.5) / r);
 }
-template <class Number, std::size_t N>
-Jet<Number, N> exp(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J exp(const J& x) {
+    using Number = typename J::Component;
     using std::exp;
     const Number r = exp(x.value);
     return chain(x, r, r);
 }
-template <class Number, std::size_t N>
-Jet<Number, N> log(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J log(const J& x) {
+    using Number = typename J::Component;
     using std::log;
     return chain(x, log(x.value), Number(1.0) / x.value);
 }
-template <class Number, std::size_t N>
-Jet<Number, N> sin(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J sin(const J& x) {
     using std::cos, std::sin;
     return chain(x, sin(x.value), cos(x.value));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> cos(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J cos(const J& x) {
     using std::cos, std::sin;
     return chain(x, cos(x.value), -sin(x.value));
 }
-template <class Number, std::size_t N>
-void sine_and_cosine(const Jet<Number, N>& x, Jet<Number, N>& sine, Jet<Number, N>& cosine) {
+template <HasSlopes J>
+void sine_and_cosine(const J& x, J& sine, J& cosine) {
+    using Number = typename J::Component;
     using std::cos, std::sin;
     const Number s = sin(x.value), c = cos(x.value);
-    const Jet<Number, N> angle = x;  // which may be where a result goes
+    const J angle = x;  // which may be where a result goes
     sine = chain(angle, s, c);
     cosine = chain(angle, c, -s);
 }
-template <class Number, std::size_t N>
-Jet<Number, N> tan(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J tan(const J& x) {
+    using Number = typename J::Component;
     using std::tan;
     const Number r = tan(x.value);
     return chain(x, r, Number(1.0) + square(r));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> asin(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J asin(const J& x) {
+    using Number = typename J::Component;
     using std::asin, std::sqrt;
     return chain(x, asin(x.value), Number(1.0) / sqrt(Number(1.0) - square(x.value)));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> acos(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J acos(const J& x) {
+    using Number = typename J::Component;
     using std::acos, std::sqrt;
     return chain(x, acos(x.value), Number(-1.0) / sqrt(Number(1.0) - square(x.value)));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> atan(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J atan(const J& x) {
+    using Number = typename J::Component;
     using std::atan;
     return chain(x, atan(x.value), Number(1.0) / (Number(1.0) + square(x.value)));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> sinh(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J sinh(const J& x) {
     using std::cosh, std::sinh;
     return chain(x, sinh(x.value), cosh(x.value));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> cosh(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J cosh(const J& x) {
     using std::cosh, std::sinh;
     return chain(x, cosh(x.value), sinh(x.value));
 }
-template <class Number, std::size_t N>
-Jet<Number, N> tanh(const Jet<Number, N>& x) {
+template <HasSlopes J>
+J tanh(const J& x) {
+    using Number = typename J::Component;
     using std::tanh;
     const Number r = tanh(x.value);
     return chain(x, r, Number(1.0) - square(r));
@@ -168,20 +188,19 @@ Jet<Number, N> tanh(const Jet<Number, N>& x) {
 
 inline double integer_power_of(double x, int n) { return std::pow(x, n); }
 inline Interval integer_power_of(const Interval& x, int n) { return integer_power(x, n); }
-template <class Number, std::size_t N>
-Jet<Number, N> integer_power(const Jet<Number, N>& x, int n) {
-    if (n == 0) return Jet<Number, N>(1.0);
+template <HasSlopes J>
+J integer_power(const J& x, int n) {
+    using Number = typename J::Component;
+    if (n == 0) return J(1.0);
     return chain(x, integer_power_of(x.value, n), times(Number(n), integer_power_of(x.value, n - 1)));
 }
 // a^b, a > 0.
-template <class Number, std::size_t N>
-Jet<Number, N> pow(const Jet<Number, N>& a, const Jet<Number, N>& b) {
+template <HasSlopes J>
+J pow(const J& a, const J& b) {
+    using Number = typename J::Component;
     using std::log, std::pow;
     const Number r = pow(a.value, b.value);
-    Jet<Number, N> result = chain(a, r, b.value * pow(a.value, b.value - Number(1.0)));
-    const Number by_b = log(a.value) * r;
-    for (std::size_t i = 0; i < N; ++i) result.slope[i] = result.slope[i] + times(by_b, b.slope[i]);
-    return result;
+    return and_slope(chain(a, r, b.value * pow(a.value, b.value - Number(1.0))), log(a.value) * r, b);
 }
 
 }  // namespace achilles

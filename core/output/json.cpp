@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "depend/quantities.hpp"
 #include "model/derived_values.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
@@ -23,6 +24,58 @@ Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullp
 Json list(const Vector& x) {
     Json result = Json::array();
     for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number(x[i]));
+    return result;
+}
+
+Json list(const Eigen::VectorXd& x) {
+    Json result = Json::array();
+    for (const double each : x) result.push_back(number(each));
+    return result;
+}
+
+// Row by row.
+Json table(const Eigen::MatrixXd& x) {
+    Json result = Json::array();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) result.push_back(list(Eigen::VectorXd(x.row(i).transpose())));
+    return result;
+}
+
+// Following the event; null past where there are none.
+Json derivatives_at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event) {
+    if (event >= derivatives.events.size()) return nullptr;
+    const Derivatives::AtEvent& at = derivatives.events[event];
+    Json result = {{"t", list(at.t)}, {"q", table(at.q)}};
+    if (trajectory.events[event].kind == Event::Kind::impact) {
+        result["v_before"] = table(at.v_before);
+        result["v_after"] = table(at.v_after);
+        result["impact_speed"] = list(at.impact_speed);
+    } else {
+        result["v"] = table(at.v_after);
+    }
+    return result;
+}
+
+Json derivatives_of(const Dependence& dependence) {
+    const Derivatives& d = dependence.derivatives;
+    Json refused = Json::object(), of = Json::array();
+    for (std::size_t k = 0; k < d.refused.size(); ++k)
+        if (!d.refused[k].empty()) refused[d.directions[k]] = d.refused[k];
+    for (const Quantity& quantity : dependence.quantities) {
+        of.push_back({{"expression", quantity.expression},
+                      {"value", number(quantity.value)},
+                      {"derivatives", list(quantity.derivatives)}});
+        if (!quantity.refused.empty()) of.back()["reason"] = quantity.refused;
+    }
+    Json result = {{"directions", d.directions},
+                   {"margins",
+                    {{"grazing_speed", number(d.margins.grazing_speed)},
+                     {"gap_minimum", number(d.margins.gap_minimum)},
+                     {"a_inf", number(d.margins.a_inf)},
+                     {"release_jerk", number(d.margins.release_jerk)}}},
+                   {"of", of},
+                   {"refused", refused},
+                   {"none_from", nullptr}};
+    if (!d.broken.empty()) result["none_from"] = {{"t", number(d.broken_from)}, {"reason", d.broken}};
     return result;
 }
 
@@ -211,7 +264,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
 
 std::string version() { return ACHILLES_VERSION; }
 
-std::string to_json(const Trajectory& trajectory, const Instants& instants) {
+std::string to_json(const Trajectory& trajectory, const Instants& instants, const Dependence* dependence) {
     const Ground ground;
     Json phases = Json::array(), events = Json::array();
     for (const Phase& phase : trajectory.phases) {
@@ -260,6 +313,14 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants) {
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
     if (instants) result["samples"] = samples_of(trajectory, *instants);
+    if (dependence != nullptr) {
+        const Derivatives& d = dependence->derivatives;
+        result["derivatives"] = derivatives_of(*dependence);
+        for (std::size_t i = 0; i < trajectory.events.size(); ++i)
+            result["events"][i]["derivatives"] = derivatives_at(trajectory, d, i);
+        Json& end = result["end"]["derivatives"] = nullptr;
+        if (d.end) end = {{"q", table(d.end->q)}, {"v", table(d.end->v)}};
+    }
     // Invalid UTF-8 in a title is replaced, never an exception; where this is read on a terminal, nothing steers it.
     return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }

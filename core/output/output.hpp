@@ -11,9 +11,11 @@
 namespace achilles {
 
 struct SystemDescription;
+struct Dependence;
 
-// With instants the array `samples` holds them.
-std::string to_json(const Trajectory& trajectory, const Instants& instants = {});
+// With instants the array `samples` holds them; with derivatives its events, its end and `derivatives` have them.
+std::string to_json(const Trajectory& trajectory, const Instants& instants = {},
+                    const Dependence* dependence = nullptr);
 
 struct CsvStyle {
     Instants instants{};       // with them a last column tells the events since the row before
@@ -22,6 +24,8 @@ struct CsvStyle {
 };
 std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
 std::string summary(const Trajectory& trajectory);
+// What the summary says besides where derivatives were asked for.
+std::string summary(const Trajectory& trajectory, const Dependence& dependence);
 // Phases, events and end, 9 significant digits: what golden tests compare first.
 std::string to_text(const Trajectory& trajectory);
 // What a person should know of how a run was made, and may not expect: in a word or two for a line about the run, and in full.

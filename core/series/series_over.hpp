@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "number/jet.hpp"
+#include "series/directed_order.hpp"
 #include "series/lane_access.hpp"
 #include "series/recurrence.hpp"
 #include "series/series.hpp"
@@ -76,8 +77,11 @@ class SeriesOver {
     }
     void extend(int k) {
         const SeriesPlan& plan = program_->plan_;
-        make_motion_order(plan, sums_, tables_, rows_.data() + static_cast<std::size_t>(k) * plan.states(),
-                          static_cast<std::size_t>(k));
+        Number* const row = rows_.data() + static_cast<std::size_t>(k) * plan.states();
+        if constexpr (std::is_same_v<Number, Directed<16>>)
+            make_directed_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
+        else
+            make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
     }
     // Whether the series depend on the time by itself.
     bool has_clock() const { return program_->plan_.clock != 0; }

@@ -212,3 +212,18 @@ def test_figures(program, tmp_path):
     with pytest.raises(TypeError, match="scale: a number is expected, not str"):
         run.figure(scale="large")
     assert not (tmp_path / "f.jpg").exists()
+
+
+def test_it_knows_on_what_it_depends(program):
+    run = achilles.simulate("ball_on_sine", tolerance=1e-14, eps_q=1e-9, eps_v=1e-9, eps_t=1e-9)
+    d = run.derivatives
+    told = json.loads(program("simulate", "ball_on_sine", "--tolerance", "1e-14", "--eps-q", "1e-9", "--eps-v", "1e-9",
+                              "--eps-t", "1e-9", "--derivatives", "--of", "zeno_time(2)", "--json", "-"))
+    assert d.directions == told["derivatives"]["directions"] == ["x", "y", "x'", "y'", "m", "g", "e"]
+    assert d.end.q.tolist() == told["end"]["derivatives"]["q"]
+    assert d.end.q[0, 0] == pytest.approx(-4.947980848111053, rel=1e-9)  # theory-derivatives.md 11
+    assert len(d.events) == len(run.events)
+    assert d.events[-1].t.tolist() == told["events"][-1]["derivatives"]["t"]
+    assert run.derivatives_of("zeno_time(2)").tolist() == told["derivatives"]["of"][0]["derivatives"]
+    with pytest.raises(achilles.InputError, match="zeno_time"):
+        run.derivatives_of("zeno_tme(2)")

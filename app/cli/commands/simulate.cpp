@@ -12,6 +12,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
+#include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
@@ -26,7 +27,8 @@ struct SimulateArguments {
     OptionOverrides overrides;
     std::string times;
     std::optional<int> samples;
-    bool verbose = false, plain_names = false, units = false;
+    std::vector<std::string> of;
+    bool verbose = false, plain_names = false, units = false, derivatives = false;
     int width = 0, height = 0;  // common options that mean nothing here
     double scale = 1.0;
 };
@@ -46,7 +48,8 @@ void check_files(const SimulateArguments& arguments) {
          {std::tuple{"--samples", arguments.samples.has_value(), no_data, "--csv F or --json F"},
           std::tuple{"--times", !arguments.times.empty(), no_data, "--csv F or --json F"},
           std::tuple{"--plain-names", arguments.plain_names, no_csv, "--csv F"},
-          std::tuple{"--units", arguments.units, no_csv, "--csv F"}})
+          std::tuple{"--units", arguments.units, no_csv, "--csv F"},
+          std::tuple{"--of", !arguments.of.empty(), !arguments.derivatives, "--derivatives"}})
         if (is_given && is_useless) throw InputError(flag, {}, fmt::format("this needs {}", needs));
     if (arguments.samples && !arguments.times.empty())
         throw InputError("--samples", {}, "the instants are those of --times already");
@@ -78,6 +81,8 @@ int run(const SimulateArguments& arguments) {
     const auto model = std::make_shared<const Model>(description);
     check_asked(*model, run, arguments.settings);
     const Instants instants = instants_of(arguments, run);
+    const Quantities quantities(model, arguments.of);
+    if (arguments.derivatives) Chain::check(run);
     warn(description, run);
     warn_of_endings(arguments);
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
@@ -88,13 +93,19 @@ int run(const SimulateArguments& arguments) {
     if (!arguments.csv.empty()) files.add(arguments.csv);
 
     const Trajectory trajectory = simulate(model, run);
-    if (!arguments.json.empty()) files.put(arguments.json, to_json(trajectory, instants));
+    std::optional<Dependence> dependence;
+    if (arguments.derivatives) {
+        dependence.emplace(Dependence{differentiate(trajectory), {}});
+        dependence->quantities = quantities.of(trajectory, dependence->derivatives);
+    }
+    if (!arguments.json.empty())
+        files.put(arguments.json, to_json(trajectory, instants, dependence ? &*dependence : nullptr));
     if (!arguments.csv.empty())
         files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
     const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
     if (is_summed_up) {
         files.add("-");
-        files.put("-", printable(summary(trajectory)));
+        files.put("-", printable(summary(trajectory) + (dependence ? summary(trajectory, *dependence) : "")));
     }
     files.commit();
     // Not in the files: the same run gives the same bytes.
@@ -126,6 +137,14 @@ void add_simulate(CLI::App& program, int& status) {
     command->add_flag("--plain-names", arguments->plain_names,
                       "columns of --csv have names that Python can use: theta1_rate for theta1'");
     command->add_flag("--units", arguments->units, "a second line of --csv has the units of the columns");
+    command->add_flag("--derivatives", arguments->derivatives,
+                      "of the times of events, of what happens there and of the end, by every start and parameter");
+    command
+        ->add_option(
+            "--of", arguments->of,
+            "with --derivatives: also of this expression at the end, as --print of a sweep; may be given again")
+        ->type_name("EXPRESSION")
+        ->allow_extra_args(false);
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
     add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures");
     // Common options are taken; those that mean nothing here are not listed.

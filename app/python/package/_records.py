@@ -124,3 +124,12 @@ def _record(pairs: list[tuple[str, Any]]) -> Record:
 def records(text: str) -> Record:
     """A JSON of ours as records."""
     return json.loads(text, object_pairs_hook=_record)
+
+
+def derivative_records(value: Any) -> Any:
+    """Lists of numbers, or of lists of them, as arrays; objects as records."""
+    if isinstance(value, dict):
+        return Record({name: derivative_records(each) for name, each in value.items()})
+    if not isinstance(value, list) or any(isinstance(each, (dict, str)) for each in value):
+        return [derivative_records(each) for each in value] if isinstance(value, list) else value
+    return np.array(value, dtype=float)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 import os
 import warnings
 from collections.abc import Mapping, Sequence
@@ -14,7 +15,7 @@ from . import _core
 from ._asked import Asked, number_in, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._figure import Figure
-from ._records import Certificate, Event, Phase, Record, records
+from ._records import Certificate, Event, Phase, Record, derivative_records, records
 from ._system import System, system_of
 
 
@@ -114,6 +115,21 @@ class Run:
     def certificates(self) -> list[Certificate]:
         """Those of the Zeno points."""
         return [event["certificate"] for event in self.events if "certificate" in event]
+
+    @functools.cached_property
+    def derivatives(self) -> Record:
+        """On what the run depends: what `achilles simulate --derivatives` says. `directions` are the starts, rates and parameters;
+        events[i].t, .q and .v (of an impact v_before, v_after) follow event i, end.q and end.v are at the end time, each with a
+        last axis of directions; `margins` say how near the run is to where there are none. NaN where there are none."""
+        told = json.loads(self._core.dependence([]))
+        parts = {**told["derivatives"], "events": [event["derivatives"] for event in told["events"]],
+                 "end": told["end"]["derivatives"]}
+        return derivative_records(parts)
+
+    def derivatives_of(self, expression: str) -> np.ndarray:
+        """Of an expression at the end, as --of has it ("zeno_time(2)"), one for each of derivatives.directions."""
+        of = json.loads(self._core.dependence([expression]))["derivatives"]["of"][0]["derivatives"]
+        return np.array(of, dtype=float)
 
     @property
     def phases(self) -> list[Phase]:

@@ -1,0 +1,251 @@
+// What the derivatives of every run obey (theory-derivatives.md 3 and 4): of every file of the gallery, as far as they go.
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include "certify/execution.hpp"
+#include "core/systems.hpp"
+#include "depend/derivatives.hpp"
+#include "laws/laws.hpp"
+
+namespace achilles::test {
+namespace {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+Run exact_run(const Model& model, double end_time = 0.0) {
+    Run run = model.default_run();
+    run.options.tolerance = 1e-14;
+    for (double* each : {&run.options.truncation.eps_q, &run.options.truncation.eps_v, &run.options.truncation.eps_t})
+        *each = 1e-9;
+    if (end_time > 0.0) run.options.end_time = end_time;
+    return run;
+}
+
+// By the starts, at the end time: 2n x 2n.
+MatrixXd by_starts(const achilles::Derivatives& d) {
+    const Index n = d.end->q.rows();
+    MatrixXd result(2 * n, 2 * n);
+    result << d.end->q.leftCols(2 * n), d.end->v.leftCols(2 * n);
+    return result;
+}
+
+double det_of_mass(const Model& model, const Run& run, const State& state) {
+    auto motion = model.evaluator(model.motion({}).program, run.parameters);
+    set_state(motion, state);
+    motion.run();
+    double product = 1.0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(model.dof()); ++i) product *= motion.pivot(i);
+    return product;
+}
+
+bool has_damping(const SystemDescription& system) {
+    if (!system.dissipation.text.empty()) return true;
+    return std::any_of(system.coordinates.begin(), system.coordinates.end(),
+                       [](const auto& one) { return one.force.text.find('\'') != std::string::npos; });
+}
+
+class Dependence : public testing::TestWithParam<std::string> {
+ protected:
+    std::shared_ptr<const Model> model_ = model_of(GetParam());
+};
+
+// det dx(t)/dx0 = e^(2N) det M(q0)/det M(q(t)) without completion: until the last impact before the first cut.
+TEST_P(Dependence, KeepsPhaseVolumeBetweenImpacts) {
+    if (has_damping(model_->description())) return;
+    const Trajectory whole = simulate(model_, exact_run(*model_));
+    if (!whole.phases.front().held.empty()) return;
+    double until = whole.end_time;
+    for (const Event& event : whole.events)
+        if (event.truncation || event.kind == Event::Kind::release || !event.held.empty()) {
+            until = event.truncation ? event.truncation->t : event.t;
+            break;
+        }
+    double end = 0.0;  // where no impact is near: a share of its flight before an impact
+    for (std::size_t i = 0; i < whole.events.size() && i < 8; ++i) {
+        const double before = i == 0 ? whole.run.options.start_time : whole.events[i - 1].t;
+        if (whole.events[i].t < until && whole.events[i].t > before) end = before + 0.7 * (whole.events[i].t - before);
+    }
+    if (!(end > whole.run.options.start_time)) return;
+    const achilles::Run run = exact_run(*model_, end);
+    const Trajectory trajectory = simulate(model_, run);
+    const auto d = differentiate(trajectory);
+    const bool starts_at_rest =
+        std::any_of(d.refused.begin(), d.refused.end(), [](const std::string& reason) { return !reason.empty(); });
+    if (!d.end || starts_at_rest) return;
+    double expected = det_of_mass(*model_, run, run.start()) / det_of_mass(*model_, run, trajectory.end);
+    for (const Event& event : trajectory.events)
+        expected *= std::pow(model_->restitution(run.parameters, event.contacts.only()), 2);
+    // Beside the size of the terms that cancel in it.
+    const MatrixXd by = by_starts(d);
+    const double size = std::pow(by.norm(), static_cast<double>(by.rows()));
+    EXPECT_NEAR(by.determinant(), expected, 1e-11 * std::abs(expected) + 1e-15 * size) << trajectory.events.size();
+}
+
+// In contact every change stays on h = 0, hdot = 0; a Zeno point forgets two dimensions of the starts'.
+TEST_P(Dependence, IsTangentInContact) {
+    const Trajectory trajectory = simulate(model_, exact_run(*model_));
+    const auto d = differentiate(trajectory);
+    const std::size_t n = static_cast<std::size_t>(model_->dof()), P = trajectory.run.parameters.size();
+    const Tangent tangent{n, model_->contacts(), P};
+    const Index K = static_cast<Index>(d.refused.size());
+    const auto expect_tangent = [&](const State& state, ContactSet held, const MatrixXd& q, const MatrixXd& v,
+                                    const VectorXd& t, const std::string& where) {
+        MatrixXd Z = MatrixXd::Zero(tangent.size(), K);
+        Z.middleRows(tangent.q(0), static_cast<Index>(n)) = q;
+        Z.middleRows(tangent.v(0), static_cast<Index>(n)) = v;
+        Z.row(Tangent::t()) = t.transpose();
+        for (std::size_t k = 0; k < P; ++k) Z(tangent.p(k), static_cast<Index>(2 * n + k)) = 1.0;
+        for (std::size_t i = 0; i < model_->contacts(); ++i) {
+            if (!held.contains(i)) continue;
+            ContactGradient contact(*model_, model_->programs_of(i).contact_terms, tangent, trajectory.run.parameters);
+            contact.at(state);
+            for (Index k = 0; k < K; ++k) {
+                if (!d.refused[static_cast<std::size_t>(k)].empty()) continue;
+                // What is nothing at all beside the other components is rounding.
+                const double least = 1e-2 * std::max(1.0, Z.cwiseAbs().maxCoeff());
+                const double size = least + contact.h_row().cwiseAbs() * Z.col(k).cwiseAbs();
+                const double rate = least + contact.hdot_row().cwiseAbs() * Z.col(k).cwiseAbs();
+                EXPECT_LE(std::abs(contact.h_row() * Z.col(k)), 1e-12 * size) << where << ", direction " << k;
+                EXPECT_LE(std::abs(contact.hdot_row() * Z.col(k)), 1e-12 * rate) << where << ", direction " << k;
+            }
+        }
+    };
+    for (std::size_t j = 0; j < d.events.size(); ++j) {
+        const Event& event = trajectory.events[j];
+        if (event.kind == Event::Kind::impact) continue;
+        const ContactSet held = event.kind == Event::Kind::release ? event.held.with(event.contacts) : event.held;
+        expect_tangent({event.q, event.v_after, event.t}, held, d.events[j].q, d.events[j].v_after, d.events[j].t,
+                       fmt::format("event {}", j));
+    }
+    if (!d.end) return;
+    expect_tangent(trajectory.end, trajectory.end_held, d.end->q, d.end->v, VectorXd::Zero(K), "the end");
+    const std::size_t zeno = count(trajectory, Event::Kind::zeno);
+    const bool all = std::all_of(d.refused.begin(), d.refused.end(), [](const auto& reason) { return reason.empty(); });
+    if (zeno == 0 || !all) return;
+    const VectorXd singular = Eigen::JacobiSVD<MatrixXd>(by_starts(d)).singularValues();
+    EXPECT_LE(singular[singular.size() - 2], 1e-12 * singular[0]);
+    EXPECT_LE(singular[singular.size() - 1], 1e-12 * singular[0]);
+}
+
+// Slower by a factor, with gravity less by its square, everything happens later by the factor:
+// sum v dt/dv + 2 g dt/dg = -t for every event. Where g is the only thing that knows seconds.
+TEST_P(Dependence, KnowsTheUnitOfTime) {
+    const SystemDescription& system = model_->description();
+    if (!model_->equations().autonomous || has_damping(system)) return;
+    std::optional<std::size_t> g;
+    for (std::size_t k = 0; k < system.parameters.size(); ++k) {
+        const auto& parameter = system.parameters[k];
+        if (parameter.name == "g")
+            g = k;
+        else if (parameter.unit.find('s') != std::string::npos || parameter.unit.find('N') != std::string::npos)
+            return;
+    }
+    if (!g) return;
+    const Trajectory trajectory = simulate(model_, exact_run(*model_));
+    const auto d = differentiate(trajectory);
+    const Index n = model_->dof();
+    for (const std::string& reason : d.refused)
+        if (!reason.empty()) return;
+    for (std::size_t j = 0; j < d.events.size(); ++j) {
+        const VectorXd& t = d.events[j].t;
+        double sum = 2.0 * trajectory.run.parameters[*g] * t[2 * n + static_cast<Index>(*g)], size = std::abs(sum);
+        for (Index i = 0; i < n; ++i) {
+            sum += trajectory.run.v[i] * t[n + i];
+            size += std::abs(trajectory.run.v[i] * t[n + i]);
+        }
+        const double time = trajectory.events[j].t;
+        EXPECT_NEAR(sum, -time, 1e-10 * (size + time)) << j << " at " << time;
+    }
+}
+
+// Where all that has mass is heavier by a factor nothing changes.
+TEST_P(Dependence, KnowsTheUnitOfMass) {
+    const SystemDescription& system = model_->description();
+    for (const auto& coordinate : system.coordinates)
+        if (!coordinate.force.text.empty()) return;
+    if (!system.dissipation.text.empty()) return;
+    for (const auto& parameter : system.parameters)
+        if (parameter.unit.find('N') != std::string::npos || parameter.unit == "kg m^2") return;
+    const Trajectory trajectory = simulate(model_, exact_run(*model_));
+    const auto d = differentiate(trajectory);
+    const Index n = model_->dof();
+    for (std::size_t j = 0; j < d.events.size(); ++j) {
+        double total = 0.0, size = 1.0;
+        for (std::size_t k = 0; k < system.parameters.size(); ++k) {
+            if (system.parameters[k].unit != "kg") continue;
+            const double term = trajectory.run.parameters[k] * d.events[j].t[2 * n + static_cast<Index>(k)];
+            total += term;
+            size += std::abs(term);
+        }
+        EXPECT_NEAR(total, 0.0, 1e-11 * size) << j;
+    }
+}
+
+// The derivatives beside fourth-order differences of runs in 34 digits, which know nothing of them: of every event's time and of
+// the end, by one start and one parameter each.
+TEST_P(Dependence, IsWhatDifferencesInManyDigitsSay) {
+    static const std::vector<std::string> some{"ball_on_sine",           "double_pendulum",
+                                               "driven_double_pendulum", "ball_on_vibrating_table",
+                                               "ball_in_gusts",          "triple_pendulum"};
+    if (std::find(some.begin(), some.end(), GetParam()) == some.end()) return;
+    achilles::Run run = exact_run(*model_);
+    const Trajectory first = simulate(model_, run);
+    for (const Event& event : first.events)  // past its first Zeno point and release
+        if (event.kind == Event::Kind::release) {
+            run.options.end_time = event.t + 0.3;
+            break;
+        }
+    run.options.end_time = std::min(run.options.end_time, run.options.start_time + 8.0);
+    const Trajectory trajectory = simulate(model_, run);
+    const auto d = differentiate(trajectory);
+    ASSERT_TRUE(d.end.has_value()) << d.broken;
+    const Index n = model_->dof();
+    const auto e = [&]() -> Index {
+        for (std::size_t k = 0; k < run.parameters.size(); ++k)
+            if (model_->description().parameters[k].name == "e") return 2 * n + static_cast<Index>(k);
+        return 2 * n;
+    }();
+    for (const Index direction : {Index{0}, e}) {
+        constexpr double h = 0x1p-17;  // h^4 is 1e-21
+        const auto beside = [&](int steps) {
+            achilles::Run other = run;
+            if (direction < n)
+                other.q[direction] += steps * h;
+            else
+                other.parameters[static_cast<std::size_t>(direction - 2 * n)] += steps * h;
+            return TrueRuns(*model_, other).run(point_of(other.start()), run.options.end_time);
+        };
+        const TrueExecution a = beside(-2), b = beside(-1), c = beside(1), f = beside(2);
+        const auto difference = [&](const auto& of) {
+            const Real sum = of(a) - 8 * of(b) + 8 * of(c) - of(f);
+            return static_cast<double>(Real(sum / (12 * Real(h))));
+        };
+        // The first Zeno point and the first release, where the run has them: truth has more impacts.
+        for (const Event::Kind kind : {Event::Kind::zeno, Event::Kind::release}) {
+            for (std::size_t j = 0; j < trajectory.events.size(); ++j) {
+                if (trajectory.events[j].kind != kind) continue;
+                const double found = d.events[j].t[direction];
+                const double expected = difference([&](const TrueExecution& one) {
+                    for (const TrueEvent& event : one.events)
+                        if (event.kind == kind) return event.t;
+                    throw std::runtime_error("no such event");
+                });
+                EXPECT_NEAR(found, expected, 1e-9 * (1.0 + std::abs(expected))) << to_text(kind) << " " << direction;
+                break;
+            }
+        }
+        for (Index i = 0; i < n; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            const double q = difference([&](const TrueExecution& one) { return one.end.q[at]; });
+            const double v = difference([&](const TrueExecution& one) { return one.end.v[at]; });
+            EXPECT_NEAR(d.end->q(i, direction), q, 1e-9 * (1.0 + std::abs(q))) << "q " << i << " " << direction;
+            EXPECT_NEAR(d.end->v(i, direction), v, 1e-9 * (1.0 + std::abs(v))) << "v " << i << " " << direction;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Systems, Dependence, testing::ValuesIn(all_systems()),
+                         [](const auto& one) { return one.param; });
+
+}  // namespace
+}  // namespace achilles::test
