@@ -34,7 +34,7 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
 
 // The plots as views of the system's file, where they are nothing else: no pinned run stands behind them, nor a proof.
 std::optional<Words> views_of(const Session& session, const Plots& plots) {
-    if (!session.pinned().empty() || session.proof_command()) return std::nullopt;
+    if (!session.pinned().empty() || session.proof() != nullptr) return std::nullopt;
     const auto& views = session.description().views;
     Words words;
     for (const Plot& plot : plots.list()) {

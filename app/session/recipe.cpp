@@ -92,7 +92,7 @@ std::string saved_text(const Session& session) {
     return held_by(session.description().file);  // another text stands in the editor, which is no system
 }
 
-// To the present run, by way of those that are pinned, and to its proof.
+// To the present run, by way of those that are pinned.
 std::vector<Command> run_steps(const Session& session, Run from) {
     std::vector<Command> steps, hidden;
     std::set<int> taken;
@@ -107,8 +107,13 @@ std::vector<Command> run_steps(const Session& session, Run from) {
     }
     append(steps, steps_between(session.description(), from, session.run()));
     append(steps, hidden);
-    if (const auto proof = session.proof_command()) steps.emplace_back(*proof);
     return steps;
+}
+
+// To its proof, be it under way.
+std::vector<Command> proof_steps(const Session& session) {
+    const auto proof = session.proof_command();
+    return proof ? std::vector<Command>{*proof} : std::vector<Command>();
 }
 
 // Where the present is.
@@ -151,6 +156,7 @@ std::vector<Command> recipe(const Session& session) {
     append(steps, steps_to_text(session.system(), is_untitled(session.system()), saved_text(session),
                                 description.source_text));
     append(steps, run_steps(session, session.file_run()));
+    append(steps, proof_steps(session));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.
     const Document& document = session.document();
@@ -205,12 +211,14 @@ std::vector<Difference> differences(const SystemDescription& description, const 
 
 std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
     std::vector<Command> steps = run_steps(session, session.run());
+    if (session.proof() != nullptr) append(steps, proof_steps(session));  // a figure has none that is not there yet
     append(steps, steps_to(plots, true));
     return steps;
 }
 
 std::vector<Command> explorer_steps(const Session& session) {
     std::vector<Command> steps = run_steps(session, session.run());
+    append(steps, proof_steps(session));
     append(steps, sight_steps(session));
     return steps;
 }

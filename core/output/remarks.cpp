@@ -62,7 +62,8 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
                 "eps_q = {:g} is large beside this motion: the bouncing was cut {}, t = {:.6g}, where {} {:.2g}, "
                 "and the gap is never above {:.2g}: try --eps {:g}",
                 trajectory.run.options.truncation.eps_q, when, event.truncation->t,
-                c.uniform_position ? "the position is certified to" : "bounces may be as high as", bound, largest, eps)};
+                c.uniform_position ? "the position is certified to" : "bounces may be as high as", bound, largest,
+                eps)};
     }
     return std::nullopt;
 }

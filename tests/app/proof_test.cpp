@@ -108,6 +108,9 @@ TEST(SessionProof, IsMadeOnAThreadOfItsOwn) {
         session.update();
     }
     EXPECT_GT(last, 0.0);
+    // A figure that is taken away meanwhile is of the run alone, and says so.
+    EXPECT_EQ(command_for(session, "figure").find("prove"), std::string::npos);
+    EXPECT_NE(command_for(session, "explorer").find("prove"), std::string::npos);
     session.apply(command::StopProof{});
     EXPECT_EQ(session.proof_under_way(), nullptr);
     session.settle();

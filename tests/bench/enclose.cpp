@@ -49,14 +49,16 @@ int main(int argc, char** argv) {
         "| {:<25} | until, s | impacts | Zeno | Zeno time | state     | steps | CPU, s |\n"
         "|---------------------------|---------:|--------:|-----:|----------:|----------:|------:|-------:|\n",
         "own run");
+    std::string refused;
     for (const std::string& name : all_systems()) {
         const auto model = load(name);
         try {
             tell(name, prove(model, claim_as_written(model->default_run())));
         } catch (const InputError& refusal) {
-            fmt::print("{} is refused: {}\n", name, refusal.message);
+            refused += fmt::format("{}: {}\n", name, refusal.message);
         }
     }
+    fmt::print("\nrefused\n{}", refused);
     if (count == 0) return EXIT_SUCCESS;
     fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
     for (const std::string& name : systems_of_one_gap()) {

@@ -92,7 +92,8 @@ TEST(Layout, markers_on_the_rim_are_drawn) {
     markers.points = {{0.1, -0.3}, {20.3, -0.3}, {0.1, 0.7}, {20.3, 0.7}};
     for (float width = 300.0F; width < 400.0F; width += 1.0F) {
         int marks = 0;
-        for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0)) marks += item.index() == 2 ? 1 : 0;
+        for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0))
+            marks += std::holds_alternative<Mark>(item) ? 1 : 0;
         EXPECT_EQ(marks, 4) << width;
     }
 }
