@@ -36,12 +36,9 @@ std::string of_quantity(const Influences& known, double value, const char* forma
     return number_with_unit(number(value * unit.factor, format), unit.unit);
 }
 
-// What is rounding beside the others is none.
-double without_rounding(double x, double size) { return std::abs(x) < 1e-12 * size ? 0.0 : x; }
-
 double share_of(const Influences& known, const Influences::Of& by) {
     const double most = known.largest();
-    return most > 0.0 ? without_rounding(by.over_slider / most, 1.0) : 0.0;
+    return most > 0.0 ? by.over_slider / most : 0.0;
 }
 
 bool is_start(const SystemDescription& system, const std::string& name) {
@@ -58,10 +55,9 @@ std::string no_derivative(const std::string& reason) { return "no derivative her
 std::string explanation(const Session& session, const Influences& known, const Influences::Of& by) {
     if (!by.reason.empty()) return no_derivative(by.reason);
     const SystemDescription& system = session.description();
-    const double over = known.largest() * share_of(known, by);
     return fmt::format("{} changes by {};\nover the whole slider at this slope by {}",
                        typeset(known.quantity.expression), derivative_text(system, known, by),
-                       (over > 0.0 ? "+" : "") + of_quantity(known, over));
+                       (by.over_slider > 0.0 ? "+" : "") + of_quantity(known, by.over_slider));
 }
 
 // ---- the quantity ----
@@ -117,7 +113,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
     const float right = ImGui::GetWindowPos().x + content_right(), y = at.y + ImGui::GetStyle().FramePadding.y;
     float x =
         menu_button("depend quantity", typeset(session.depend_text()), at.x, row, at.x + 0.4F * (right - at.x), state);
-    tooltip("of which quantity");
+    tooltip("of which quantity of the run; certificates do not cover derivatives");
     show_quantities(session, state, commands);
     if (const Influences* const known = session.influences(); known != nullptr) {
         const std::string value = "= " + of_quantity(*known, known->quantity.value, "{:.9g}");
@@ -163,7 +159,7 @@ struct Lines {
     float half() const { return 0.5F * bar - units(4.0F); }
 };
 
-// Over each column how long a bar would be, the least and the largest; and where all begin.
+// Over each column how long a bar would be: the least and the largest.
 void paint_scale(const Influences& known, const Lines& lines, std::size_t first) {
     const float middle = lines.middle(first);
     const auto put = [&](const std::string& text, float x, float share) {
@@ -174,10 +170,6 @@ void paint_scale(const Influences& known, const Lines& lines, std::size_t first)
     put("\u2212" + end, middle - lines.half(), 0.0F);
     put("0", middle, 0.5F);
     put("+" + end, middle + lines.half(), 1.0F);
-    const std::size_t last = std::min(first + lines.each, known.all.size()) - 1;
-    ImGui::GetWindowDrawList()->AddRectFilled({middle, lines.at(first).y},
-                                              {middle + units(1.0F), lines.at(last).y + ImGui::GetTextLineHeight()},
-                                              packed(current_theme().border));
 }
 
 void paint_line(const Session& session, const Influences& known, const Influences::Of& by, const Lines& lines,
@@ -192,9 +184,12 @@ void paint_line(const Session& session, const Influences& known, const Influence
         return cell({left + units(4.0F), at.y}, no_derivative(by.reason), lines.bar + units(number_width) - units(8.0F),
                     faint_color());
     ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({middle, low}, {middle + units(1.0F), low + lines.height}, packed(current_theme().border));
     const float inset = 0.2F * (high - low), end = middle + static_cast<float>(share_of(known, by)) * lines.half();
-    list->AddRectFilled({std::min(middle, end), low + inset}, {std::max(middle, end), high - inset},
-                        packed(is_old ? faint_color() : current_theme().accent, is_old ? 0.5F : 0.85F), units(2.0F));
+    if (end != middle)
+        list->AddRectFilled({std::min(middle, end), low + inset}, {std::max(middle, end), high - inset},
+                            packed(is_old ? faint_color() : current_theme().accent, is_old ? 0.5F : 0.85F),
+                            units(2.0F));
     const std::string text = derivative_text(session.description(), known, by);
     cell({left + lines.bar + units(8.0F), at.y}, text, units(number_width - 8.0F), ink);
 }
@@ -235,8 +230,7 @@ void show_bars(const Session& session, PanelState& state, Commands& commands) {
 std::string derivative_text(const SystemDescription& system, const Influences& known, const Influences::Of& by) {
     if (!by.reason.empty()) return "none";
     const ShownUnit unit = shown_unit(std::string(unit_of(system, by.name)));
-    const double share = share_of(known, by);
-    const std::string text = of_quantity(known, share == 0.0 ? 0.0 : by.derivative / unit.factor);
+    const std::string text = of_quantity(known, by.derivative / unit.factor);
     return unit.unit.empty() ? text : text + " per " + unit.unit;
 }
 

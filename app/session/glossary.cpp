@@ -64,7 +64,7 @@ constexpr std::array keys{
     Shortcut{"Ctrl+2", "plots", "Plots"},
     Shortcut{"Ctrl+3", "events", "Events"},
     Shortcut{"Ctrl+4", "sweep: many runs beside this one", "Sweep"},
-    Shortcut{"Ctrl+5", "what a result depends on", "What it depends on"},
+    Shortcut{"Ctrl+5", "what it depends on", "What it depends on"},
     Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
     Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
     Shortcut{"Ctrl+Minus", "smaller", "Smaller"},

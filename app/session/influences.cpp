@@ -62,6 +62,10 @@ Influences influences_on(const std::string& quantity, const std::shared_ptr<cons
         add(c.name, c.range, run->run.q[static_cast<Eigen::Index>(i)]);
         add(c.name + "'", c.rate_range, run->run.v[static_cast<Eigen::Index>(i)]);
     }
+    // What is rounding beside the others is none.
+    const double size = std::max(result.largest(), std::abs(result.quantity.value));
+    for (Influences::Of& one : result.all)
+        if (std::abs(one.over_slider) < 1e-12 * size) one.derivative = one.over_slider = 0.0;
     return result;
 }
 

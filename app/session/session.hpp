@@ -207,6 +207,7 @@ class Session {
         double least_gap;
         std::vector<Remark> remarks;
         Sentences sentences;
+        std::string quantity;  // default_quantity() of it
         std::unique_ptr<Stage> stage;
         int revision = 0;   // of what is plotted
         bool dark = false;  // in which theme

@@ -6,7 +6,7 @@
 
 namespace achilles {
 
-std::string Session::depend_text() const { return scene_.depends().value_or(default_quantity(trajectory())); }
+std::string Session::depend_text() const { return scene_.depends().value_or(simulated_->quantity); }
 
 bool Session::influences_are_current() const {
     const Influences* const known = influences();
