@@ -148,7 +148,9 @@ TEST(Depend, is_of_the_run_that_is_shown_or_said_to_be_old) {
         const Influences* const known = session.influences();
         ASSERT_NE(known, nullptr);  // there is always something to see
         EXPECT_EQ(session.influences_are_current(), known->run.get() == &session.trajectory());
-        if (!session.influences_are_current()) EXPECT_FALSE(session.sweep_tangent());
+        if (!session.influences_are_current()) {
+            EXPECT_FALSE(session.sweep_tangent());
+        }
     }
     session.settle();
     EXPECT_TRUE(session.influences_are_current());

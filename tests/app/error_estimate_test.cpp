@@ -13,7 +13,9 @@ TEST(EstimateInTheExplorer, IsThatOfTheRunThatIsShown) {
         ASSERT_NE(session.error_estimate(), nullptr);
         EXPECT_EQ(session.error_estimate()->none_since, expected.none_since);
         ASSERT_EQ(session.error_estimate()->end.has_value(), expected.end.has_value());
-        if (expected.end) EXPECT_EQ(session.error_estimate()->end->norm, expected.end->norm);
+        if (expected.end) {
+            EXPECT_EQ(session.error_estimate()->end->norm, expected.end->norm);
+        }
     };
     is_of_the_run();
     session.apply(command::Set{"e", 0.3});
