@@ -26,20 +26,34 @@ void legend_entry(const std::string& text, const std::function<void(ImDrawList*,
     ImGui::PopStyleColor();
 }
 
-void show_legend(const Session& session) {
+constexpr Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
+
+std::vector<Markers> legend_markers(const Session& session) {
     std::vector<Markers> events;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
         events.push_back(event_markers(session.theme(), kind));
     if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
-    const Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
-    const float gap = units(12.0F);
+    return events;
+}
+
+float legend_gap() { return units(12.0F); }
+
+float legend_width(const Session& session) {
     float width = 0.0F;
-    for (const Phase::Kind kind : phases)
-        width += ImGui::CalcTextSize(legend_text(kind).c_str()).x + units(18.0F) + gap;
-    for (const Markers& markers : events) width += ImGui::CalcTextSize(markers.label.c_str()).x + units(18.0F) + gap;
+    const auto add = [&](const std::string& text) {
+        width += ImGui::CalcTextSize(text.c_str()).x + units(18.0F) + legend_gap();
+    };
+    for (const Phase::Kind kind : phases) add(legend_text(kind));
+    for (const Markers& markers : legend_markers(session)) add(markers.label);
+    if (session.proof() != nullptr) add(proof_tube(session.theme()).label);
+    return width;
+}
+
+void show_legend(const Session& session) {
+    const std::vector<Markers> events = legend_markers(session);
+    const float gap = legend_gap(), width = legend_width(session);
     const bool has_tube = session.proof() != nullptr;
     const Tube tube = proof_tube(session.theme());
-    if (has_tube) width += ImGui::CalcTextSize(tube.label.c_str()).x + units(18.0F) + gap;
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(content_right() - units(edge) - width + gap);
@@ -123,13 +137,17 @@ void show_proof(const Session& session) {
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
-// What is estimated of the run's error, once that is known; nothing where there is none, and why is in the summary.
+// What is estimated of the run's error, once that is known, behind what stands there. Nothing where there is none, and why is in the
+// summary; nor where it would take the legend its place.
 void show_estimate(const Session& session) {
     const ErrorEstimate* estimate = session.error_estimate();
     if (estimate == nullptr || !estimate->end) return;
+    const std::string text = fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}"));
+    const float room = ImGui::GetWindowPos().x + content_right() - ImGui::GetItemRectMax().x;
+    const float needed = ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + legend_width(session);
+    if (room < needed + units(edge)) return;
     ImGui::SameLine(0.0F, 0.0F);
-    ImGui::TextUnformatted(
-        fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}")).c_str());
+    ImGui::TextUnformatted(text.c_str());
     tooltip(
         "Of the state at the end, position and rates together: what steps,\n"
         "roots and cuts leave out, carried on to first order, and rounding.\n"

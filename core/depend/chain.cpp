@@ -394,7 +394,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
     return std::nullopt;
 }
 
-// The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md (4), by the components before the
+// The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md 4, by the components before the
 // jump; J is what q, v, t and p are of these at the restart, where the state stands.
 RowVectorXd Chain::wait_row(const MatrixXd& J, std::size_t contact, ContactSet others, double speed) {
     auto& trend = trends_[{others, contact}];

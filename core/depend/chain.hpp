@@ -1,5 +1,5 @@
 // A finished run as a chain of linear maps: what a small change of its start, or of a parameter, becomes of it, event by event
-// (theory-derivatives.md). It is made from what the run has recorded, so that every decision is the run's.
+// (theory-derivatives.md 1). It is made from what the run has recorded, so that every decision is the run's.
 //
 //     Chain chain(trajectory);
 //     Matrix Z = ...;  chain.complete(Z);                  one column a change, its rows as Tangent says

@@ -1,4 +1,4 @@
-// The derivatives of a finished run, through all of its impacts and Zeno points (theory-derivatives.md).
+// The derivatives of a finished run, through all of its impacts and Zeno points (theory-derivatives.md 1).
 //
 //     const Derivatives d = differentiate(trajectory);
 //     d.end->q(i, k)             of coordinate i at the end time, by direction k

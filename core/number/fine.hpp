@@ -1,6 +1,6 @@
 // Fine: a number known to about 100 bits, as a sum of two doubles with a bound of how far it is from the exact value. For
 // the middle of a set that is proved: what an Interval loses at every operation there is lost for good, at every step of a
-// long run (theory-enclosure.md 11).
+// long run (theory-enclosure.md 2).
 //
 // Double-double arithmetic (Dekker 1971, Knuth's sum, a product by a fused multiplication), in which every rounding that is
 // left is counted afterwards, by what was rounded: an operation to nearest is off by at most 2^-53 of its result. Sound as
