@@ -12,6 +12,7 @@
 // the same links: e := J e + what the link has left out, P := J P J' + ..., with J = link->matrix().
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -64,6 +65,8 @@ struct DerivativeMargins {
     std::optional<double> a_inf;          // the least -hddot at a Zeno point
     std::optional<double> release_jerk;   // the least h''' at a release
 };
+
+inline void take_least(std::optional<double>& least, double x) { least = least ? std::min(*least, x) : x; }
 
 class Chain {
  public:

@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
             refused += fmt::format("{}: {}\n", name, refusal.message);
         }
     }
-    fmt::print("\nrefused\n{}", refused);
+    if (!refused.empty()) fmt::print("\nrefused\n{}", refused);
     if (count == 0) return EXIT_SUCCESS;
     fmt::print("\n{} members of random boxes of half width 1e-6\n", count);
     for (const std::string& name : all_systems()) {

@@ -1,0 +1,209 @@
+// What events do to a small change: impacts, cuts and their Zeno points, releases (theory-derivatives.md 3 to 6).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "certify/zeno_time.hpp"
+#include "depend/chain.hpp"
+
+namespace achilles {
+
+using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
+
+void Chain::happen(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    state_ = {now.q, now.v_before, now.t};
+    switch (now.kind) {
+        case Event::Kind::impact:
+            return land(event);
+        case Event::Kind::zeno:
+            return reach_zeno_point(event);
+        case Event::Kind::release:
+            return release(event);
+    }
+}
+
+Link& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
+    Link& link = add(Link::Kind::crossing, event);
+    link.F = rate();
+    link.G = std::move(G);
+    link.residual = residual;
+    return link;
+}
+
+// v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`.
+void Chain::take_out_rate(MatrixXd& J, ContactGradient& surface, double times, double u, const RowVectorXd& du) {
+    const MatrixXd before = J;
+    for (std::size_t k = 0; k < tangent_.dof; ++k)
+        J.row(tangent_.v(k)) -= surface.n(k) * du + times * u * (surface.n_row(k) * before);
+}
+
+void Chain::land(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    if (waiting_) return break_off("an impact happens before the Zeno time of another contact");
+    if (now.contacts.count() != 1)
+        return break_off("several contacts land at once: which is first depends on the direction");
+    const std::size_t i = now.contacts.only();
+    // What of the others takes part.
+    ContactSet others = held_;
+    if (now.joint) {
+        if (now.joint->order_matters || now.joint->not_unique)
+            return break_off("what the impact leads to depends on an order that cannot be told");
+        others = {};
+        double scale = 0.0;
+        for (const auto& [contact, impulse] : now.joint->impulses) scale = std::max(scale, impulse);
+        for (const auto& [contact, impulse] : now.joint->impulses) {
+            if (contact == i) continue;
+            if (!held_.contains(contact))
+                return break_off("a contact that touches without a force takes part in an impact");
+            const double rate = surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot;
+            constexpr double strictly = 1e-10;
+            if (impulse > strictly * scale)
+                others = others.with(contact);
+            else if (!(rate > strictly * now.impact_speed))
+                return break_off("a held contact is neither pressed by an impact nor opened by it");
+        }
+    }
+    set_gaps();
+    h_[i] = 0.0;
+    u_[i] = -now.impact_speed;
+    RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
+    to_surface[tangent_.h(i)] = 1.0;
+    Link& crossing = cross(event, to_surface, 0.0);
+    if (options_.errors) meet_surface(i, others, crossing);
+
+    ContactSet joins;
+    if (auto reason = next_completion(event, joins)) return break_off(std::move(*reason));
+    ContactGradient& contact = surface(i, others);
+    contact.at(state_);
+    auto& restitution = restitutions_[i];
+    if (!restitution)
+        restitution =
+            std::make_unique<Gradient>(*model_, model_->restitution(i), tangent_, trajectory_->run.parameters);
+    restitution->at(state_);
+    const double e = restitution->value(0), u = u_[i];
+    const auto hddot_at = [&](const Vector& v) {
+        return surfaces_.of(i, others).normal_acceleration({state_.q, v, state_.t});
+    };
+    Vector s = state_.v;
+    for (std::size_t k = 0; k < tangent_.dof; ++k) s[static_cast<Eigen::Index>(k)] -= u * contact.n(k);
+    if (hddot_at(s) > 0.0) take_least(margins_.grazing_speed, -u);
+
+    Link& link = add(Link::Kind::jump, event);
+    MatrixXd& J = link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
+    // Back onto the surface, which the components of q and v leave by what steps leave out.
+    const RowVectorXd off = contact.h_row() * J;
+    for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * off;
+    J.row(tangent_.h(i)).setZero();
+    const RowVectorXd du = J.row(tangent_.u(i)), de = restitution->row(0) * J;
+    const bool completes = joins.contains(i);
+    const bool rests = completes || now.held.contains(i);
+    if (completes) {
+        MatrixXd newton = J;
+        take_out_rate(newton, contact, 1.0 + e, u, (1.0 + e) * du + u * de);
+        link.completion = Link::Completion{i, others, -u, std::move(newton)};
+        take_out_rate(J, contact, 1.0, u, du);
+        state_.v = s;
+        J.row(tangent_.wait()) = wait_row(J, i, others, -u);
+        retract(J, others.with(i));
+        waiting_ = true;
+    } else {
+        take_out_rate(J, contact, 1.0 + e, u, (1.0 + e) * du + u * de);
+        state_.v = now.v_after;
+        J.row(tangent_.u(i)) = -e * du - u * de;
+        retract(J, rests ? others.with(i) : others);
+    }
+    held_ = completes ? others.with(i) : now.held;
+    if (completes && others != now.held.without(i)) return break_off("a bouncing is cut where a contact opens");
+    for (std::size_t k = 0; k < tangent_.contacts; ++k) {
+        if (held_.contains(k) || k == i) continue;
+        ContactGradient& other = surface(k, {});
+        other.at(state_);
+        J.row(tangent_.u(k)) = other.hdot_row() * J;
+        if (now.opened.contains(k)) J.row(tangent_.h(k)).setZero();
+    }
+    set_gaps();
+    if (!rests) {
+        h_[i] = 0.0;
+        u_[i] = -e * u;
+    }
+}
+
+// The contacts that come to rest after an impact, by a bouncing that is cut there. A reason where that has no derivative.
+std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet& joins) const {
+    const auto& events = trajectory_->events;
+    const Event& now = events[event];
+    const bool is_zeno = event + 1 < events.size() && events[event + 1].kind == Event::Kind::zeno &&
+                         events[event + 1].truncation && events[event + 1].truncation->t == now.t;
+    if (is_zeno) {
+        joins = events[event + 1].contacts;
+    } else if (next_piece_ < trajectory_->pieces.size()) {
+        const Piece& piece = trajectory_->pieces[next_piece_];
+        if (piece.start == now.t && (event + 1 == events.size() || events[event + 1].t > now.t))
+            joins = piece.held.without(now.held);
+    }
+    if (joins.count() > 1)
+        return "two contacts come to rest together: their Zeno point has no derivative that is known";
+    return std::nullopt;
+}
+
+// The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md 4, by the components before the
+// jump; J is what q, v, t and p are of these at the restart, where the state stands.
+RowVectorXd Chain::wait_row(const MatrixXd& J, std::size_t contact, ContactSet others, double speed) {
+    auto& trend = trends_[{others, contact}];
+    if (!trend)
+        trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,
+                                           trajectory_->run.parameters);
+    trend->at(state_);
+    const Gradient& e = *restitutions_[contact];
+    using Number = Jet<double, 5>;
+    const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
+    const Number wait = estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e.value(0), 3),
+                                       Number::variable(speed, 4));
+    RowVectorXd row = wait.slope[3] * (e.row(0) * J);
+    for (std::size_t k = 0; k < 3; ++k) row -= wait.slope[k] * (trend->row(k) * J);
+    return row - wait.slope[4] * J.row(tangent_.u(contact));
+}
+
+void Chain::reach_zeno_point(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    if (!waiting_ || now.contacts.count() != 1)
+        return break_off("two contacts come to rest together: their Zeno point has no derivative that is known");
+    waiting_ = false;
+    set_gaps();
+    const std::size_t i = now.contacts.only();
+    const double a = -surfaces_.of(i, held_.without(i)).normal_acceleration(state_);
+    take_least(margins_.a_inf, a);
+    // The members that wait for longer go on for so long.
+    Link& link = add(Link::Kind::jump, event);
+    link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
+    link.J.col(tangent_.wait()) += rate();
+    link.J.row(tangent_.wait()).setZero();
+    retract(link.J, held_);
+}
+
+void Chain::release(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    if (now.contacts.count() != 1 || now.joint || held_.without(now.contacts) != now.held)
+        return break_off("several contacts are let go at once: which is first depends on the direction");
+    const std::size_t i = now.contacts.only();
+    const ContactSet others = held_.without(i);
+    auto& normal = normals_[{others, i}];
+    if (!normal)
+        normal = std::make_unique<Gradient>(*model_, model_->programs_of(i, others).normal_acceleration, tangent_,
+                                            trajectory_->run.parameters);
+    normal->at(state_);
+    set_gaps();
+    const double jerk = surfaces_.of(i, others).jerk(state_);
+    take_least(margins_.release_jerk, jerk);
+    cross(event, normal->row(0), normal->value(0));
+    Link& link = add(Link::Kind::jump, event);
+    link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
+    retract(link.J, held_);
+    held_ = now.held;
+    set_gaps();
+    h_[i] = u_[i] = 0.0;
+}
+
+}  // namespace achilles

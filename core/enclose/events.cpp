@@ -1,0 +1,224 @@
+// What becomes of all members at an impact, at the cut of a bouncing and at a release (theory-enclosure.md 5 to 7, 10).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "enclose/prover.hpp"
+
+namespace achilles {
+
+namespace {
+
+Interval both(const Interval& a, const Interval& b) {
+    const double lo = std::max(a.lo(), b.lo()), hi = std::min(a.hi(), b.hi());
+    return lo <= hi ? Interval(lo, hi) : a;
+}
+
+}  // namespace
+
+void Prover::note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
+                        const Intervals& v_after) {
+    result_.events.push_back(
+        {kind, contact, held_, {}, t, positions(set_.hull()), v_before, v_after, bounces_[contact]});
+}
+
+void Prover::retract(ContactSet onto) {
+    const ContactSet before = std::exchange(held_, onto);
+    for (std::size_t i = 0; i < z_.contacts; ++i)
+        if (onto.contains(i)) maps(i).retract(set_);
+    held_ = before;
+}
+
+// The held contacts that an impact opens in every member: Moreau's law has one answer, which is proved to be this
+// (theory-gaps.md 2.1). Those that stay are pressed by what is passed on to them; that the others leave is seen after it.
+ContactSet Prover::opened_by(std::size_t contact) {
+    ContactSet opened;
+    const ContactSet all = held_;
+    for (int round = 0; round < 2 && !held_.empty(); ++round) {
+        Doubleton tangential = set_;
+        maps(contact).take_rate_out(tangential);
+        ContactSet pulled;
+        for (const auto& [other, passed] : completion(contact).passed_on(tangential)) {
+            if (certainly_negative(passed))
+                pulled = pulled.with(other);
+            else if (!(passed.lo() >= 0.0))
+                throw Undecided{"an impact opens a contact that is held, or leaves it"};
+        }
+        if (pulled.empty()) break;
+        if (round > 0) throw Undecided{"which held contacts an impact opens is not decided"};
+        opened = pulled;
+        held_ = held_.without(opened);
+    }
+    held_ = all;
+    return opened;
+}
+
+// By the event that was noted last.
+void Prover::check_opened(ContactSet opened) {
+    result_.events.back().opened = opened;
+    for (std::size_t i = 0; i < z_.contacts; ++i)
+        if (opened.contains(i) && !certainly_positive(set_.hull(z_.u(i))))
+            throw Undecided{"an impact opens a contact that is held, or leaves it"};
+}
+
+// All members are on the surface.
+void Prover::land(std::size_t contact, const Interval& time) {
+    const std::size_t h = z_.h(contact), u = z_.u(contact);
+    if (!certainly_negative(set_.hull(u)))
+        throw Undecided{"graze: the impact speed cannot be told from zero for all of the set"};
+    project(contact);
+    const Intervals v_before = velocities(set_.hull());
+    const Interval e = maps(contact).restitution(set_.hull());
+    const ContactSet opened = opened_by(contact);
+    if (!opened.empty()) {
+        hold(held_.without(opened));
+        for (std::size_t i = 0; i < z_.contacts; ++i)
+            if (opened.contains(i)) openings_[i].known = KnownRoot::landed;
+    }
+    if (e.lo() == 0.0 && e.hi() == 0.0) return capture(contact, time, v_before, opened);
+    if (++result_.statistics.impacts > claim_.run.options.max_impacts)
+        throw Undecided{fmt::format("more than {} impacts", claim_.run.options.max_impacts)};
+    ++bounces_[contact];
+    const double radius = largest_radius();
+    Doubleton before = set_;
+    maps(contact).impact(set_);
+    set_.set(h, 0.0);
+    note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
+    check_opened(opened);
+    Doubleton after = set_;
+    set_ = before;
+    if (complete(contact, time, e, radius)) return;
+    set_ = after;
+    const double rise = set_.hull(u).hi(), a = mag(maps(contact).normal(set_.hull()).hddot);
+    if (2.0 * rise < 0x1p-50 * mag(time) * a)
+        throw Undecided{"the flights are below the resolution of time, and no completion is proved"};
+    openings_[contact].known = KnownRoot::landed;
+    motion().forget();
+}
+
+// What the set has gained where no member is goes, unless the map's own bending costs more: it is of second order, but a wide
+// set pays it at once, and what goes would have grown later only.
+void Prover::project(std::size_t contact) {
+    const auto size = [&](const Doubleton& set) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < 2 * z_.dof; ++i) sum += rad(set.hull(z_.q(i)));
+        return sum;
+    };
+    Doubleton projected = set_;
+    maps(contact).project(projected);
+    constexpr double hardly = 1.001;
+    if (size(projected) <= hardly * size(set_)) set_ = projected;
+}
+
+// A landing with e = 0 of every member.
+void Prover::capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened) {
+    maps(contact).take_rate_out(set_);
+    set_.set(z_.h(contact), 0.0);
+    set_.set(z_.u(contact), 0.0);
+    retract(held_.with(contact));
+    const Interval hddot = maps(contact).normal(set_.hull()).hddot;
+    if (certainly_negative(hddot)) {
+        hold(held_.with(contact));
+        note_event(Event::Kind::zeno, contact, time, v_before, velocities(set_.hull()));
+        return check_opened(opened);
+    }
+    if (!certainly_positive(hddot))
+        throw Undecided{"contact or flight: the contact force cannot be told from zero for all of the set"};
+    ++result_.statistics.impacts;
+    note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
+    check_opened(opened);
+    openings_[contact].known = KnownRoot::at_rest;
+    motion().forget();
+}
+
+// The states at the Zeno points of members that all reach them in this step, each after its own wait, without the error of the
+// comparison.
+Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval& tau,
+                           const Completion::Proof& proof) const {
+    const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
+    Intervals box = step.box_over(set_, tau);
+    const Intervals point = step.centre_at(Interval(middle)), rho = step.remainder_at(tau),
+                    F = step.rate_at(hull(tau, Interval(middle)));
+    IntervalMatrix S = step.slope_at(tau);
+    for (std::size_t i = 0; i < z_.size(); ++i) {
+        S(i, z_.u(contact)) += F[i] * proof.by_u;
+        box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof.at_centre - Interval(middle)) + set_.along(S.row(i)));
+    }
+    return box;
+}
+
+// All members bounce to their Zeno points, if that is proved well enough. Then the set is that of the members in contact, so
+// much later than their collisions that all have reached them.
+bool Prover::complete(std::size_t contact, const Interval& time, const Interval& e, double radius) {
+    const std::size_t u = z_.u(contact);
+    maps(contact).take_rate_out(set_);
+    set_.set(z_.h(contact), 0.0);
+    const auto proof = completion(contact).prove(set_, e);
+    if (!proof) return false;
+    const double end = claim_.run.options.end_time;
+    const double resolution = 0x1p-52 * std::max(mag(time), 0x1p-30), w = mag(set_.hull(u));
+    double error = 0.0, fast = 0.0, size = 0.0;
+    for (const Interval& entry : proof->error) error = std::max(error, rad(entry));
+    for (std::size_t i = 0; i < z_.dof; ++i) {
+        fast = std::max(fast, mag(set_.hull(z_.v(i))));
+        size = std::max({size, fast, mag(set_.hull(z_.q(i)))});
+    }
+    const bool last = w < 1e-9 * fast || proof->window < 1000.0 * resolution;
+    const bool sharp = claim_.cut_early || error <= std::max(2e-16 * size, 0.05 * radius);
+    const bool timely = proof->half <= std::max(claim_.eps_t, 0.1 * proof->own);
+    if (!last && !(sharp && timely && proof->time.hi() < end)) return false;
+
+    cover(Interval(time.lo(), (Interval(time.hi()) + Interval(proof->window)).hi()), proof->position, proof->velocity);
+    hold(held_.with(contact));
+    retract(held_);  // u is kept beside: the wait depends on it
+    Interval passed(0.0);
+    std::optional<Intervals> zeno;
+    for (double left = proof->window; left > 0x1p-43 * proof->window;) {
+        const Step step = motion().make(set_, left, openings_);
+        count_step();
+        const Interval wait = proof->wait - passed;
+        const Interval tau(std::max(0.0, wait.lo()), std::min(step.length(), wait.hi()));
+        if (tau.is_defined()) {
+            const bool is_all = passed.hi() == 0.0 && wait.hi() <= step.length();
+            const Intervals box = is_all ? zeno_box(contact, step, tau, *proof) : step.box_over(set_, tau);
+            if (!zeno) zeno = box;
+            for (std::size_t i = 0; i < box.size(); ++i) (*zeno)[i] = hull((*zeno)[i], box[i]);
+        }
+        step.advance(set_, step.length());
+        passed += Interval(step.length());
+        left = step.length() < left ? proof->window - mid(passed) : 0.0;
+        if (left > 0x1p-43 * proof->window) retract(held_);
+    }
+    if (!zeno) throw Undecided{"the Zeno point has no enclosure"};
+    Intervals centre = set_.centre();
+    for (std::size_t i = 0; i < 2 * z_.dof; ++i) {
+        (*zeno)[z_.q(i)] += proof->error[i];
+        centre[z_.q(i)] += proof->error[i];
+    }
+    set_.map(centre, IntervalMatrix::identity(z_.size()));
+    set_.set(u, 0.0);
+    retract(held_);
+    measure_others(held_);
+    const Intervals v = velocities(*zeno);
+    result_.events.push_back(
+        {Event::Kind::zeno, contact, held_, {}, proof->time, positions(*zeno), v, v, bounces_[contact]});
+    bounces_[contact] = 0;
+    motion().forget();
+    return true;
+}
+
+void Prover::release(std::size_t contact, const Interval& time) {
+    retract(held_);
+    if (!certainly_positive(maps(contact).normal(set_.hull()).jerk))
+        throw Undecided{
+            "degenerate release: the rate of the contact force cannot be told from zero for all of the set"};
+    const Intervals v = velocities(set_.hull());
+    hold(held_.without(contact));
+    note_event(Event::Kind::release, contact, time, v, v);
+    openings_[contact].known = KnownRoot::released;
+    bounces_[contact] = 0;
+}
+
+}  // namespace achilles
