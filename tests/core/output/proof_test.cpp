@@ -35,8 +35,8 @@ TEST(ShortText, HoldsBothEnds) {
 
 // Whatever the run cuts earlier than the proof: the same Zeno points, releases and impacts.
 TEST(EnclosedEvents, AreThoseOfTheRun) {
-    for (const std::string name : {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator",
-                                   "double_pendulum_two_stops"}) {
+    for (const std::string name :
+         {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator", "double_pendulum_two_stops"}) {
         SCOPED_TRACE(name);
         const auto model = load(name);
         achilles::Run run = model->default_run();
