@@ -2,6 +2,7 @@
 // and the rate u of that once more, and the parameters that are intervals.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -9,6 +10,15 @@
 #include "expression/scalar.hpp"
 
 namespace achilles {
+
+// A number with its derivatives by one direction at least: Jet<Number, 0> has none.
+template <class Number>
+inline constexpr bool has_directions = [] {
+    if constexpr (HasDerivatives<Number>)
+        return std::tuple_size_v<decltype(Number::slope)> > 0;
+    else
+        return false;
+}();
 
 struct Coordinates {
     std::size_t dof = 0;
@@ -57,7 +67,7 @@ struct Coordinates {
  private:
     template <class Number>
     static void mark(std::vector<Number>& state, const std::vector<std::size_t>& variables) {
-        if constexpr (HasDerivatives<Number>)
+        if constexpr (has_directions<Number>)
             for (std::size_t j = 0; j < variables.size(); ++j)
                 state[variables[j]] = Number::variable(state[variables[j]].value, j);
     }

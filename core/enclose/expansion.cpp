@@ -50,7 +50,7 @@ class ExpansionOver : public Expansion {
     }
     Interval value(int k, std::size_t i) const override { return range_of(series_.coefficient(k, i)); }
     Interval slope(int k, std::size_t i, std::size_t j) const override {
-        if constexpr (HasDerivatives<Number>)
+        if constexpr (has_directions<Number>)
             return series_.coefficient(k, i).slope[j];
         else
             return Interval::undefined();
