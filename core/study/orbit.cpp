@@ -113,7 +113,8 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
     } else {
         A.row(2 * n).head(2 * n) = shot.F0.transpose();
     }
-    const MatrixXd by = A.completeOrthogonalDecomposition().solve(r);
+    // Without parameters there is nothing to solve, and Eigen would look at what is not there.
+    const MatrixXd by = P > 0 ? MatrixXd(A.completeOrthogonalDecomposition().solve(r)) : r;
     orbit.by_parameters = by;
     orbit.state = shot.run.run.start();
     const double start_time = map.run().options.start_time;
