@@ -65,7 +65,8 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
     const bool has_sweep = scene.shows("sweep"), has_plots = scene.shows("plots") || has_sweep;
-    const bool has_events = scene.shows("events") || scene.shows("equations") || scene.shows("depend");
+    const std::string lower_panel = scene.below();
+    const bool has_events = !lower_panel.empty();
     const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
     Arrangement parts;
     parts.bar = {0.0F, 0.0F, m.width, m.bar};
@@ -81,8 +82,8 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float left =
         has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
     // Where there is room for it, what a certificate says stands there without scrolling.
-    // Equations are higher than lines of text.
-    const float fitting_events = scene.shows("equations")
+    // Equations and plots are higher than lines of text.
+    const float fitting_events = lower_panel == "equations" || lower_panel == "orbit"
                                      ? std::max(180.0F * u, 0.38F * m.height)
                                      : std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
     const float low =

@@ -19,11 +19,12 @@ struct Shown {
     const char *what, *name;
     int key;
 };
-constexpr std::array<Shown, 5> panels{{{"controls", "Controls", '1'},
+constexpr std::array<Shown, 6> panels{{{"controls", "Controls", '1'},
                                        {"plots", "Plots", '2'},
                                        {"events", "Events", '3'},
                                        {"sweep", "Sweep", '4'},
-                                       {"depend", "What it depends on", '5'}}};
+                                       {"depend", "What it depends on", '5'},
+                                       {"orbit", "Periodic run", '6'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {

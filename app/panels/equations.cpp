@@ -150,17 +150,21 @@ class PageDrawing {
 }  // namespace
 
 void show_lower_tabs(const Session& session, PanelState& state, Commands& commands) {
-    const bool equations = session.scene().shows("equations"), depends = session.scene().shows("depend");
-    if (tab("Events", "tab events", "what happens in the run", !equations && !depends, state)) {
-        commands.emplace_back(command::Show{equations ? "equations" : "depend", false});
+    const std::string seen = session.scene().below();
+    if (tab("Events", "tab events", "what happens in the run", seen == "events", state)) {
+        commands.emplace_back(command::Show{seen, false});
         if (!session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
     }
     ImGui::SameLine(0.0F, units(14.0F));
-    if (tab("Equations", "tab equations", "the equations of motion and the Zeno condition", equations, state))
+    if (tab("Equations", "tab equations", "the equations of motion and the Zeno condition", seen == "equations", state))
         commands.emplace_back(command::Show{"equations", true});
-    if (!depends) return;
-    ImGui::SameLine(0.0F, units(14.0F));
-    tab("Dependence", "tab depend", "what a quantity of the run depends on", true, state);
+    const auto name_of = [&](const char* what, const char* title, const char* place, const char* about) {
+        if (seen != what) return;
+        ImGui::SameLine(0.0F, units(14.0F));
+        tab(title, place, about, true, state);
+    };
+    name_of("depend", "Dependence", "tab depend", "what a quantity of the run depends on");
+    name_of("orbit", "Periodic run", "tab orbit", "a run that comes back to its start, and its branch in a parameter");
 }
 
 bool derives_equations(const PanelState& state) {

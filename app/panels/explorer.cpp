@@ -206,9 +206,12 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     });
     part("sweep", parts.sweep, still_window, [&] { show_sweep(session, state, commands); });
     part("events", parts.events, still_window, [&] {
-        if (session.scene().shows("depend"))
+        const std::string below = session.scene().below();
+        if (below == "depend")
             show_dependence(session, state, commands);
-        else if (session.scene().shows("equations"))
+        else if (below == "orbit")
+            show_orbit(session, state, commands);
+        else if (below == "equations")
             show_equations(session, state, commands);
         else
             show_events(session, state, commands);

@@ -191,6 +191,7 @@ struct ResultStrip {
 
 class EquationsView;
 class EnergyCourse;
+struct OrbitView;
 class Thumbnails;
 
 // What belongs to the view and not to the session, so is in no journal.
@@ -229,6 +230,7 @@ struct PanelState {
     PlaneView plane;
     SweepState sweep;
     std::string depend;  // a quantity, as it is typed
+    std::shared_ptr<OrbitView> orbit;
     ResultStrip strip;
     bool on_marker = false;  // the timeline was pressed where an event is marked, and not dragged since
     bool escape = false;     // Escape was pressed, and nothing in front of the panels has it
@@ -317,6 +319,8 @@ void show_events(const Session& session, PanelState& state, Commands& commands);
 void show_equations(const Session& session, PanelState& state, Commands& commands);
 // In the same place: what a quantity of the run depends on.
 void show_dependence(const Session& session, PanelState& state, Commands& commands);
+// In the same place: the periodic run near the present one, and its branch.
+void show_orbit(const Session& session, PanelState& state, Commands& commands);
 // Which of these.
 void show_lower_tabs(const Session& session, PanelState& state, Commands& commands);
 // Frames must go on until they are there.

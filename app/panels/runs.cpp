@@ -54,7 +54,7 @@ void show_heading(const Session& session, PanelState& state, Commands& commands)
         commands.emplace_back(command::Show{"runs", !open});
         // It stands where the reasons of an event do.
         if (!open && session.selected() > 0) commands.emplace_back(command::Select{0});
-        for (const char* other : {"equations", "depend"})
+        for (const std::string& other : command::shown_below)
             if (!open && session.scene().shows(other)) commands.emplace_back(command::Show{other, false});
         if (!open && !session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
     }

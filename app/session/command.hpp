@@ -95,17 +95,19 @@ struct Save {
     static constexpr auto said = Said("save", "write: save FILE, or: save FILE overwrite", Change::view, &Save::file,
                                       Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy",  "contours", "controls", "depend",  "editor",  "energy",
-                                                   "equations", "events",   "export",   "force",   "gallery", "help",
-                                                   "lens",      "palette",  "plane",    "plots",   "runs",    "sides",
-                                                   "strobe",    "sweep",    "trail",    "velocity"};
+inline const std::vector<std::string> shown_things{"accuracy",  "contours", "controls", "depend", "editor",  "energy",
+                                                   "equations", "events",   "export",   "force",  "gallery", "help",
+                                                   "lens",      "orbit",    "palette",  "plane",  "plots",   "runs",
+                                                   "sides",     "strobe",   "sweep",    "trail",  "velocity"};
+// These share a place: the events'.
+inline const std::vector<std::string> shown_below{"equations", "depend", "orbit"};
 struct Show {
     std::string what;  // a panel: editor (in place of the sliders), controls, plots, events, equations (in place of
                        // the events), energy (under the results); or trail, velocity, force, strobe (the poses at
                        // events); the section accuracy of the controls; in place of the mechanism the configuration
     // plane, with contours of the energy, or of a system in space two sides; help: the card of keys and words; runs: the table
     // of the pinned ones beside the events; the gallery; the dialog of export; under the plots the sweep; depend, in place of
-    // the events: on what a quantity of the run depends
+    // the events: on what a quantity of the run depends; orbit, in the same place: a periodic run and its branch
     bool on = true;
     static constexpr auto said = Said(
         "show", "write: {0} editor", Change::view,
@@ -354,13 +356,13 @@ using AnyCommand =
     std::variant<command::Open, command::Set, command::UseOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::Text, command::Save, command::Show, command::DefaultPlane,
                  command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowDependence,
-                 command::Find, command::Grid, command::PlotView, command::Zoom, command::Fit, command::Range,
-                 command::AxisScale, command::ShowCurve, command::Link, command::Start, command::LookAll, command::Look,
-                 command::Camera, command::Speed, command::Loop, command::Step, command::Undo, command::Redo,
-                 command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall,
-                 command::PlotDifference, command::Lens, command::UseTheme, command::Enlarge, command::Present,
-                 command::Size, command::Reset, command::Done, command::Export, command::Copy, command::Wait,
-                 command::Say, command::Highlight, command::Replay>;
+                 command::StopOrbit, command::FindOrbit, command::GoOnOrbit, command::Find, command::Grid,
+                 command::PlotView, command::Zoom, command::Fit, command::Range, command::AxisScale, command::ShowCurve,
+                 command::Link, command::Start, command::LookAll, command::Look, command::Camera, command::Speed,
+                 command::Loop, command::Step, command::Undo, command::Redo, command::Pin, command::UnpinAll,
+                 command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference, command::Lens,
+                 command::UseTheme, command::Enlarge, command::Present, command::Size, command::Reset, command::Done,
+                 command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
 // A variant that is copied, moved and destroyed in command.cpp alone: it would take the compiler seconds in every file
 // that holds one.
 struct Command : AnyCommand {

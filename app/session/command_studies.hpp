@@ -23,6 +23,20 @@ struct Prove {
         Said("prove", "write: prove [width W] [NAME=LOW..HIGH ...], or: prove off", Change::view,
              Field(&Prove::width, length_after("width")), Field(&Prove::intervals, {.may_lack = true}));
 };
+struct StopOrbit {  // and forgets what was found
+    static constexpr auto said = Said("orbit off", alone, Change::view);
+};
+struct FindOrbit {
+    std::string text;  // as on the command line, but for --set and the options: these are what the session has
+    static constexpr auto said =
+        Said("orbit", "write: orbit \"--from start --continue e=0.1:0.9\", orbit \"\", or: orbit off", Change::view,
+             Field(&FindOrbit::text, in_quotes));
+};
+struct GoOnOrbit {
+    int point = 1;  // of the branch, or 1: the run begins there, with its parameters
+    static constexpr auto said = Said("branch", "write: branch NUMBER, a point of the branch that `orbit` has followed",
+                                      Change::together, &GoOnOrbit::point);
+};
 struct ShowDependence {
     std::string quantity;  // an expression as a sweep prints it
     static constexpr auto said =

@@ -65,6 +65,7 @@ constexpr std::array keys{
     Shortcut{"Ctrl+3", "events", "Events"},
     Shortcut{"Ctrl+4", "sweep: many runs beside this one", "Sweep"},
     Shortcut{"Ctrl+5", "what it depends on", "What it depends on"},
+    Shortcut{"Ctrl+6", "a periodic run and its branch", "Periodic run"},
     Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
     Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
     Shortcut{"Ctrl+Minus", "smaller", "Smaller"},

@@ -116,6 +116,12 @@ std::vector<Command> proof_steps(const Session& session) {
     return proof ? std::vector<Command>{*proof} : std::vector<Command>();
 }
 
+// To the periodic run that it is on, or was to be.
+std::vector<Command> orbit_steps(const Session& session) {
+    const auto orbit = session.orbit_command();
+    return orbit ? std::vector<Command>{*orbit} : std::vector<Command>();
+}
+
 // Where the present is.
 std::vector<Command> time_steps(const Session& session) {
     std::vector<Command> steps;
@@ -157,6 +163,7 @@ std::vector<Command> recipe(const Session& session) {
                                 description.source_text));
     append(steps, run_steps(session, session.file_run()));
     append(steps, proof_steps(session));
+    append(steps, orbit_steps(session));
     append(steps, sight_steps(session));
     // A text that is no system yet stands over one that runs.
     const Document& document = session.document();
@@ -219,6 +226,7 @@ std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
 std::vector<Command> explorer_steps(const Session& session) {
     std::vector<Command> steps = run_steps(session, session.run());
     append(steps, proof_steps(session));
+    append(steps, orbit_steps(session));
     append(steps, sight_steps(session));
     return steps;
 }

@@ -75,13 +75,19 @@ void Scene::perform(const command::Show& command) {
     };
     if (command.on && is_card(command.what)) std::erase_if(shown_, is_card);
     if (command.what == "palette") finds_.clear();
-    // These share a place.
-    if (command.on && command.what == "depend") shown_.erase("equations");
-    if (command.on && command.what == "equations") shown_.erase("depend");
+    const auto& lower = command::shown_below;
+    if (command.on && std::find(lower.begin(), lower.end(), command.what) != lower.end())
+        for (const std::string& other : lower) shown_.erase(other);
     if (command.on)
         shown_.insert(command.what);
     else
         shown_.erase(command.what);
+}
+
+std::string Scene::below() const {
+    for (const std::string& what : command::shown_below)
+        if (shows(what)) return what;
+    return shows("events") ? "events" : "";
 }
 
 void Scene::perform(const command::Find& command) {

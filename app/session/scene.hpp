@@ -21,6 +21,8 @@ class Scene {
     // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations" and
     // "energy", the Zeno "lens" in place of the plots, the table of the pinned "runs" beside the events, where there are any.
     bool shows(const std::string& what) const { return shown_.contains(what); }
+    // What stands at the place of the events: one of command::shown_below, else "events"; empty: nothing.
+    std::string below() const;
     double speed() const { return speed_; }  // seconds of the run in one of the player's
     bool loops() const { return loops_; }
     // What the configuration plane shows; nothing: what it has by default.

@@ -15,6 +15,7 @@
 #include "journal/journal.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "session/orbit_job.hpp"
 #include "session/refusal.hpp"
 #include "simulate/least_gap.hpp"
 #include "simulate/sampler.hpp"
@@ -55,7 +56,8 @@ Session::Session(const std::string& name, const SystemDescription& first, const 
       patience_(patience),
       document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
       system_(std::make_shared<const System>(name, first)),
-      plots_(system_->model) {
+      plots_(system_->model),
+      orbit_job_(std::make_shared<OrbitJob>()) {
     change_system(system_, plots_, run);
 }
 
@@ -214,6 +216,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     keep_plane();
     keep_sweep();
     keep_dependence();
+    orbit_job_->forget();
     simulated_.reset();
     estimate_.reset();
     rerun(run);

@@ -32,7 +32,10 @@
 namespace achilles {
 
 class FilmJob;
+class OrbitJob;
 class Stage;
+struct FoundOrbit;
+struct OrbitWatch;
 
 // How a session finds the systems that `open` names, and where `save` puts them. All throw InputError.
 struct SystemSource {
@@ -83,6 +86,7 @@ class Session {
         receive_estimate(0.0);
         sweep_job_->update(0.0);
         follow_dependence(0.0);
+        receive_orbit(0.0);
     }
     // Waits for all that is under way: what a picture shows is finished.
     void settle();
@@ -142,6 +146,13 @@ class Session {
     const Influences* influences() const { return influences_job_->influences(); }
     bool influences_are_current() const;
     const InfluencesJob& influences_job() const { return *influences_job_; }
+    // The periodic run that was searched for last, in this system, and its branch; null: none was, or the search is under way.
+    std::shared_ptr<const FoundOrbit> orbit() const;
+    const OrbitWatch* orbit_under_way() const;
+    // The point of it, from 0, that the run which was asked for last begins on; nothing: it does not.
+    std::optional<std::size_t> orbit_point() const;
+    // The command that leads to it from the present run; nothing where none does.
+    std::optional<command::FindOrbit> orbit_command() const;
     // Where the sweep has one axis, a value whose influence on what is printed is known.
     std::optional<TangentLine> sweep_tangent() const;
     bool can_undo() const { return history_.can_undo(); }
@@ -227,6 +238,9 @@ class Session {
     void perform(const command::ShowDependence& command);
     void perform(const command::Prove& command);
     void perform(const command::StopProof& command);
+    void perform(const command::FindOrbit& command);
+    void perform(const command::StopOrbit& command);
+    void perform(const command::GoOnOrbit& command);
     void perform(const command::New& command);
     void perform(const command::Text& command);
     void perform(const command::Save& command);
@@ -280,6 +294,7 @@ class Session {
     void follow_dependence(Patience patience);
     void follow_proof(Patience patience);
     void receive_proof(Patience patience);
+    void receive_orbit(Patience patience);
     void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
     void receive(Patience patience);
@@ -337,6 +352,7 @@ class Session {
     std::vector<const EnclosedEvent*> enclosed_;  // for every event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
     std::unique_ptr<InfluencesJob> influences_job_ = std::make_unique<InfluencesJob>();
+    std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
     std::optional<ErrorEstimate> estimate_;  // of simulated_

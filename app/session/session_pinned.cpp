@@ -7,6 +7,7 @@
 
 #include "figure/difference.hpp"
 #include "output/proof.hpp"
+#include "session/orbit_job.hpp"
 #include "session/refusal.hpp"
 #include "session/session.hpp"
 
@@ -116,6 +117,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
     influences_job_->on_ready(ready);
+    orbit_job_->on_ready(ready);
     for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
 }
 

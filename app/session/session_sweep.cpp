@@ -87,6 +87,7 @@ void Session::settle() {
     receive_estimate({});
     sweep_job_->update({});
     follow_dependence({});
+    receive_orbit({});
 }
 
 }  // namespace achilles

@@ -3,6 +3,7 @@
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "output/proof.hpp"
+#include "session/orbit_job.hpp"
 #include "session/session.hpp"
 
 namespace achilles {
@@ -16,6 +17,14 @@ std::string to_text(const Influences& known) {
         text += by.reason.empty() ? fmt::format(", by {} {:.6g}", by.name, by.derivative)
                                   : fmt::format(", by {} none: {}", by.name, by.reason);
     return text + "\n";
+}
+
+// "orbit --from start: period 3.5, 17 points, on point 3"
+std::string to_text(const FoundOrbit& found, std::optional<std::size_t> on) {
+    const auto& orbit = found.answer.orbit;
+    if (!orbit) return fmt::format("orbit {}: none, {}\n", found.text, found.answer.why);
+    return fmt::format("orbit {}: period {:.9g}, {} points{}\n", found.text, orbit->period, found.count(),
+                       on ? fmt::format(", on point {}", *on + 1) : "");
 }
 
 }  // namespace
@@ -38,6 +47,7 @@ std::string to_text(const Session& session) {
     if (const Proof* proof = session.proof())
         text += fmt::format("{}: {} until {:.9g}\n", to_text(*session.proof_command()),
                             to_text(proof->enclosure.outcome.kind), proof->enclosure.proved_until);
+    if (session.orbit() != nullptr) text += to_text(*session.orbit(), session.orbit_point());
     if (session.influences_are_current()) text += to_text(*session.influences());
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";

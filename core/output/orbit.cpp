@@ -98,16 +98,19 @@ std::string named(const SystemDescription& description, const Vector& values, co
     return text;
 }
 
-std::string told(const std::complex<double>& mu) {
-    if (mu.imag() == 0.0) return fmt::format("{:.11g}", mu.real() + 0.0);
-    return fmt::format("{:.11g} {} {:.11g}i", mu.real() + 0.0, mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()));
+std::string told(const std::complex<double>& mu, int digits) {
+    if (mu.imag() == 0.0) return fmt::format("{:.{}g}", mu.real() + 0.0, digits);
+    return fmt::format("{:.{}g} {} {:.{}g}i", mu.real() + 0.0, digits, mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()),
+                       digits);
 }
 
-std::string multipliers_of(const OrbitPoint& point) {
+}  // namespace
+
+std::string multipliers_text(const OrbitPoint& point, int digits) {
     std::string text;
     const std::size_t rest = point.multipliers.size() - point.zero_multipliers;
     for (std::size_t i = 0; i < point.multipliers.size(); ++i) {
-        text += fmt::format("{}{}", i > 0 ? ", " : "", told(point.multipliers[i]));
+        text += fmt::format("{}{}", i > 0 ? ", " : "", told(point.multipliers[i], digits));
         if (i == 0 && point.has_flow) text += " (along the motion)";
         if (i + 1 == point.multipliers.size() && i >= rest)
             text += fmt::format(" (the last {} exactly)", point.zero_multipliers);
@@ -115,13 +118,27 @@ std::string multipliers_of(const OrbitPoint& point) {
     return text;
 }
 
-std::string stability_of(const OrbitPoint& point) {
+std::string stability_text(const OrbitPoint& point) {
     const std::size_t first = point.has_flow ? 1 : 0;
     const double most = point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
     if (!point.stable) return fmt::format("not stable: a small change becomes {:.4g} times as large in a period", most);
     if (most == 0.0) return "stable: of a small change nothing is left";
     return fmt::format("stable: of a small change {:.4g} is left after a period", most);
 }
+
+std::string margins_text(const OrbitPoint& point) {
+    std::string text;
+    const auto add = [&](const char* what, const std::optional<double>& x) {
+        if (x) text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", what, *x);
+    };
+    add("a_inf", point.margins.a_inf);
+    add("h''' at release", point.margins.release_jerk);
+    add("least speed of an impact that may graze", point.margins.grazing_speed);
+    add("least gap it passes", point.margins.gap_minimum);
+    return text.empty() ? "" : "margins: " + text + "\n";
+}
+
+namespace {
 
 std::string events_of(const Orbit& orbit) {
     std::string text;
@@ -147,18 +164,6 @@ std::string events_of(const Orbit& orbit) {
     return text.empty() ? "  nothing\n" : text;
 }
 
-std::string margins_of(const OrbitPoint& point) {
-    std::string text;
-    const auto add = [&](const char* what, const std::optional<double>& x) {
-        if (x) text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", what, *x);
-    };
-    add("a_inf", point.margins.a_inf);
-    add("h''' at release", point.margins.release_jerk);
-    add("least speed of an impact that may graze", point.margins.grazing_speed);
-    add("least gap it passes", point.margins.gap_minimum);
-    return text.empty() ? "" : "margins: " + text + "\n";
-}
-
 std::string branch_text(const Branch& branch, const SystemDescription& description) {
     const std::string& name = description.parameters[branch.parameter].name;
     std::string text = fmt::format("\nbranch in {}: {} points from {:.10g} to {:.10g}\n", name, branch.points.size(),
@@ -166,7 +171,7 @@ std::string branch_text(const Branch& branch, const SystemDescription& descripti
     const auto tell = [&](const char* what, const std::vector<OrbitPoint>& all) {
         for (const OrbitPoint& point : all)
             text += fmt::format("  {:<26} {} = {:.12g}: period {:.10g} s, {}; {}\n", what, name, branch.value(point),
-                                point.period, named(description, point.state.q, ""), multipliers_of(point));
+                                point.period, named(description, point.state.q, ""), multipliers_text(point, 11));
     };
     tell("fold", branch.folds);
     tell("flip (mu = -1)", branch.flips);
@@ -190,8 +195,8 @@ std::string orbit_text(const Orbit& orbit, const Branch* branch) {
     text += fmt::format("period {:.14g} s, from {} t = {:.10g} s\n  {}\n  {}\n", orbit.period,
                         orbit.is_at_release ? "the release at" : "the flight at", orbit.state.t,
                         named(description, orbit.state.q, ""), named(description, orbit.state.v, "'"));
-    text += fmt::format("multipliers {}\n{}\n\n{}\n{}", multipliers_of(orbit), stability_of(orbit), events_of(orbit),
-                        margins_of(orbit));
+    text += fmt::format("multipliers {}\n{}\n\n{}\n{}", multipliers_text(orbit, 11), stability_text(orbit),
+                        events_of(orbit), margins_text(orbit));
     if (branch != nullptr) text += branch_text(*branch, description);
     return text;
 }

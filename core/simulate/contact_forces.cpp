@@ -1,8 +1,7 @@
 #include "simulate/contact_forces.hpp"
 
-#include <Eigen/QR>
-
 #include "contacts/complementarity.hpp"
+#include "number/dense.hpp"
 
 namespace achilles {
 
@@ -46,7 +45,7 @@ void ContactForces::share() {
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         hddot[static_cast<Eigen::Index>(i)] = all_->of(closed.which[i]).normal_acceleration(state_);
     const Eigen::MatrixXd W = closed.W;
-    const Eigen::VectorXd least = Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(-hddot);
+    const Eigen::VectorXd least = least_solution(W, Eigen::VectorXd(-hddot));
     const auto pressing = solve_complementarity(closed.W, -closed.W * least);
     shared_.assign(surfaces_.size(), 0.0);
     for (std::size_t i = 0; i < closed.which.size(); ++i) {

@@ -1,8 +1,9 @@
 #include "simulate/surfaces.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "number/dense.hpp"
 
 namespace achilles {
 
@@ -13,7 +14,7 @@ ContactVector<double> solve(const ContactMatrix<double>& W, const ContactVector<
     ContactSet all;
     for (Eigen::Index i = 0; i < W.rows(); ++i) all = with(all, i);
     if (const auto block = HeldBlock<double>::of(W, all)) return block->solve(b);
-    return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(Eigen::VectorXd(b));
+    return least_solution(W, Eigen::VectorXd(b));
 }
 
 // v -= M^-1 G' W^-1 b

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -228,8 +227,10 @@ class Walk {
         OrbitPoint lost = point;
         const OrbitPoint& by = passed.size() > 1 ? passed[passed.size() - 2] : first;
         const double share_left = (where - x1) / (x1 - by.parameters[p_]);
-        lost.state.q += share_left * (point.state.q - by.state.q);
-        lost.state.v += share_left * (point.state.v - by.state.v);
+        for (const auto state : {&OrbitPoint::state, &OrbitPoint::flight}) {
+            (lost.*state).q += share_left * ((point.*state).q - (by.*state).q);
+            (lost.*state).v += share_left * ((point.*state).v - (by.*state).v);
+        }
         lost.period += share_left * (point.period - by.period);
         const auto is_real = [](const OrbitPoint& one) {
             return std::all_of(one.multipliers.begin(), one.multipliers.end(),
@@ -289,7 +290,7 @@ class Walk {
 
 Branch follow(const std::shared_ptr<const Model>& model, const OrbitAsked& asked, const Orbit& orbit,
               std::size_t parameter, double low, double high) {
-    const ReturnMap map(model, asked.run, asked.closing);
+    const ReturnMap map(model, asked.run, asked.closing, asked.watch);
     Branch branch;
     branch.parameter = parameter;
     const Run& start = orbit.run.run;

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
+#include "number/dense.hpp"
 #include "simulate/surfaces.hpp"
 #include "study/orbit_start.hpp"
 
@@ -79,14 +77,12 @@ std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const S
     // What M reaches has r dimensions; its multipliers there are all but the zeros. The flow's direction first: its column is 1, 0, ...
     MatrixXd reached(m, flow + r);
     if (flow > 0) reached.col(0) = shot.F1.normalized();
-    reached.rightCols(r) = shot.M.jacobiSvd(Eigen::ComputeFullU).matrixU().leftCols(r);
+    reached.rightCols(r) = range_of(shot.M, r);
     // Of the basis, what lies across the flow.
     for (Index round = 0; flow > 0 && round < 2; ++round)
         reached.rightCols(r) -= reached.col(0) * (reached.col(0).transpose() * reached.rightCols(r));
-    const MatrixXd across = MatrixXd(reached.rightCols(r)).jacobiSvd(Eigen::ComputeFullU).matrixU().leftCols(r - flow);
-    const MatrixXd B = across.transpose() * shot.M * across;
-    const Eigen::VectorXcd values = B.eigenvalues();
-    std::vector<std::complex<double>> all(values.begin(), values.end());
+    const MatrixXd across = range_of(reached.rightCols(r), r - flow);
+    std::vector<std::complex<double>> all = eigenvalues_of(across.transpose() * shot.M * across);
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
     });
@@ -114,7 +110,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
         A.row(2 * n).head(2 * n) = shot.F0.transpose();
     }
     // Without parameters there is nothing to solve, and Eigen would look at what is not there.
-    const MatrixXd by = P > 0 ? MatrixXd(A.completeOrthogonalDecomposition().solve(r)) : r;
+    const MatrixXd by = P > 0 ? least_solution(A, r) : r;
     orbit.by_parameters = by;
     orbit.state = shot.run.run.start();
     const double start_time = map.run().options.start_time;
@@ -156,6 +152,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
 Orbit orbit_of(const ReturnMap& map, const ClosedLap& closed) {
     Orbit orbit;
     orbit.parameters = closed.lap.parameters;
+    orbit.flight = closed.shot.run.run.start();
     orbit.period = closed.lap.period;
     orbit.iterations = closed.iterations;
     orbit.error = closed.error;
@@ -248,7 +245,7 @@ OrbitSearch find_orbit(const std::shared_ptr<const Model>& model, const OrbitAsk
     Run run = asked.run;
     if (asked.is_guess) lift(*model, run);
     model->check(run);
-    const ReturnMap map(model, run, asked.closing);
+    const ReturnMap map(model, run, asked.closing, asked.watch);
     OrbitSearch found;
     // What forgets its start comes nearer to where it repeats by itself.
     for (const int periods : {0, 1, 3, 8, 20}) {
@@ -257,6 +254,7 @@ OrbitSearch find_orbit(const std::shared_ptr<const Model>& model, const OrbitAsk
             return found;
         } catch (const NoOrbit& none) {
             if (found.why.empty()) found.why = none.what();
+            if (asked.watch != nullptr && asked.watch->stop.stop_requested()) break;
         }
     }
     return found;

@@ -19,6 +19,7 @@ struct OrbitAsked {
     Run run;  // its parameters and options; the search begins at its start
     Closing closing;
     bool is_guess = false;  // the start: it may lie below a surface, and then begins on it
+    OrbitWatch* watch = nullptr;
 };
 
 // What is told of a periodic run wherever it stands, in a list or along a branch.
@@ -27,6 +28,7 @@ struct OrbitPoint {
     double period = 0.0;  // s
     // Where the period begins: at the release past its first Zeno point, without a drive; of a drive at the start time.
     State state;
+    State flight;  // of it, in the middle of a flight: what can begin a run
     // 2n of them, the greatest first, but the flow's 1 before all: how much of a change is left after a period.
     std::vector<std::complex<double>> multipliers;
     // So many are exactly 0: two for every contact that is held at one time, counted by the dimensions of what is left.

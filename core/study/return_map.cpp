@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "depend/gradient.hpp"
+#include "number/dense.hpp"
 #include "simulate/simulate.hpp"
 #include "study/signature.hpp"
 #include "system/input_error.hpp"
@@ -16,8 +15,8 @@ namespace achilles {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
-ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const Closing& closing)
-    : model_(std::move(model)), run_(run) {
+ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const Closing& closing, OrbitWatch* watch)
+    : model_(std::move(model)), run_(run), watch_(watch) {
     std::vector<Text> texts{closing.period};
     texts.insert(texts.end(), closing.shift.begin(), closing.shift.end());
     texts.resize(1 + static_cast<std::size_t>(model_->dof()));
@@ -92,8 +91,15 @@ Trajectory ReturnMap::run_of(const Lap& lap, double length) const {
     run.parameters = lap.parameters;
     run.options.start_time = lap.start_time;
     run.options.end_time = lap.start_time + length;
+    Watch watch;
+    if (watch_ != nullptr) {
+        watch.stop = watch_->stop;
+        ++watch_->runs;
+    }
     try {
-        return simulate(model_, run);
+        Trajectory made = simulate(model_, run, &watch);
+        if (made.outcome.kind == Outcome::Kind::cancelled) throw NoOrbit("the search was stopped");
+        return made;
     } catch (const InputError& error) {
         throw NoOrbit(fmt::format("a run that was tried cannot start: {}", error.message));
     }
@@ -197,7 +203,7 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
         r.head(m) = -shot.defect.cwiseQuotient(scale_.head(m));
         if (map_.is_driven()) r[m] = (map_.period(lap.parameters).value - lap.period) / scale_[m];
         if (normal.size() > 0) r[m + 1] = normal.dot(predicted - scaled(lap));
-        const VectorXd step = A.completeOrthogonalDecomposition().solve(r);
+        const VectorXd step = least_solution(A, r);
         const double size = step.norm();
         if (!std::isfinite(size)) break;
         // It is quadratic, but towards what is no isolated orbit: a family of them, or one that shrinks to rest.
@@ -210,8 +216,7 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
             closed = {lap, shot, round, size, {}};
             VectorXd along = VectorXd::Zero(m + 2);
             along[m + 1] = 1.0;
-            closed.tangent =
-                matrix(shot, lap, F_ref, before.size() > 0 ? before : VectorXd{}).partialPivLu().solve(along);
+            closed.tangent = solution(matrix(shot, lap, F_ref, before.size() > 0 ? before : VectorXd{}), along);
             closed.tangent.normalize();
             return closed;
         }

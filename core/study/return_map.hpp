@@ -4,9 +4,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,12 @@ namespace achilles {
 // Why there is no periodic run: a sentence for a person.
 struct NoOrbit : std::runtime_error {
     using std::runtime_error::runtime_error;
+};
+
+// For whoever waits: how many runs have been tried, and a stop, which is a reason why there is no periodic run.
+struct OrbitWatch {
+    std::stop_token stop;
+    std::atomic<int> runs = 0;
 };
 
 // When a run closes: after a period, with coordinates moved on by a shift. Expressions in the parameters.
@@ -47,7 +55,8 @@ struct Shot {
 class ReturnMap {
  public:
     // Throws InputError for a closing that is none, also where the system has a drive and no period is given.
-    ReturnMap(std::shared_ptr<const Model> model, const Run& run, const Closing& closing);
+    // What is watched outlives it.
+    ReturnMap(std::shared_ptr<const Model> model, const Run& run, const Closing& closing, OrbitWatch* watch = nullptr);
 
     const std::shared_ptr<const Model>& model() const { return model_; }
     const Run& run() const { return run_; }
@@ -65,7 +74,7 @@ class ReturnMap {
 
     // Throws NoOrbit where the run stops early, starts in contact, or has no derivative. By all parameters, or by one alone.
     Shot shoot(const Lap& lap, std::optional<std::size_t> parameter = {}) const;
-    // The run alone.
+    // The run alone. Throws NoOrbit where it cannot start, or nobody waits any more.
     Trajectory run_of(const Lap& lap, double length) const;
     Eigen::VectorXd rate(const std::vector<double>& parameters, const State& state, ContactSet held) const;
 
@@ -76,6 +85,7 @@ class ReturnMap {
     std::shared_ptr<const Model> model_;
     Run run_;
     Program closing_;  // the period, then the shift by coordinate
+    OrbitWatch* watch_;
 };
 
 // A lap that closes.

@@ -8,6 +8,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
+#include "study/flags.hpp"
 #include "study/sweep.hpp"
 #include "system/input_error.hpp"
 
@@ -191,38 +192,6 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
 
 namespace {
 
-constexpr std::string_view bare = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%^";
-
-// No expression has a double quote, nor anything that means something to a shell inside them.
-std::string quoted(const std::string& text) {
-    const bool is_bare = !text.empty() && text.find_first_not_of(bare) == text.npos;
-    return is_bare ? text : "\"" + text + "\"";
-}
-
-std::vector<std::string> words_of(std::string_view text) {
-    std::vector<std::string> words;
-    bool inside = false, open = false;
-    for (const char c : text) {
-        if (c == '"') {
-            open = !open;
-            if (!inside) words.emplace_back();
-            inside = true;
-        } else if (c == ' ' && !open) {
-            inside = false;
-        } else {
-            if (!inside) words.emplace_back();
-            inside = true;
-            words.back() += c;
-        }
-    }
-    if (open) throw InputError("sweep", {}, "a quote is never closed");
-    return words;
-}
-
-std::string option_text(const Option& option, const Options& options) {
-    return fmt::format("{} {}", option.flag, to_text(option.get(options)));
-}
-
 OptionValue option_value(const Option& option, const std::string& text) {
     if (std::holds_alternative<std::string_view>(option.get({}))) {
         const auto found = std::find(option.words.begin(), option.words.end(), text);
@@ -250,9 +219,9 @@ bool set_option(Run& base, const std::string& flag, const std::string& value) {
 }  // namespace
 
 std::string to_text(const Sweep& sweep, const SystemDescription& description) {
-    std::vector<std::string> words;
-    const auto add = [&](const std::string& flag, const std::string& value) {
-        words.push_back(flag + " " + quoted(value));
+    std::vector<Flag> flags;
+    const auto add = [&](std::string_view flag, const std::string& value) {
+        flags.push_back({std::string(flag), value});
     };
     for (const SweepAxis& axis : sweep.axes)
         add("--over", fmt::format("{}={}{}:{}{}", axis.name, axis.logarithmic ? "log:" : "", axis.low, axis.high,
@@ -274,21 +243,16 @@ std::string to_text(const Sweep& sweep, const SystemDescription& description) {
         if (value != *find_value(description, file, name)) add("--set", fmt::format("{}={}", name, value));
     }
     for (const Option& option : all_options())
-        if (option.get(base.options) != option.get(file.options)) words.push_back(option_text(option, base.options));
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-    return text;
+        if (option.get(base.options) != option.get(file.options)) add(option.flag, to_text(option.get(base.options)));
+    return to_text(flags);
 }
 
 Sweep read_sweep(std::string_view text, const SystemDescription& description) {
-    const std::vector<std::string> words = words_of(text);
     AskedSweep asked;
     Run base = default_run(description);
-    const std::vector<std::string> flags{"--over", "--print", "--at", "--after", "--random", "--seed", "--set"};
-    for (std::size_t i = 0; i < words.size(); i += 2) {
-        const std::string& flag = words[i];
-        if (i + 1 == words.size()) throw InputError(shown(flag), {}, "a value is missing");
-        const std::string& value = words[i + 1];
+    const std::vector<std::string> known{"--over", "--print", "--at", "--after", "--random", "--seed", "--set"};
+    for (const Flag& one : read_flags(text, "sweep")) {
+        const std::string &flag = one.name, &value = one.value;
         const auto only = [&](std::optional<std::string>& place) {
             if (place) throw InputError(shown(flag), {}, "it is given twice");
             place = value;
@@ -309,7 +273,7 @@ Sweep read_sweep(std::string_view text, const SystemDescription& description) {
             assign(base, description, value);
         } else if (!set_option(base, flag, value)) {
             throw InputError("sweep", {},
-                             fmt::format("'{}' is not expected here{}", shown(flag), did_you_mean(flag, flags)));
+                             fmt::format("'{}' is not expected here{}", shown(flag), did_you_mean(flag, known)));
         }
     }
     if (const auto fault = fault_of_times(base.options)) throw InputError("sweep", {}, *fault);

@@ -104,8 +104,8 @@ class BranchPanels {
         x_label_ = with_unit(typeset(parameter.name), typeset_unit(parameter.unit));
     }
 
-    std::vector<Panel> all() const {
-        std::vector<Panel> panels{of_state()};
+    std::vector<BranchPanel> all() const {
+        std::vector<BranchPanel> panels{of_state()};
         if (orbit_.has_flow) panels.push_back(of("period (s)", [](const OrbitPoint& p) { return p.period; }));
         panels.push_back(of_multipliers());
         const auto has_margin = [](const OrbitPoint& point) { return point.margins.a_inf.has_value(); };
@@ -122,14 +122,19 @@ class BranchPanels {
         panel.y.label = label;
         return panel;
     }
-    Panel of(const std::string& label, const Value& value) const {
+    BranchPanel with_values(Panel panel, const Value& value) const {
+        BranchPanel whole{std::move(panel), {}};
+        for (const OrbitPoint& point : branch_.points) whole.values.push_back(value(point));
+        return whole;
+    }
+    BranchPanel of(const std::string& label, const Value& value) const {
         Panel panel = begun(label);
         trace(panel, branch_, phase_color(theme_, Phase::Kind::hybrid), value);
         fit(panel, x_);
         add_happenings(panel, branch_, theme_, value);
-        return panel;
+        return with_values(std::move(panel), value);
     }
-    Panel of_state() const {
+    BranchPanel of_state() const {
         const CoordinateDescription& first = description_.coordinates.front();
         const std::string where = orbit_.is_at_release ? " at the release"
                                   : orbit_.has_flow    ? " on the section"
@@ -140,17 +145,20 @@ class BranchPanels {
             [factor](const OrbitPoint& point) { return factor * point.state.q[0]; });
     }
     // Sizes, of all but the flow's and the zeros.
-    Panel of_multipliers() const {
+    BranchPanel of_multipliers() const {
         Panel panel = begun("|\U0001D707|");
         panel.title = "multipliers";
         const std::size_t first = orbit_.has_flow ? 1 : 0;
         std::size_t most = 0;
         for (const OrbitPoint& point : branch_.points)
             most = std::max(most, point.multipliers.size() - point.zero_multipliers);
-        for (std::size_t i = first; i < std::max(most, first + 1); ++i) {
-            const Value size = [i](const OrbitPoint& point) {
+        const auto size_of = [](std::size_t i) -> Value {
+            return [i](const OrbitPoint& point) {
                 return i < point.multipliers.size() ? std::abs(point.multipliers[i]) : nan;
             };
+        };
+        for (std::size_t i = first; i < std::max(most, first + 1); ++i) {
+            const Value size = size_of(i);
             trace(panel, branch_, phase_stroke(theme_, Phase::Kind::constrained, i - first, most - first + 1).color,
                   size);
             if (i == first) add_happenings(panel, branch_, theme_, size);
@@ -158,7 +166,7 @@ class BranchPanels {
         fit(panel, x_);
         if (panel.y.low < 1.0 && panel.y.high > 1.0)
             panel.curves.insert(panel.curves.begin(), level(theme_, {panel.x.low, panel.x.high}, 1.0));
-        return panel;
+        return with_values(std::move(panel), size_of(first));
     }
 
     const Orbit& orbit_;
@@ -169,7 +177,13 @@ class BranchPanels {
     std::string x_label_;
 };
 
-std::vector<Key> keys_of(const Branch& branch, const Theme& theme) {
+}  // namespace
+
+std::vector<BranchPanel> branch_panels(const Orbit& orbit, const Branch& branch, const Theme& theme) {
+    return BranchPanels(orbit, branch, theme).all();
+}
+
+std::vector<Key> branch_keys(const Branch& branch, const Theme& theme) {
     std::vector<Key> keys;
     for (const bool stable : {true, false})
         if (std::any_of(branch.points.begin(), branch.points.end(),
@@ -181,8 +195,6 @@ std::vector<Key> keys_of(const Branch& branch, const Theme& theme) {
     return keys;
 }
 
-}  // namespace
-
 Figure compose_branch(const Orbit& orbit, const Branch& branch, std::span<const ViewDescription> views,
                       const PublicationStyle& style) {
     const Theme theme = style.dark ? dark_theme() : light_theme();
@@ -190,7 +202,8 @@ Figure compose_branch(const Orbit& orbit, const Branch& branch, std::span<const 
     figure.background = theme.background;
     figure.ink = theme.ink;
     if (style.transparent) figure.background.a = 0;
-    std::vector<Panel> along = BranchPanels(orbit, branch, theme).all();
+    std::vector<Panel> along;
+    for (BranchPanel& one : branch_panels(orbit, branch, theme)) along.push_back(std::move(one.panel));
     if (!views.empty()) {
         const std::vector<Sample> samples = plot_samples(orbit.run);
         Framing framing;
@@ -204,7 +217,7 @@ Figure compose_branch(const Orbit& orbit, const Branch& branch, std::span<const 
     }
     const Trajectory* const run = &orbit.run;
     dress_for_print(figure, {&run, 1}, theme);
-    const std::vector<Key> more = keys_of(branch, theme);
+    const std::vector<Key> more = branch_keys(branch, theme);
     figure.keys.insert(figure.keys.end(), more.begin(), more.end());
     figure.panels.insert(figure.panels.begin(), std::make_move_iterator(along.begin()),
                          std::make_move_iterator(along.end()));

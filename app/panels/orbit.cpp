@@ -1,0 +1,354 @@
+// Below, in place of the events: a periodic run near the present one. "Make periodic" searches for it and makes the present run
+// begin on it; where its branch is followed a slider, and a hand in its plots, go along that.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "figure/axes.hpp"
+#include "figure/label.hpp"
+#include "figure/orbit_figure.hpp"
+#include "output/orbit.hpp"
+#include "paint/paint.hpp"
+#include "panels/panels.hpp"
+#include "panels/print.hpp"
+#include "panels/widgets.hpp"
+#include "session/orbit_job.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+// What is asked next, and the plots of what was found.
+struct OrbitView {
+    AskedOrbit asked;
+    const Model* of = nullptr;  // the system that this is asked of
+    const FoundOrbit* seen = nullptr;
+    std::string low, high, shift;  // as they are typed
+    bool goes = false;             // the run begins on it when it is found
+    bool dark = false;
+    std::vector<BranchPanel> panels;
+};
+
+namespace {
+
+// What a search starts with: what the file knows of an orbit while the run is the file's, else the start of the run.
+AskedOrbit usual(const Session& session) {
+    AskedOrbit asked;
+    const Run &now = session.run(), &file = session.file_run();
+    if (!session.description().orbit || now.q != file.q || now.v != file.v) asked.from = "start";
+    return asked;
+}
+
+OrbitView& view_of(const Session& session, PanelState& state) {
+    if (!state.orbit) state.orbit = std::make_shared<OrbitView>();
+    OrbitView& view = *state.orbit;
+    const auto found = session.orbit();
+    if (view.of != session.model().get()) {
+        view = {};
+        view.of = session.model().get();
+        view.asked = usual(session);
+    }
+    if (view.seen == found.get() && view.dark == session.theme().dark) return view;
+    if (found && view.seen != found.get()) {
+        view.asked = read_orbit(found->text);
+        // From where the run then is.
+        if (found->answer.orbit) view.asked.from = "start";
+    }
+    view.seen = found.get();
+    view.dark = session.theme().dark;
+    view.panels.clear();
+    if (found && found->answer.branch)
+        view.panels = branch_panels(*found->answer.orbit, *found->answer.branch, session.theme());
+    for (BranchPanel& one : view.panels) one.panel.title.clear();  // its axis says it, and its neighbours have none
+    return view;
+}
+
+// ---- what is asked ----
+
+void show_from(const Session& session, OrbitView& view, PanelState& state) {
+    if (!ImGui::BeginPopup("orbit from")) return;
+    const auto choice = [&](const char* name, const std::string& from, const char* about) {
+        if (ImGui::Selectable(name, view.asked.from == from)) view.asked.from = from;
+        remember(state, std::string("orbit ") + name);
+        tooltip(about);
+    };
+    choice("from the start", "start", "the search begins where the present run does");
+    choice("from the end", "end", "where the present run ends: what attracts has been nearly reached there");
+    if (session.description().orbit) choice("from the file's guess", "", "what [orbit] of the system's file says");
+    close_by_escape();
+    ImGui::EndPopup();
+}
+
+void show_closing(const Session& session, OrbitView& view, PanelState& state) {
+    if (!ImGui::BeginPopup("orbit closing")) return;
+    if (text_row("period", "orbit period", view.asked.period, 150.0F, state)) ImGui::CloseCurrentPopup();
+    tooltip("s; an expression in the parameters, as 2*pi/om: that of a drive, or a guess. Empty: as the file has it");
+    const std::string& first = session.description().coordinates.front().name;
+    if (text_row("shift", "orbit shift", view.shift, 150.0F, state)) ImGui::CloseCurrentPopup();
+    tooltip(fmt::format(
+        "a coordinate that has moved on by so much after a period, as {}=2*pi. Empty: as the file has it", first));
+    view.asked.shifts.clear();
+    if (!view.shift.empty()) view.asked.shifts.push_back(view.shift);
+    close_by_escape();
+    ImGui::EndPopup();
+}
+
+// The parameter of the branch, over the range of its slider until somebody says otherwise.
+void show_along(const Session& session, OrbitView& view, PanelState& state) {
+    if (!ImGui::BeginPopup("orbit along")) return;
+    const std::size_t equals = view.asked.along.find('=');
+    const std::string present = equals == std::string::npos ? "" : view.asked.along.substr(0, equals);
+    const auto take = [&] { view.asked.along = fmt::format("{}={}:{}", present, view.low, view.high); };
+    if (ImGui::Selectable("none", present.empty())) view.asked.along.clear();
+    remember(state, "orbit along none");
+    for (const ParameterDescription& parameter : session.description().parameters) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        if (ImGui::Selectable(("##" + parameter.name).c_str(), present == parameter.name,
+                              ImGuiSelectableFlags_DontClosePopups, {units(200.0F), 0.0F})) {
+            const double value = *session.value(parameter.name);
+            view.low = fmt::format("{}", std::min(parameter.range[0], value));
+            view.high = fmt::format("{}", std::max(parameter.range[1], value));
+            view.asked.along = fmt::format("{}={}:{}", parameter.name, view.low, view.high);
+        }
+        remember(state, "orbit along " + parameter.name);
+        cell(at, typeset(parameter.name), units(200.0F), text_color());
+    }
+    if (!present.empty()) {
+        const std::size_t colon = view.asked.along.find(':');
+        if (view.low.empty() && colon != std::string::npos) {
+            view.low = view.asked.along.substr(equals + 1, colon - equals - 1);
+            view.high = view.asked.along.substr(colon + 1);
+        }
+        ImGui::Separator();
+        text_row("from", "orbit along from", view.low, 120.0F, state);
+        text_row("to", "orbit along to", view.high, 120.0F, state);
+        take();
+    }
+    close_by_escape();
+    ImGui::EndPopup();
+}
+
+std::string from_text(const AskedOrbit& asked) {
+    return asked.from.empty() ? "from the file's guess" : "from the " + asked.from;
+}
+
+// What the search has come to.
+std::string remark(const Session& session) {
+    if (const OrbitWatch* const watch = session.orbit_under_way())
+        return fmt::format("under way: {} runs tried", watch->runs.load());
+    const auto found = session.orbit();
+    if (!found || !found->answer.orbit) return "";
+    return session.orbit_point() ? "the run begins on it" : "the run has left it";
+}
+
+void show_head(const Session& session, OrbitView& view, PanelState& state, Commands& commands) {
+    show_lower_tabs(session, state, commands);
+    ImGui::SameLine(0.0F, units(24.0F));
+    const bool is_busy = session.orbit_under_way() != nullptr;
+    if (ImGui::Button(is_busy ? "Stop" : "Make periodic")) {
+        view.goes = !is_busy;
+        if (is_busy)
+            commands.emplace_back(command::StopOrbit{});
+        else
+            commands.emplace_back(command::FindOrbit{to_text(view.asked)});
+    }
+    remember(state, "make periodic");
+    tooltip(is_busy ? "give up the search"
+                    : "search for a run near this one that comes back to its start, and begin the run there");
+    ImGui::SameLine(0.0F, units(14.0F));
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
+    const float right = ImGui::GetWindowPos().x + content_right();
+    float x = menu_button("orbit from", from_text(view.asked), at.x, row, right, state);
+    tooltip("where the search begins");
+    show_from(session, view, state);
+    x = menu_button("orbit along", view.asked.along.empty() ? "no branch" : "branch over " + typeset(view.asked.along),
+                    x, row, right, state);
+    tooltip("the parameter in which its branch is followed");
+    show_along(session, view, state);
+    x = menu_button("orbit closing", "period and shift", x, row, right, state);
+    tooltip("when a run has come back: after the period of a drive, or moved on by a shift");
+    show_closing(session, view, state);
+    const std::string told = remark(session);
+    const float width = std::min(width_of(told), right - x);
+    if (width > units(40.0F))
+        cell({std::floor(right - width), at.y + ImGui::GetStyle().FramePadding.y}, told, width, faint_color());
+    ImGui::SetCursorScreenPos(at);
+    ImGui::Dummy({0.0F, row.height});
+}
+
+// ---- what was found ----
+
+// The point that is told: the run's, or where the search had come to.
+std::size_t told_point(const Session& session, const FoundOrbit& found) {
+    return session.orbit_point().value_or(found.first());
+}
+
+// "b = 0.0667"
+std::string value_text(const FoundOrbit& found, const OrbitPoint& point) {
+    const Branch& branch = *found.answer.branch;
+    const std::string& name = found.answer.orbit->run.model->description().parameters[branch.parameter].name;
+    return typeset(name) + " = " + number(branch.value(point), "{:.8g}");
+}
+
+// "flip at b = 0.0667": a click goes to the point nearest to it.
+void show_happenings(const FoundOrbit& found, PanelState& state, Commands& commands) {
+    const Branch& branch = *found.answer.branch;
+    const auto each = [&](const char* what, const std::vector<OrbitPoint>& all) {
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const double value = branch.value(all[i]);
+            std::size_t nearest = 0;
+            const auto away = [&](std::size_t k) {
+                return std::abs(branch.value(branch.points[k]) - value) +
+                       (branch.points[k].state.q - all[i].state.q).norm();
+            };
+            for (std::size_t k = 1; k < branch.points.size(); ++k)
+                if (away(k) < away(nearest)) nearest = k;
+            const std::string id = fmt::format("orbit {} {}", what, i + 1);
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const float width = remaining().width;
+            if (ImGui::InvisibleButton(id.c_str(), {width, ImGui::GetTextLineHeight()}))
+                commands.emplace_back(command::GoOnOrbit{static_cast<int>(nearest) + 1});
+            remember(state, id);
+            const bool lit = ImGui::IsItemHovered();
+            tooltip("a click goes to the point of the branch nearest to it");
+            cell(at, fmt::format("{} at {}", what, value_text(found, all[i])), width,
+                 lit ? text_color() : faint_color());
+        }
+    };
+    each("fold", branch.folds);
+    each("flip", branch.flips);
+    each("complex pair, size 1", branch.circles);
+    each("Zeno point lost", branch.lost);
+    each("other events", branch.changes);
+}
+
+void show_slider(const Session& session, const FoundOrbit& found, PanelState& state, Commands& commands) {
+    const std::size_t now = told_point(session, found);
+    int point = static_cast<int>(now) + 1;
+    const float width = remaining().width;
+    ImGui::Dummy({0.0F, units(2.0F)});
+    label(fmt::format("point {} of {}: {}", point, found.count(), value_text(found, found.point(now))), width);
+    ImGui::SetNextItemWidth(width);
+    if (ImGui::SliderInt("##branch", &point, 1, static_cast<int>(found.count()), "", ImGuiSliderFlags_AlwaysClamp))
+        commands.emplace_back(command::GoOnOrbit{point});
+    remember(state, "branch");
+    tooltip("along the branch: the run begins at this point of it, with its parameters");
+}
+
+void show_numbers(const Session& session, const FoundOrbit& found, PanelState& state, Commands& commands) {
+    const float width = remaining().width;
+    const OrbitPoint& point = found.point(told_point(session, found));
+    const auto line = [&](const std::string& text, const Color& color) { paragraph(with_minus(text), width, color); };
+    line(fmt::format("period {:.10g} s, from {}", point.period,
+                     found.answer.orbit->is_at_release ? "release to release" : "flight to flight"),
+         text_color());
+    line(stability_text(point), point.stable ? text_color() : error_color());
+    line("\u03bc: " + multipliers_text(point, 7), text_color());
+    if (const std::string margins = margins_text(point); !margins.empty())
+        line(typeset_sentence(margins.substr(0, margins.size() - 1)), faint_color());
+    if (!found.answer.branch) return;
+    show_slider(session, found, state, commands);
+    show_happenings(found, state, commands);
+    const Branch& branch = *found.answer.branch;
+    const auto tell_end = [&](const OrbitPoint& end, const std::string& why) {
+        const ImVec2 at = ImGui::GetCursorScreenPos();
+        cell(at, fmt::format("ends at {}: {}", value_text(found, end), typeset_sentence(why)), width, faint_color());
+        ImGui::Dummy({0.0F, ImGui::GetTextLineHeight()});
+    };
+    tell_end(branch.points.front(), branch.ends[0]);
+    tell_end(branch.points.back(), branch.ends[1]);
+}
+
+// The point of the branch that is drawn nearest to the hand.
+std::optional<std::size_t> point_at(const FoundOrbit& found, const BranchPanel& panel, const PanelMap& map) {
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    std::optional<std::size_t> nearest;
+    double least = 0.0;
+    for (std::size_t i = 0; i < panel.values.size(); ++i) {
+        if (!std::isfinite(panel.values[i])) continue;
+        const double away = std::hypot(map.x(found.answer.branch->value(found.point(i))) - double{mouse.x},
+                                       map.y(panel.values[i]) - double{mouse.y});
+        if (!nearest || away < least) nearest = i, least = away;
+    }
+    return nearest;
+}
+
+void show_panel(const Session& session, const FoundOrbit& found, const BranchPanel& shown, const Rectangle& cell,
+                const std::string& name, PanelState& state, Commands& commands) {
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const Rectangle area = paint(shown.panel, screen_style(session.theme()), list, cell, units(1.0F));
+    if (area.width < 2.0F || area.height < 2.0F) return;
+    const PanelMap map(shown.panel, area);
+    ImGui::SetCursorScreenPos({area.x, area.y});
+    ImGui::InvisibleButton(name.c_str(), {area.width, area.height});
+    remember(state, name);
+    const std::optional<std::size_t> under = point_at(found, shown, map);
+    const auto on = session.orbit_point();
+    if (under && ImGui::IsItemActive() && under != on)
+        commands.emplace_back(command::GoOnOrbit{static_cast<int>(*under) + 1});
+    tooltip("a click or a drag goes along the branch: solid where it is stable, dashed where it is not");
+    if (!on || !std::isfinite(shown.values[*on])) return;
+    const ImVec2 at{static_cast<float>(map.x(found.answer.branch->value(found.point(*on)))),
+                    static_cast<float>(map.y(shown.values[*on]))};
+    list->AddCircleFilled(at, units(5.0F), packed(session.theme().background), 20);
+    list->AddCircleFilled(at, units(3.5F), packed(text_color()), 20);
+}
+
+void show_branch(const Session& session, const FoundOrbit& found, const OrbitView& view, const Rectangle& room,
+                 PanelState& state, Commands& commands) {
+    constexpr float least = 190.0F;
+    const auto fit = static_cast<std::size_t>(std::max(room.width / units(least), 1.0F));
+    const std::size_t count = std::min(fit, view.panels.size());
+    const float width = room.width / static_cast<float>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Rectangle cell{room.x + width * static_cast<float>(i), room.y, width - units(8.0F), room.height};
+        show_panel(session, found, view.panels[i], cell, fmt::format("branch plot {}", i + 1), state, commands);
+    }
+}
+
+void show_found(const Session& session, const OrbitView& view, PanelState& state, Commands& commands) {
+    const Rectangle room = remaining();
+    const auto found = session.orbit();
+    if (!session.error().empty() && !found) return paragraph(session.error(), room.width, error_color());
+    if (!found) {
+        if (session.orbit_under_way() == nullptr)
+            paragraph(
+                "A run that comes back to its start after a period, or moved on by a shift. The search begins near the "
+                "present run; a branch follows what it finds in a parameter.",
+                std::min(room.width, units(560.0F)), faint_color());
+        return;
+    }
+    if (!found->answer.orbit)
+        return paragraph("no periodic run was found: " + typeset_sentence(found->answer.why), room.width,
+                         error_color());
+    const float numbers = view.panels.empty() ? room.width : std::min(units(330.0F), 0.4F * room.width);
+    begin_padded_child("orbit numbers", {numbers, room.height});
+    show_numbers(session, *found, state, commands);
+    ImGui::EndChild();
+    if (view.panels.empty()) return;
+    const float left = room.x + numbers + units(12.0F);
+    show_branch(session, *found, view, {left, room.y, room.x + room.width - left, room.height}, state, commands);
+}
+
+}  // namespace
+
+void show_orbit(const Session& session, PanelState& state, Commands& commands) {
+    OrbitView& view = view_of(session, state);
+    if (const auto found = session.orbit(); view.goes && found) {
+        view.goes = false;
+        if (found->count() > 0) commands.emplace_back(command::GoOnOrbit{static_cast<int>(found->first()) + 1});
+    }
+    show_head(session, view, state, commands);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(6.0F)});
+    begin_padded_child("orbit", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
+    show_found(session, view, state, commands);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+}  // namespace achilles

@@ -1,0 +1,213 @@
+// A periodic run in the explorer: searched for, gone on, followed in a parameter, taken back, kept.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "app/hands.hpp"
+#include "session/orbit_job.hpp"
+#include "session/recipe.hpp"
+
+namespace achilles {
+namespace {
+
+using test::Hands;
+
+Session on(const std::string& system, const std::string& text) {
+    Session session = test::session(system);
+    session.apply(command::FindOrbit{text});
+    EXPECT_EQ(session.error(), "");
+    return session;
+}
+
+double period_of(const Session& session) { return session.orbit()->answer.orbit->period; }
+
+// How far the state past so many periods is from that at the beginning, moved on by so much.
+double missed(const Session& session, double period, double shift) {
+    const double begin = session.run().options.start_time;
+    const State first = session.at(begin).state, last = session.at(begin + period).state;
+    return std::abs(last.q[0] - first.q[0] - shift) + (last.v - first.v).norm();
+}
+
+TEST(OrbitSession, finds_what_the_file_guesses_and_goes_on_it) {
+    Session session = on("ball_down_a_wave", "");
+    ASSERT_TRUE(session.orbit() && session.orbit()->answer.orbit);
+    EXPECT_TRUE(session.scene().shows("orbit"));
+    EXPECT_NEAR(period_of(session), 3.544294646668781, 1e-12);
+    EXPECT_FALSE(session.orbit_point()) << "nothing has been changed yet";
+    const double length = session.run().options.end_time - session.run().options.start_time;
+    session.apply(command::GoOnOrbit{1});
+    ASSERT_EQ(session.error(), "");
+    EXPECT_EQ(session.orbit_point(), 0u);
+    EXPECT_EQ(session.run().options.end_time - session.run().options.start_time, length);
+    EXPECT_LT(missed(session, period_of(session), 2.0 * M_PI), 1e-8);
+    EXPECT_LT(missed(session, 3.0 * period_of(session), 6.0 * M_PI), 1e-6);
+    // Its tolerances are the session's.
+    EXPECT_EQ(session.run().options.tolerance, session.file_run().options.tolerance);
+    session.apply(command::Undo{});
+    EXPECT_EQ(session.run(), session.file_run());
+    EXPECT_FALSE(session.orbit_point());
+}
+
+// A drive has a clock: the run begins in its phase.
+TEST(OrbitSession, goes_on_a_drive_in_its_phase) {
+    Session session = on("driven_double_pendulum", "");
+    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.why;
+    session.apply(command::GoOnOrbit{1});
+    ASSERT_EQ(session.error(), "");
+    EXPECT_LT(missed(session, period_of(session), 0.0), 1e-7);
+}
+
+TEST(OrbitSession, follows_a_branch_as_one_change) {
+    Session session = on("ball_down_a_wave", "--continue b=0.04:0.06");
+    const auto found = session.orbit();
+    ASSERT_TRUE(found && found->answer.branch);
+    ASSERT_GT(found->count(), 3u);
+    EXPECT_EQ(found->point(found->first()).parameters, session.run().parameters);
+    for (std::size_t i = 0; i < found->count(); ++i) {
+        session.apply(command::GoOnOrbit{static_cast<int>(i) + 1});
+        ASSERT_EQ(session.error(), "");
+        ASSERT_EQ(session.orbit_point(), i);
+        EXPECT_EQ(*session.value("b"), found->answer.branch->value(found->point(i)));
+        EXPECT_LT(missed(session, found->point(i).period, 2.0 * M_PI), 1e-7) << i;
+    }
+    session.apply(command::Undo{});
+    EXPECT_EQ(session.run(), session.file_run()) << "a slider that is dragged is one change";
+    session.apply(command::GoOnOrbit{0});
+    EXPECT_NE(session.error().find("it has no point 0"), std::string::npos) << session.error();
+    session.apply(command::GoOnOrbit{static_cast<int>(found->count()) + 1});
+    EXPECT_NE(session.error().find("count from 1 to"), std::string::npos) << session.error();
+}
+
+// A run of e = 0.6 is nearest to the same orbit as that of e = 0.5: from wherever the sliders are.
+TEST(OrbitSession, searches_from_the_present_run) {
+    Session session = test::session("ball_down_a_wave");
+    session.apply(command::Set{"e", 0.6});
+    session.apply(command::FindOrbit{"--from end"});
+    ASSERT_EQ(session.error(), "");
+    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.why;
+    EXPECT_EQ(session.orbit()->answer.orbit->parameters, session.run().parameters);
+    EXPECT_GT(std::abs(period_of(session) - 3.544294646668781), 1e-5);
+}
+
+TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
+    Session session = test::session("ball_on_floor");
+    for (const auto& [text, words] :
+         {std::pair{"--continue q=0:1", "there is no parameter 'q'"}, std::pair{"--from where", "it is start or end"},
+          std::pair{"--shift x", "a name and a value are expected"}, std::pair{"--over e=0:1", "not expected here"},
+          std::pair{"--from start --from end", "it is given twice"}, std::pair{"--from", "a value is missing"},
+          std::pair{"--period 0", "a period of 0 s is none"}}) {
+        session.apply(command::FindOrbit{text});
+        EXPECT_NE(session.error().find(words), std::string::npos) << text << ": " << session.error();
+        EXPECT_EQ(session.orbit(), nullptr);
+    }
+    session.apply(command::GoOnOrbit{1});
+    EXPECT_NE(session.error().find("there is no periodic run to go on"), std::string::npos) << session.error();
+    session.apply(command::FindOrbit{""});
+    EXPECT_EQ(session.error(), "");
+    ASSERT_TRUE(session.orbit());
+    EXPECT_FALSE(session.orbit()->answer.orbit);
+    EXPECT_FALSE(session.orbit()->answer.why.empty());
+    EXPECT_NE(to_text(session).find("orbit : none, "), std::string::npos);
+    session.apply(command::StopOrbit{});
+    EXPECT_EQ(session.orbit(), nullptr);
+}
+
+TEST(OrbitSession, leaves_with_its_system) {
+    Session session = on("ball_down_a_wave", "");
+    session.apply(command::Open{"ball_on_sine"});
+    EXPECT_EQ(session.orbit(), nullptr);
+}
+
+// What leads to a session leads to its periodic run, too.
+TEST(OrbitSession, is_found_again_by_the_recipe) {
+    Session session = on("ball_down_a_wave", "--continue b=0.045:0.055");
+    session.apply(command::GoOnOrbit{2});
+    Session again = test::session("ball_on_sine");
+    for (const Command& step : recipe(session)) again.apply(step);
+    EXPECT_EQ(again.error(), "");
+    EXPECT_EQ(again.run(), session.run());
+    ASSERT_TRUE(again.orbit() && again.orbit()->answer.branch);
+    EXPECT_NEAR(period_of(again), session.orbit()->point(1).period, 1e-9);
+    session.apply(command::Set{"e", 0.2});
+    for (const Command& step : recipe(session)) EXPECT_NE(to_text(step).substr(0, 5), "orbit");
+}
+
+// Without patience the window goes on; a stop is heeded.
+TEST(OrbitSession, is_searched_beside_the_window) {
+    Session session = test::session("ball_down_a_wave");
+    session.set_patience(0.0);
+    session.apply(command::FindOrbit{"--continue e=0.1:0.9"});
+    ASSERT_NE(session.orbit_under_way(), nullptr);
+    EXPECT_EQ(session.orbit(), nullptr);
+    session.apply(command::GoOnOrbit{1});
+    EXPECT_NE(session.error().find("under way"), std::string::npos) << session.error();
+    session.apply(command::StopOrbit{});
+    EXPECT_EQ(session.orbit_under_way(), nullptr);
+    session.apply(command::FindOrbit{""});
+    session.settle();
+    ASSERT_TRUE(session.orbit());
+    EXPECT_GT(period_of(session), 3.5);
+}
+
+TEST(OrbitSession, commands_are_lines_of_a_journal) {
+    for (const char* line : {"orbit \"--from start --shift \\\"x=2*pi\\\"\"", "orbit \"\"", "orbit off", "branch 12"})
+        EXPECT_EQ(to_text(parse_command(line)), line);
+}
+
+// ---- by hand ----
+
+TEST(OrbitPanel, makes_the_run_periodic) {
+    Hands hands("ball_down_a_wave");
+    hands.press_with_control('6');
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("comes back to its start"));
+    hands.click("make periodic");
+    hands.session.settle();
+    hands.rest(4);
+    EXPECT_EQ(hands.session.orbit_point(), 0u);
+    EXPECT_TRUE(hands.says("the run begins on it"));
+    EXPECT_TRUE(hands.says("period 3.544294647 s"));
+    EXPECT_TRUE(hands.says("stable: of a small change 0.7014 is left after a period"));
+    hands.session.apply(command::Set{"e", 0.55});
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("the run has left it"));
+}
+
+TEST(OrbitPanel, goes_along_the_branch) {
+    Hands hands("ball_down_a_wave");
+    hands.press_with_control('6');
+    hands.rest(2);
+    hands.click("orbit along");
+    hands.click("orbit along b");
+    hands.press(ImGuiKey_Escape);
+    hands.click("make periodic");
+    hands.session.settle();
+    hands.rest(4);
+    const auto found = hands.session.orbit();
+    ASSERT_TRUE(found && found->answer.branch);
+    hands.click("branch", 0.02);
+    EXPECT_EQ(hands.session.orbit_point(), 0u);
+    hands.click("branch plot 1", 0.97);
+    ASSERT_TRUE(hands.session.orbit_point());
+    EXPECT_GT(*hands.session.orbit_point(), found->count() / 2);
+    ASSERT_EQ(found->answer.branch->flips.size(), 1u);
+    hands.click("orbit flip 1");
+    EXPECT_NEAR(*hands.session.value("b"), found->answer.branch->value(found->answer.branch->flips[0]), 0.01);
+    hands.click("tab events");
+    EXPECT_FALSE(hands.session.scene().shows("orbit"));
+}
+
+// For orbit_window_test.sh.
+TEST(OrbitPanel, tells_where_it_is) {
+    Hands hands("ball_down_a_wave");
+    hands.press_with_control('6');
+    hands.rest(3);
+    const Point button = hands.middle("make periodic");
+    std::cout << "periodic " << std::lround(button.x) << " " << std::lround(button.y) << "\n";
+}
+
+}  // namespace
+}  // namespace achilles
