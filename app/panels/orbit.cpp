@@ -245,7 +245,7 @@ void show_numbers(const Session& session, const FoundOrbit& found, PanelState& s
     line(fmt::format("period {:.10g} s, from {}", point.period,
                      found.answer.orbit->is_at_release ? "release to release" : "flight to flight"),
          text_color());
-    line(stability_text(point), point.stable ? text_color() : error_color());
+    line(stability_text(point), text_color());
     line("\u03bc: " + multipliers_text(point, 7), text_color());
     if (const std::string margins = margins_text(point); !margins.empty())
         line(typeset_sentence(margins.substr(0, margins.size() - 1)), faint_color());

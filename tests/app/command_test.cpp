@@ -24,6 +24,9 @@ const std::vector<Command> one_of_each{
     command::UseReinitialization{Reinitialization::euclidean},
     command::Seek{3.2},
     command::ShowDependence{"zeno_time(2)"},
+    command::FindOrbit{"--from end --continue e=0.1:0.9"},
+    command::StopOrbit{},
+    command::GoOnOrbit{12},
     command::Play{},
     command::Pause{},
     command::Select{25},
@@ -199,7 +202,7 @@ TEST(Command, is_listed_once) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 61u) << list;
+    EXPECT_EQ(all.size(), 63u) << list;
 }
 
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.

@@ -178,11 +178,12 @@ TEST(OrbitPanel, makes_the_run_periodic) {
 
 TEST(OrbitPanel, goes_along_the_branch) {
     Hands hands("ball_down_a_wave");
+    hands.session.apply(command::Set{"e", 0.3});
     hands.press_with_control('6');
     hands.rest(2);
     hands.click("orbit along");
     hands.click("orbit along b");
-    hands.press(ImGuiKey_Escape);
+    hands.press(key::escape);
     hands.click("make periodic");
     hands.session.settle();
     hands.rest(4);
