@@ -307,6 +307,10 @@ void changes(const Session& session, const Run& file, PanelState& state, Command
     all.erase(all.begin() + static_cast<std::ptrdiff_t>(lines_that_fit(all.size())), all.end());
     if (all.empty()) return;
     section("Differs from the file");
+    // The tail of an italic y reaches out to the left.
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const ImVec2 low = list->GetClipRectMin();
+    list->PushClipRect({low.x - units(2.0F), low.y}, list->GetClipRectMax());
     for (const Difference& difference : all) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
@@ -320,6 +324,7 @@ void changes(const Session& session, const Run& file, PanelState& state, Command
         cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
         cell({std::floor(at.x + width - other), at.y}, file_has, other, is_hovered ? text_color() : faint_color());
     }
+    list->PopClipRect();
 }
 
 void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {

@@ -168,9 +168,11 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
                     x, row, right, state);
     tooltip("the parameter in which its branch is followed");
     show_along(session, view, state);
-    x = menu_button("orbit closing", "period and shift", x, row, right, state);
-    tooltip("when a run has come back: after the period of a drive, or moved on by a shift");
-    show_closing(session, view, state);
+    if (right - x > units(60.0F)) {
+        x = menu_button("orbit closing", "period and shift", x, row, right, state);
+        tooltip("when a run has come back: after the period of a drive, or moved on by a shift");
+        show_closing(session, view, state);
+    }
     const std::string told = remark(session);
     const float width = std::min(width_of(told), right - x);
     if (width > units(40.0F))

@@ -254,6 +254,12 @@ const State states[] = {
     {"two sides", "ball_on_egg_crate", {"show sides", "seek 1"}},
     {"two sides narrow", "ball_on_egg_crate", {"show sides", "size controls 0.6"}},
     {"a run that stops early", "ball_on_sine", {"set e 1", "end 3000", "set g 15"}},
+    {"what it depends on", "double_pendulum", {"depend \"zeno_time(3)\""}},
+    {"a sweep", "ball_on_sine", {"sweep \"--over e=0:0.9:16 --print zeno_time(1)\""}},
+    {"a periodic run", "ball_down_a_wave", {"orbit \"\"", "branch 1"}},
+    {"no periodic run", "ball_on_floor", {"orbit \"\""}},
+    {"a branch", "ball_down_a_wave", {"set e 0.3", "orbit \"--continue b=0.05:0.08\"", "branch 9"}},
+    {"a branch beside the editor", "driven_double_pendulum", {"show editor", "orbit \"--continue e=0.6:0.8\""}},
 };
 
 class Clipping : public testing::TestWithParam<std::tuple<int, int, double>> {};
