@@ -130,17 +130,23 @@ Color NumberColors::operator()(double value) const {
     return table[static_cast<std::size_t>(std::lround(share * static_cast<double>(table.size() - 1)))];
 }
 
+ColumnColors::ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look) : column_(&column) {
+    if (column.is_number())
+        numbers.emplace(column, look);
+    else
+        classes.emplace(column, theme);
+}
+
+Color ColumnColors::operator()(std::size_t row) const {
+    return numbers ? (*numbers)(column_->number(row)) : classes->color(*column_->code(row));
+}
+
 Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
     Panel panel;
     const Grid2 grid(data);
     panel.x = axis_of(data, 0);
     panel.y = axis_of(data, 1);
-    std::optional<NumberColors> numbers;
-    std::optional<SweepClasses> classes;
-    if (column.is_number())
-        numbers.emplace(column, look);
-    else
-        classes.emplace(column, theme);
+    const ColumnColors color(column, theme, look);
     auto cells = std::make_shared<Cells>();
     cells->columns = static_cast<int>(grid.columns());
     cells->rows = static_cast<int>(grid.lines());
@@ -154,17 +160,17 @@ Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& t
             else if (!column.has_value(row))
                 lacks = true, cells->colors.push_back({0, 0, 0, 0});
             else
-                cells->colors.push_back(numbers ? (*numbers)(column.number(row)) : classes->color(*column.code(row)));
+                cells->colors.push_back(color(row));
         }
     const auto last = [](const SweepAxis& axis) { return edge_of(axis, static_cast<double>(axis.count)); };
     panel.raster = {std::move(cells), edge_of(grid.x, 0.0), last(grid.x), edge_of(grid.y, 0.0), last(grid.y)};
     if (lacks) panel.hatch = nothing(theme);
     if (look.contours) add_contours(data, grid, theme, panel);
-    if (numbers)
-        panel.color_bar = numbers->bar;
+    if (color.numbers)
+        panel.color_bar = color.numbers->bar;
     else
-        panel.title = column.label(), panel.markers = classes->keys();
-    panel.legend = panel.legend_above = lacks || classes || !panel.curves.empty();
+        panel.title = column.label(), panel.markers = color.classes->keys();
+    panel.legend = panel.legend_above = lacks || color.classes || !panel.curves.empty();
     return panel;
 }
 

@@ -68,6 +68,18 @@ struct NumberColors {
     ColorBar bar;
 };
 
+// The colours of a column, whatever it holds.
+struct ColumnColors {
+    ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look);
+    Color operator()(std::size_t row) const;  // of one that has a value
+    // One of them.
+    std::optional<NumberColors> numbers;
+    std::optional<SweepClasses> classes;
+
+ private:
+    const SweepColumn* column_;
+};
+
 // An axis of the sweep along one of a panel, with its limits.
 Axis axis_of(const SweepData& data, std::size_t axis);
 // The row of every point of a grid; no_row where it is not there yet.

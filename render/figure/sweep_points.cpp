@@ -122,12 +122,8 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         add_points(std::move(points), phase_color(theme, Phase::Kind::hybrid), panel, "");
         return panel;
     }
-    std::optional<NumberColors> numbers;
-    std::optional<SweepClasses> classes;
-    if (column.is_number())
-        numbers.emplace(column, look);
-    else
-        classes.emplace(column, theme);
+    const ColumnColors color(column, theme, look);
+    const std::optional<SweepClasses>& classes = color.classes;
     if (is_plane) {
         panel.y = axis_of(data, 1);
     } else {
@@ -145,12 +141,10 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         lacks = lacks || !has_value;
         const double y = is_plane ? data.value(1, row) : static_cast<double>(classes->place(*column.code(row)));
         painted.points.push_back({data.value(0, row), y});
-        painted.colors.push_back(!has_value ? theme.border
-                                 : numbers  ? (*numbers)(column.number(row))
-                                            : classes->color(*column.code(row)));
+        painted.colors.push_back(has_value ? color(row) : theme.border);
     }
     painted.add_to(panel);
-    if (numbers) panel.color_bar = numbers->bar;
+    if (color.numbers) panel.color_bar = color.numbers->bar;
     if (classes && is_plane) {
         panel.title = column.label();
         for (Markers& key : classes->keys()) panel.markers.push_back(std::move(key));
