@@ -8,7 +8,7 @@ namespace py = pybind11;
 
 namespace achilles::python {
 
-Look look_of(AskedLook asked, const std::string& format) {
+Look look_of(const AskedLook& asked, const std::string& format) {
     const auto& [views, size, scale, page, columns, dark, transparent] = asked;
     Look look;
     look.views = views;

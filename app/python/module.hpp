@@ -55,7 +55,7 @@ struct Look {
 using AskedLook =
     std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
 // Of a picture in this format. Throws InputError.
-Look look_of(AskedLook asked, const std::string& format);
+Look look_of(const AskedLook& asked, const std::string& format);
 // Words of a command line that ask for it.
 void add(std::vector<std::string>& words, const Look& look);
 // The picture as a file, which carries the command line that makes it again and the files that this reads, first the system's.

@@ -70,8 +70,8 @@ std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, Ask
 }
 
 // As `achilles orbit --out` draws it.
-std::string draw(const Found& found, AskedLook asked, const std::string& format) {
-    const Look look = look_of(std::move(asked), format);
+std::string draw(const Found& found, const AskedLook& asked, const std::string& format) {
+    const Look look = look_of(asked, format);
     const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
     const Figure figure = found.branch() != nullptr ? compose_branch(found.orbit(), *found.branch(), views, look.style)
                                                     : publication(found.orbit().run, views, look.style);
@@ -112,8 +112,8 @@ void bind_orbits(py::module_& module) {
             "summary", [](const Found& f) { return orbit_text(f.orbit(), f.branch()); }, released)
         .def(
             "json", [](const Found& f) { return to_json(f.orbit(), f.branch()); }, released)
-        .def("figure", [](const Found& f, AskedLook look, const std::string& format) {
-            return unlocked([&] { return draw(f, std::move(look), format); });
+        .def("figure", [](const Found& f, const AskedLook& look, const std::string& format) {
+            return unlocked([&] { return draw(f, look, format); });
         });
     module.def("orbit",
                [](const std::shared_ptr<const System>& system, std::string from, const std::optional<std::string>& json,

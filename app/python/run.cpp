@@ -134,8 +134,8 @@ std::string command_of(const Made& made, const Look& look) {
 }
 
 // As `achilles figure` draws it.
-std::string draw(const Made& made, AskedLook asked, const std::string& format) {
-    const Look look = look_of(std::move(asked), format);
+std::string draw(const Made& made, const AskedLook& asked, const std::string& format) {
+    const Look look = look_of(asked, format);
     const SystemDescription& description = made.system->model->description();
     return picture_of(publication(made.trajectory, views_of(description, look.views), look.style), look, format,
                       command_of(made, look), {{Source::Kind::system, made.system->name, description.source_text}},
@@ -190,8 +190,8 @@ void bind_runs(py::module_& module) {
                  const py::gil_scoped_release unlocked;
                  return to_csv(m.trajectory, style);
              })
-        .def("figure", [](const Made& m, AskedLook look, const std::string& format) {
-            return unlocked([&] { return draw(m, std::move(look), format); });
+        .def("figure", [](const Made& m, const AskedLook& look, const std::string& format) {
+            return unlocked([&] { return draw(m, look, format); });
         });
     module.def("simulate", &made_from);
     module.def("equidistant", &equidistant);

@@ -78,7 +78,7 @@ def test_a_flip_is_found_on_a_branch(branch):
     assert flip.period == pytest.approx(3.50627824305801994, rel=1e-11)
     assert isinstance(flip, achilles.OrbitPoint) and set(flip) == set(achilles.OrbitPoint.__annotations__)
     assert (branch.stable == (branch.value < flip.value)).all()
-    assert branch.value[[0, -1]].tolist() == [0.05, 0.08] and branch.folds == branch.lost == []
+    assert branch.value[[0, -1]] == pytest.approx([0.05, 0.08]) and branch.folds == branch.lost == []
     assert repr(branch) == f"<achilles.Branch in b, 0.05 to 0.08: {len(branch.points)} points>"
 
 

@@ -215,7 +215,10 @@ class Orbit:
 
 
 def _found(system: System, *asked: Any) -> Orbit:
-    core = _core.orbit(system._core, *asked)
+    return _answer(system, _core.orbit(system._core, *asked), asked)
+
+
+def _answer(system: System, core: Any, asked: tuple[Any, ...]) -> Orbit:
     if core.why:
         raise NoOrbit(as_arguments(core.why))
     return Orbit(system, core, asked)
@@ -238,13 +241,13 @@ def orbit(system: System | str | os.PathLike[str], *,
     Raises NoOrbit where none is found, and InputError. Other threads run meanwhile; Ctrl-C ends the search with KeyboardInterrupt.
     """
     what = system_of(system)
-    asked = Asked(what._core, set, values)
-    name, file = _place(what, from_)
-    found = _found(what, name, file, "" if period is None else text_of("period", period), _shifts(shift), _along(continue_),
-                   asked.settings, asked.options)
-    for warning in found.warnings:
+    of_run = Asked(what._core, set, values)
+    asked = (*_place(what, from_), "" if period is None else text_of("period", period), _shifts(shift), _along(continue_),
+             of_run.settings, of_run.options)
+    core = _core.orbit(what._core, *asked)
+    for warning in core.warnings:
         warnings.warn(as_arguments(warning), AchillesWarning, stacklevel=2)
-    return found
+    return _answer(what, core, asked)
 
 
 def _place(system: System, from_: Any) -> tuple[str, str | None]:
