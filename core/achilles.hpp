@@ -9,6 +9,8 @@
 //     make_sweep({.over = ..., .prints = ...}, run, description)                Sweep
 //     sweep_columns(model, sweep)             many runs, on all cores           SweepColumns
 //     simulate_many(), simulate_ends()        many runs, each reduced to what is wanted of it
+//     make_orbit_question({.along = ...}, run, model)                           OrbitQuestion: of a periodic run
+//     answer_to(question, model)              the run, its multipliers, branch  OrbitAnswer, or why there is none
 //
 // A Model never changes and may be used by several threads. What is wrong with a file, a name or an expression is thrown as an
 // InputError, which says where it stands and what would be right; what ends a run early is the trajectory's `outcome`.
@@ -21,5 +23,6 @@
 #include "simulate/many.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
+#include "study/orbit_question.hpp"
 #include "study/sweep.hpp"
 #include "system/named_run.hpp"

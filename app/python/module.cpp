@@ -88,6 +88,7 @@ PYBIND11_MODULE(_core, module) {
     python::bind_errors(module);
     python::bind_systems(module);
     python::bind_runs(module);
+    python::bind_orbits(module);
     python::bind_sweeps(module);
     module.attr("version") = version();
     module.def("look_for_assets_beside", [](const std::string& file) { look_for_assets_beside(file); });

@@ -4,13 +4,19 @@
 
 #include <pybind11/pybind11.h>
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "cli/overrides.hpp"
+#include "figure/publication.hpp"
 #include "model/model.hpp"
+#include "pictures/origin.hpp"
+#include "pictures/paper_size.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles::python {
@@ -27,6 +33,7 @@ struct Asked {
     std::vector<std::string> settings;
     std::map<std::string, std::string> options;
 };
+OptionOverrides overrides_of(const Asked& asked);
 Run run_of(const System& system, const Asked& asked);
 // What the command line warns of.
 std::vector<std::string> warnings_of(const System& system, const Run& run);
@@ -37,9 +44,30 @@ std::vector<std::string> warnings_of(const System& system, const Run& run);
 void work_and_listen(const std::function<void()>& work, const std::function<void()>& stop,
                      const std::function<void()>& tick);
 
+// How a figure looks: the views of these names, all if there are none.
+struct Look {
+    std::vector<std::string> views;
+    PictureSize size;
+    PaperSize page;
+    PublicationStyle style;
+};
+// As Python says it: views, pixels, scale, millimetres (width, height, font in points, dots an inch), columns, dark, transparent.
+using AskedLook =
+    std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
+// Of a picture in this format. Throws InputError.
+Look look_of(const AskedLook& asked, const std::string& format);
+// Words of a command line that ask for it.
+void add(std::vector<std::string>& words, const Look& look);
+// The picture as a file, which carries the command line that makes it again and the files that this reads, first the system's.
+std::string picture_of(const Figure& figure, const Look& look, const std::string& format, const std::string& command,
+                       const std::vector<Source>& sources, const Trajectory& shown);
+// What it makes, without the lock.
+pybind11::bytes unlocked(const std::function<std::string()>& make);
+
 void bind_errors(pybind11::module_& module);
 void bind_systems(pybind11::module_& module);
 void bind_runs(pybind11::module_& module);
+void bind_orbits(pybind11::module_& module);
 void bind_sweeps(pybind11::module_& module);
 
 }  // namespace achilles::python

@@ -2,18 +2,12 @@
 #include <pybind11/stl.h>
 
 #include <array>
-#include <cmath>
 
-#include "cli/overrides.hpp"
 #include "depend/quantities.hpp"
-#include "figure/publication.hpp"
 #include "module.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
-#include "pictures/paper_size.hpp"
-#include "pictures/pdf.hpp"
-#include "pictures/take_away.hpp"
 #include "pictures/views.hpp"
 #include "session/recipe.hpp"
 #include "simulate/contact_forces.hpp"
@@ -129,68 +123,23 @@ Instants instants_from(const std::optional<Times>& times) {
     return std::vector<double>(times->data(), times->data() + times->size());
 }
 
-// A figure as `achilles figure` draws it: the views of these names, all if there are none.
-struct Look {
-    std::vector<std::string> views;
-    PictureSize size;
-    PaperSize page;
-    PublicationStyle style;
-};
-
 // The command line that makes the same, which pictures carry.
 std::string command_of(const Made& made, const Look& look) {
     const Model& model = *made.system->model;
     std::vector<std::string> words{"figure", made.system->name};
-    const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
-    for (const std::string& view : look.views) add("--view", view);
-    if (look.page.width > 0.0) {
-        add("--width-mm", to_text(OptionValue{look.page.width}));
-        if (look.page.height > 0.0) add("--height-mm", to_text(OptionValue{look.page.height}));
-        if (look.page.font > 0.0) add("--font-pt", to_text(OptionValue{look.page.font}));
-        if (look.page.dpi > 0.0) add("--dpi", to_text(OptionValue{look.page.dpi}));
-    } else {
-        add("--size", std::to_string(look.size.width) + "x" + std::to_string(look.size.height));
-        add("--scale", to_text(OptionValue{look.size.scale}));
-    }
-    if (look.style.columns > 0) add("--columns", std::to_string(look.style.columns));
-    if (look.style.dark) words.emplace_back("--dark");
-    if (look.style.transparent) words.emplace_back("--transparent");
+    add(words, look);
     const std::vector<std::string> options = run_options(model.description(), model.default_run(), made.trajectory.run);
     words.insert(words.end(), options.begin(), options.end());
     return shell_line(words);
 }
 
-std::string draw(const Made& made, Look look, const std::string& format) {
-    check(look.page, "figure");
-    if (format == "pdf") need_pdf_writer("save");
-    look.style.ordered = !look.views.empty();
-    look.style.shape = double{1} * look.size.width / look.size.height;
+// As `achilles figure` draws it.
+std::string draw(const Made& made, const AskedLook& asked, const std::string& format) {
+    const Look look = look_of(asked, format);
     const SystemDescription& description = made.system->model->description();
-    const Figure figure = publication(made.trajectory, views_of(description, look.views), look.style);
-    if (format != "png") look.page.dpi = 0.0;
-    const PictureSize size = size_of(look.page, look.size, figure, format);
-    const Origin origin{"Achilles " + version(),
-                        command_of(made, look),
-                        "",
-                        {{Source::Kind::system, made.system->name, description.source_text}}};
-    return picture_of(figure, size, notes(origin, {{made.system->name, &made.trajectory}}), format);
-}
-
-py::bytes drawn(const Made& made, std::vector<std::string> views, std::array<int, 2> size, double scale,
-                std::array<double, 4> page, int columns, bool dark, bool transparent, const std::string& format) {
-    Look look;
-    look.views = std::move(views);
-    look.size = {size[0], size[1], scale};
-    look.page = {page[0], page[1], page[2], page[3]};
-    look.style.columns = columns;
-    look.style.dark = dark;
-    look.style.transparent = transparent;
-    std::string bytes;
-    {
-        const py::gil_scoped_release released;
-        bytes = draw(made, std::move(look), format);
-    }
-    return bytes;
+    return picture_of(publication(made.trajectory, views_of(description, look.views), look.style), look, format,
+                      command_of(made, look), {{Source::Kind::system, made.system->name, description.source_text}},
+                      made.trajectory);
 }
 
 }  // namespace
@@ -241,7 +190,9 @@ void bind_runs(py::module_& module) {
                  const py::gil_scoped_release unlocked;
                  return to_csv(m.trajectory, style);
              })
-        .def("figure", &drawn);
+        .def("figure", [](const Made& m, const AskedLook& look, const std::string& format) {
+            return unlocked([&] { return draw(m, look, format); });
+        });
     module.def("simulate", &made_from);
     module.def("equidistant", &equidistant);
 }

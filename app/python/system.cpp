@@ -6,7 +6,6 @@
 
 #include "check/equation_sheet.hpp"
 #include "cli/assets.hpp"
-#include "cli/overrides.hpp"
 #include "expression/nearest.hpp"
 #include "model/derived_values.hpp"
 #include "model/read_system.hpp"
@@ -20,13 +19,17 @@ namespace achilles::python {
 System::System(std::string text, std::string name_)
     : name(std::move(name_)), model(std::make_shared<const Model>(parse_system(std::move(text), name))) {}
 
-Run run_of(const System& system, const Asked& asked) {
+OptionOverrides overrides_of(const Asked& asked) {
     OptionOverrides overrides;
     for (const Option& option : all_options())
         for (const std::string& flag : {std::string(option.flag), common_flag(option)})
             if (const auto given = asked.options.find(flag); given != asked.options.end())
                 overrides.by_flag.insert_or_assign(flag, value_from(option, flag, given->second));
-    return asked_run(system.model->description(), asked.settings, overrides);
+    return overrides;
+}
+
+Run run_of(const System& system, const Asked& asked) {
+    return asked_run(system.model->description(), asked.settings, overrides_of(asked));
 }
 
 std::vector<std::string> warnings_of(const System& system, const Run& run) {

@@ -24,7 +24,7 @@ void Session::receive_orbit(Patience patience) { orbit_job_->update(patience); }
 void Session::perform(const command::FindOrbit& command) {
     try {
         orbit_job_->begin(system_->model, command.text, asked_,
-                          make_question(read_orbit(command.text), asked_, system_->model));
+                          make_orbit_question(read_orbit(command.text), asked_, system_->model));
     } catch (const InputError& problem) {
         throw refusal(problem.what(), std::string(command::FindOrbit::said.usage));
     }

@@ -21,6 +21,7 @@
 
 #include "depend/flow_difference.hpp"
 #include "depend/gradient.hpp"
+#include "depend/margins.hpp"
 #include "run/trajectory.hpp"
 #include "simulate/surfaces.hpp"
 
@@ -56,14 +57,6 @@ struct Link {
 
     void apply(Eigen::MatrixXd& Z) const;
     Eigen::MatrixXd matrix() const;
-};
-
-// How near the run comes to where it has no derivative (theory-derivatives.md 8), as far as the chain has gone.
-struct DerivativeMargins {
-    std::optional<double> grazing_speed;  // the least speed of an impact with hddot > 0
-    std::optional<double> gap_minimum;    // the least minimum of a gap along a flight
-    std::optional<double> a_inf;          // the least -hddot at a Zeno point
-    std::optional<double> release_jerk;   // the least h''' at a release
 };
 
 inline void take_least(std::optional<double>& least, double x) { least = least ? std::min(*least, x) : x; }

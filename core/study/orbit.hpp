@@ -5,12 +5,36 @@
 //     found.orbit->period, found.orbit->multipliers[0], ...        or  found.why
 #pragma once
 
+#include <atomic>
 #include <complex>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
 
-#include "study/return_map.hpp"
+#include "depend/margins.hpp"
+#include "run/trajectory.hpp"
+#include "system/description.hpp"
 
 namespace achilles {
+
+class ReturnMap;
+struct ClosedLap;
+struct Shot;
+
+// For whoever waits: how many runs have been tried, and a stop, which is a reason why there is no periodic run.
+struct OrbitWatch {
+    std::stop_token stop;
+    std::atomic<int> runs = 0;
+};
+
+// When a run closes: after a period, with coordinates moved on by a shift. Expressions in the parameters.
+struct Closing {
+    Text period;              // a drive's; without a drive a guess; empty: not known
+    std::vector<Text> shift;  // by coordinate, empty ones are 0; or none at all
+};
 
 // What an orbit's runs are made by unless somebody says otherwise: as exactly as double precision serves.
 Options exact_options();

@@ -11,6 +11,7 @@
 #include "model/behind.hpp"
 #include "simulate/simulate.hpp"
 #include "study/flags.hpp"
+#include "study/return_map.hpp"
 
 namespace achilles {
 
@@ -131,7 +132,7 @@ AskedOrbit read_orbit(std::string_view text) {
     return asked;
 }
 
-OrbitQuestion make_question(const AskedOrbit& asked, const Run& run, const std::shared_ptr<const Model>& model) {
+OrbitQuestion make_orbit_question(const AskedOrbit& asked, const Run& run, const std::shared_ptr<const Model>& model) {
     const SystemDescription& description = model->description();
     OrbitQuestion question;
     OrbitAsked& whole = question.asked;
@@ -175,7 +176,9 @@ OrbitAnswer answer_to(OrbitQuestion question, const std::shared_ptr<const Model>
     asked.watch = watch;
     OrbitAnswer answer;
     if (question.from_end) {
-        const Trajectory run = simulate(model, asked.run, nullptr, Keep::end);
+        Watch first;
+        if (watch != nullptr) first.stop = watch->stop;
+        const Trajectory run = simulate(model, asked.run, &first, Keep::end);
         State end = run.end;
         end.t = run.end_time;
         begin_at(asked.run, end, !model->equations().autonomous);

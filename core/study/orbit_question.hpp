@@ -1,6 +1,6 @@
 // What is asked about a periodic run as a person writes it, on the command line, in a journal, in Python; and the answer.
 //
-//     const OrbitQuestion question = make_question({.from = "end", .along = "e=0.1:0.9"}, run, *model);
+//     const OrbitQuestion question = make_orbit_question({.from = "end", .along = "e=0.1:0.9"}, run, model);
 //     const OrbitAnswer answer = answer_to(question, model);
 //     answer.orbit->period, answer.branch->flips, ...        or  answer.why
 #pragma once
@@ -56,7 +56,7 @@ struct OrbitQuestion {
 };
 
 // About runs like this one, which can start. Throws InputError for what is no question.
-OrbitQuestion make_question(const AskedOrbit& asked, const Run& run, const std::shared_ptr<const Model>& model);
+OrbitQuestion make_orbit_question(const AskedOrbit& asked, const Run& run, const std::shared_ptr<const Model>& model);
 
 struct OrbitAnswer : OrbitSearch {
     std::optional<Branch> branch;  // where one was asked for

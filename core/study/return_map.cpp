@@ -8,6 +8,7 @@
 #include "depend/gradient.hpp"
 #include "number/dense.hpp"
 #include "simulate/simulate.hpp"
+#include "study/orbit.hpp"
 #include "study/signature.hpp"
 #include "system/input_error.hpp"
 

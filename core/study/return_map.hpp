@@ -4,11 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,21 +15,12 @@
 
 namespace achilles {
 
+struct Closing;
+struct OrbitWatch;
+
 // Why there is no periodic run: a sentence for a person.
 struct NoOrbit : std::runtime_error {
     using std::runtime_error::runtime_error;
-};
-
-// For whoever waits: how many runs have been tried, and a stop, which is a reason why there is no periodic run.
-struct OrbitWatch {
-    std::stop_token stop;
-    std::atomic<int> runs = 0;
-};
-
-// When a run closes: after a period, with coordinates moved on by a shift. Expressions in the parameters.
-struct Closing {
-    Text period;              // a drive's; without a drive a guess; empty: not known
-    std::vector<Text> shift;  // by coordinate, empty ones are 0; or none at all
 };
 
 // A start, and how long its period is taken to be.

@@ -168,7 +168,7 @@ def test_everything_public_is_explained():
 
 
 def test_every_option_of_the_table_is_an_argument(program):
-    for function in (achilles.simulate, achilles.sweep):
+    for function in (achilles.simulate, achilles.sweep, achilles.orbit):
         names = inspect.signature(function).parameters
         text = program("simulate", "--help")
         flags = {word.strip(",") for word in text.split() if word.startswith("--eps") or word in ("--end", "--method", "--memory")}

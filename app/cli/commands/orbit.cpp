@@ -42,7 +42,7 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
         if (arguments.overrides.given(option) != nullptr) asked.options.insert(option.key);
     if (!asked.from.empty() && asked.from != "start" && asked.from != "end")
         asked.guess = orbit_guess(job.inputs().data(asked.from), asked.from, description.coordinates.size());
-    const OrbitQuestion question = make_question(asked, run, model);
+    const OrbitQuestion question = make_orbit_question(asked, run, model);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
     std::string format;
     if (!arguments.out.empty()) {

@@ -12,6 +12,10 @@
     map = achilles.sweep("ball_on_sine", over={"e": (0, 0.95, 200)}, print="zeno_time(2)")
     map["zeno_time(2)"]                  # an array in the shape of the grid
 
+    orbit = achilles.orbit("ball_down_a_wave", continue_={"e": (0.1, 0.9)})
+    orbit.period, orbit.multipliers      # a periodic run, and what it leaves of a small change
+    orbit.branch.value, orbit.branch.q   # the same along a parameter
+
 Systems are named as by `achilles list` (`achilles.gallery()`), by the path of a file, or are a `System` made of text. Numbers
 are in the units of the file, angles in radians, times in seconds. What is wrong with what was asked for is an `InputError`.
 """
@@ -20,9 +24,10 @@ from . import _core
 
 _core.look_for_assets_beside(_core.__file__)
 
-from ._errors import AchillesWarning, InputError
+from ._errors import AchillesWarning, InputError, NoOrbit
 from ._figure import Figure
-from ._records import Certificate, Event, Phase, Record
+from ._orbit import Branch, Orbit, orbit
+from ._records import Certificate, Event, OrbitPoint, Phase, Record
 from ._run import Run, State, simulate
 from ._sweep import Sweep, sweep
 from ._system import System, gallery
@@ -30,10 +35,14 @@ from ._system import System, gallery
 __version__: str = _core.version
 __all__ = [
     "AchillesWarning",
+    "Branch",
     "Certificate",
     "Event",
     "Figure",
     "InputError",
+    "NoOrbit",
+    "Orbit",
+    "OrbitPoint",
     "Phase",
     "Record",
     "Run",
@@ -41,6 +50,7 @@ __all__ = [
     "Sweep",
     "System",
     "gallery",
+    "orbit",
     "simulate",
     "sweep",
 ]

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import keyword
 import re
 
 
 class AchillesWarning(UserWarning):
     """What a run asks for or came to is no mistake, but perhaps not what was meant."""
+
+
+class NoOrbit(RuntimeError):
+    """No periodic run was found near where the search began. Its text says why."""
 
 
 class InputError(ValueError):
@@ -44,6 +49,11 @@ class InputError(ValueError):
 
 
 def as_arguments(text: str) -> str:
-    """The flags of a command line as the arguments that they are here: `--set e=2` is e=2, `--eps-q` eps_q."""
+    """The flags of a command line as the arguments that they are here: `--set e=2` is e=2, `--eps-q` eps_q, `--from` from_."""
+
+    def argument(flag: re.Match[str]) -> str:
+        name = flag[1].replace("-", "_")
+        return name + "_" if keyword.iskeyword(name) else name
+
     text = re.sub(r"--set (?=\S)", "", text)
-    return re.sub(r"--([a-z][a-z0-9]*(?:-[a-z0-9]+)*)", lambda flag: flag[1].replace("-", "_"), text)
+    return re.sub(r"--([a-z][a-z0-9]*(?:-[a-z0-9]+)*)", argument, text)

@@ -1,18 +1,22 @@
-"""Figures of a run."""
+"""Figures of a run, and of a periodic one."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from typing import Any
+
+from . import _core
+from ._asked import number_in
+from ._errors import InputError
 
 
 class Figure:
-    """Views of a run, drawn as `achilles figure` draws them. A notebook shows it; `save` writes it. Made by Run.figure."""
+    """Views of a run, drawn as `achilles figure` draws them, or of a periodic one, as `achilles orbit` does. A notebook shows it;
+    `save` writes it. Made by Run.figure and Orbit.figure."""
 
-    def __init__(self, run: Any, views: list[str], size: tuple[int, int], scale: float,
-                 page: tuple[float, float, float, float], columns: int, dark: bool, transparent: bool) -> None:
-        self._run = run
-        self._look = (views, size, float(scale), page, columns, dark, transparent)
+    def __init__(self, drawn: Any, look: tuple[Any, ...]) -> None:
+        self._drawn, self._look = drawn, look
 
     @property
     def svg(self) -> str:
@@ -23,7 +27,7 @@ class Figure:
         """The figure as a file: "svg", "png" (where there is a renderer) or "pdf" (where there is rsvg-convert)."""
         if format not in ("svg", "png", "pdf"):
             raise ValueError(f"a figure is svg, png or pdf, not {format!r}")
-        return self._run.figure(*self._look, format)
+        return self._drawn.figure(self._look, format)
 
     def save(self, path: str | os.PathLike[str], format: str | None = None) -> None:
         """Writes it; the ending of the name says as what, .svg, .png or .pdf. It carries the command that makes it again."""
@@ -38,3 +42,20 @@ class Figure:
     def _repr_svg_(self) -> str:
         svg = self.svg
         return svg[svg.index("<svg") :]  # a page has no room for the head of a file
+
+
+def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tuple[int, int], scale: float,
+              paper: dict[str, float], columns: int, dark: bool, transparent: bool) -> Figure:
+    """A figure of what can draw itself; of the views that are known."""
+    for view in views:
+        if view not in known:
+            guess = _core.did_you_mean(view, list(known)) if isinstance(view, str) else ""
+            raise InputError(f"this system has no view '{view}'{guess}\nits views are: {', '.join(known)}")
+    try:
+        width, height = size
+    except TypeError:
+        raise TypeError(f"size: (width, height) in pixels is expected, not {size!r}") from None
+    pixels = (int(number_in("size", width, 64, 16384)), int(number_in("size", height, 64, 16384)))
+    page = tuple(number_in(name, value, 0, 1e6) for name, value in paper.items())
+    return Figure(drawn, (list(views), pixels, number_in("scale", scale, 0.25, 8), page,
+                          int(number_in("columns", columns, 0, 20)), bool(dark), bool(transparent)))

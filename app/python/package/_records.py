@@ -1,4 +1,4 @@
-"""Events, certificates and phases: what `achilles simulate --json` says, under the same names."""
+"""Events, certificates, phases, points of branches: what `achilles simulate --json` and `orbit --json` say, under its names."""
 
 from __future__ import annotations
 
@@ -109,6 +109,19 @@ class Phase(Record):
     not_unique: bool
 
 
+class OrbitPoint(Record):
+    """A periodic run at one value of the branch's parameter; multipliers is an array of complex numbers."""
+
+    value: float
+    period: float
+    state: Record
+    multipliers: np.ndarray
+    zero_multipliers: int
+    stable: bool
+    margins: Record
+    psi: float | None
+
+
 def _record(pairs: list[tuple[str, Any]]) -> Record:
     record: Record = Record()
     for name, value in pairs:
@@ -118,6 +131,8 @@ def _record(pairs: list[tuple[str, Any]]) -> Record:
             value = Certificate(value)
         elif name in ("events", "phases"):
             value = [(Event if name == "events" else Phase)(each) for each in value]
+        elif name == "multipliers" and isinstance(value, list):
+            value = np.array([complex(*each) for each in value])
         dict.__setitem__(record, name, value)
     return record
 

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._asked import Asked, number_in, with_options
+from ._asked import Asked, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
-from ._figure import Figure
+from ._figure import Figure, figure_of
 from ._records import Certificate, Event, Phase, Record, derivative_records, records
 from ._system import System, system_of
 
@@ -189,20 +189,8 @@ class Run:
                height_mm: float = 0.0, font_pt: float = 0.0, dpi: float = 0.0, columns: int = 0, dark: bool = False,
                transparent: bool = False) -> Figure:
         """Views of the run for print, all if none is named: in pixels, or with width_mm as wide as that on paper."""
-        known = self.system.views
-        for view in views:
-            if view not in known:
-                guess = _core.did_you_mean(view, known) if isinstance(view, str) else ""
-                raise InputError(f"this system has no view '{view}'{guess}\nits views are: {', '.join(known)}")
-        try:
-            width, height = size
-        except TypeError:
-            raise TypeError(f"size: (width, height) in pixels is expected, not {size!r}") from None
-        pixels = (int(number_in("size", width, 64, 16384)), int(number_in("size", height, 64, 16384)))
         paper = {"width_mm": width_mm, "height_mm": height_mm, "font_pt": font_pt, "dpi": dpi}
-        page = tuple(number_in(name, value, 0, 1e6) for name, value in paper.items())
-        return Figure(self._core, list(views), pixels, number_in("scale", scale, 0.25, 8), page,
-                      int(number_in("columns", columns, 0, 20)), bool(dark), bool(transparent))
+        return figure_of(self._core, self.system.views, views, size, scale, paper, columns, dark, transparent)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """It is made again: the same run has the same bytes."""

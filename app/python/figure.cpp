@@ -1,0 +1,61 @@
+// Figures as Python asks for them: how they look, and what they carry.
+#include "module.hpp"
+#include "output/output.hpp"
+#include "pictures/pdf.hpp"
+#include "pictures/take_away.hpp"
+
+namespace py = pybind11;
+
+namespace achilles::python {
+
+Look look_of(const AskedLook& asked, const std::string& format) {
+    const auto& [views, size, scale, page, columns, dark, transparent] = asked;
+    Look look;
+    look.views = views;
+    look.size = {size[0], size[1], scale};
+    look.page = {page[0], page[1], page[2], page[3]};
+    look.style.columns = columns;
+    look.style.dark = dark;
+    look.style.transparent = transparent;
+    look.style.ordered = !look.views.empty();
+    look.style.shape = double{1} * look.size.width / look.size.height;
+    check(look.page, "figure");
+    look.page = page_for(look.page, format);
+    if (format == "pdf") need_pdf_writer("save");
+    return look;
+}
+
+void add(std::vector<std::string>& words, const Look& look) {
+    const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
+    for (const std::string& view : look.views) add("--view", view);
+    if (look.page.width > 0.0) {
+        add("--width-mm", to_text(OptionValue{look.page.width}));
+        if (look.page.height > 0.0) add("--height-mm", to_text(OptionValue{look.page.height}));
+        if (look.page.font > 0.0) add("--font-pt", to_text(OptionValue{look.page.font}));
+        if (look.page.dpi > 0.0) add("--dpi", to_text(OptionValue{look.page.dpi}));
+    } else {
+        add("--size", std::to_string(look.size.width) + "x" + std::to_string(look.size.height));
+        add("--scale", to_text(OptionValue{look.size.scale}));
+    }
+    if (look.style.columns > 0) add("--columns", std::to_string(look.style.columns));
+    if (look.style.dark) words.emplace_back("--dark");
+    if (look.style.transparent) words.emplace_back("--transparent");
+}
+
+std::string picture_of(const Figure& figure, const Look& look, const std::string& format, const std::string& command,
+                       const std::vector<Source>& sources, const Trajectory& shown) {
+    const Origin origin{"Achilles " + version(), command, "", sources};
+    return achilles::picture_of(figure, size_of(look.page, look.size, figure, format),
+                                notes(origin, {{sources[0].name, &shown}}), format);
+}
+
+py::bytes unlocked(const std::function<std::string()>& make) {
+    std::string bytes;
+    {
+        const py::gil_scoped_release released;
+        bytes = make();
+    }
+    return bytes;
+}
+
+}  // namespace achilles::python

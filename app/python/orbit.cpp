@@ -1,0 +1,127 @@
+#include <pybind11/stl.h>
+
+#include "figure/orbit_figure.hpp"
+#include "module.hpp"
+#include "output/orbit.hpp"
+#include "pictures/views.hpp"
+#include "session/recipe.hpp"
+
+namespace py = pybind11;
+
+namespace achilles::python {
+
+namespace {
+
+// What was asked about a periodic run, and the answer.
+struct Found {
+    std::shared_ptr<const System> system;
+    std::vector<std::string> words;  // of a command line that asks the same, but for how a picture looks
+    std::vector<Source> sources;     // that this reads
+    OrbitAnswer answer;
+    std::vector<std::string> warnings;
+
+    const Orbit& orbit() const { return *answer.orbit; }
+    const Branch* branch() const { return answer.branch ? &*answer.branch : nullptr; }
+};
+
+std::vector<std::string> words_of(const System& system, const AskedOrbit& asked, const Asked& of_run) {
+    std::vector<std::string> words{"orbit", system.name};
+    const auto add = [&](const std::string& flag, const std::string& value) {
+        if (!value.empty()) words.insert(words.end(), {flag, value});
+    };
+    add("--from", asked.from);
+    add("--period", asked.period);
+    for (const std::string& shift : asked.shifts) add("--shift", shift);
+    add("--continue", asked.along);
+    // As they were given: an option holds over an orbit's own even where it is that of the file.
+    for (const std::string& setting : of_run.settings) add("--set", setting);
+    for (const auto& [flag, value] : of_run.options) add(flag, value);
+    return words;
+}
+
+// `json`: what a file of the name `from` holds, where the search begins at a state.
+std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, AskedOrbit asked,
+                                const std::optional<std::string>& json, const Asked& of_run) {
+    const Model& model = *system->model;
+    const auto found = std::make_shared<Found>();
+    found->system = system;
+    found->words = words_of(*system, asked, of_run);
+    found->sources = {{Source::Kind::system, system->name, model.description().source_text}};
+    asked.settings = of_run.settings;
+    const OptionOverrides overrides = overrides_of(of_run);
+    for (const Option& option : all_options())
+        if (overrides.given(option) != nullptr) asked.options.insert(option.key);
+    if (json) {
+        asked.guess = orbit_guess(*json, asked.from, model.description().coordinates.size());
+        found->sources.push_back({Source::Kind::system, asked.from, *json});
+    }
+    const Run run = run_of(*system, of_run);
+    check_asked(model, run, asked.settings);
+    found->warnings = warnings_of(*system, run);
+    std::stop_source source;
+    OrbitWatch watch;
+    watch.stop = source.get_token();
+    const auto work = [&] {
+        found->answer = answer_to(make_orbit_question(asked, run, system->model), system->model, &watch);
+    };
+    work_and_listen(
+        work, [&] { source.request_stop(); }, [] {});
+    return found;
+}
+
+// As `achilles orbit --out` draws it.
+std::string draw(const Found& found, const AskedLook& asked, const std::string& format) {
+    const Look look = look_of(asked, format);
+    const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
+    const Figure figure = found.branch() != nullptr ? compose_branch(found.orbit(), *found.branch(), views, look.style)
+                                                    : publication(found.orbit().run, views, look.style);
+    std::vector<std::string> words = found.words;
+    add(words, look);
+    return picture_of(figure, look, format, shell_line(words), found.sources, found.orbit().run);
+}
+
+// What makes of the file's run one period of it.
+Asked of_period(const Found& found) {
+    const Model& model = *found.system->model;
+    const std::vector<std::string> words = run_options(model.description(), model.default_run(), found.orbit().run.run);
+    Asked asked;
+    for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
+        if (words[i] == "--set")
+            asked.settings.push_back(words[i + 1]);
+        else
+            asked.options[words[i]] = words[i + 1];
+    }
+    return asked;
+}
+
+}  // namespace
+
+void bind_orbits(py::module_& module) {
+    const py::call_guard<py::gil_scoped_release> released;
+    py::class_<Found, std::shared_ptr<Found>>(module, "Orbit")
+        .def_readonly("warnings", &Found::warnings)
+        // Where there is none: a sentence. Then nothing else may be asked.
+        .def_property_readonly("why", [](const Found& f) { return f.answer.orbit ? "" : f.answer.why; })
+        .def_property_readonly("command", [](const Found& f) { return shell_line(f.words); })
+        .def("of_period",
+             [](const Found& f) {
+                 const Asked asked = of_period(f);
+                 return std::pair(asked.settings, asked.options);
+             })
+        .def(
+            "summary", [](const Found& f) { return orbit_text(f.orbit(), f.branch()); }, released)
+        .def(
+            "json", [](const Found& f) { return to_json(f.orbit(), f.branch()); }, released)
+        .def("figure", [](const Found& f, const AskedLook& look, const std::string& format) {
+            return unlocked([&] { return draw(f, look, format); });
+        });
+    module.def("orbit",
+               [](const std::shared_ptr<const System>& system, std::string from, const std::optional<std::string>& json,
+                  std::string period, std::vector<std::string> shifts, std::string along,
+                  std::vector<std::string> settings, std::map<std::string, std::string> options) {
+                   return found_by(system, {std::move(from), std::move(period), std::move(shifts), std::move(along)},
+                                   json, {std::move(settings), std::move(options)});
+               });
+}
+
+}  // namespace achilles::python
