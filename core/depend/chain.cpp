@@ -1,18 +1,20 @@
 #include "depend/chain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace achilles {
 
 using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
+// The matrices are small: a product by its entries is faster than one by blocks.
 void Link::apply(MatrixXd& Z) const {
     if (kind == Kind::crossing) {
-        const RowVectorXd along = G * Z / G.dot(F);
-        Z -= F * along;
+        const RowVectorXd along = (G / G.dot(F)).lazyProduct(Z);
+        Z.noalias() -= F.lazyProduct(along);
     } else {
-        Z = J * Z;
+        Z.topRows(changed) = J.topRows(changed).lazyProduct(Z).eval();
     }
 }
 
@@ -124,14 +126,22 @@ void Chain::set_gaps() {
 }
 
 Link& Chain::add(Link::Kind kind, std::optional<std::size_t> event) {
-    Link& link = links_.emplace_back();
+    if (made_ == links_.size()) links_.emplace_back();
+    Link& link = links_[made_++];
     link.kind = kind;
     link.event = event;
+    link.length = 0.0;
+    link.left_out.resize(0);
+    link.by_place.resize(0);
+    link.completion.reset();
+    link.changed = tangent_.p(0);
+    if (kind != Link::Kind::crossing) link.J.setIdentity(tangent_.size(), tangent_.size());
     return link;
 }
 
 const Link* Chain::next() {
-    while (links_.empty() && broken_.empty()) {
+    if (given_ == made_) given_ = made_ = 0;
+    while (made_ == 0 && broken_.empty()) {
         const auto& pieces = trajectory_->pieces;
         const auto& events = trajectory_->events;
         const bool any_piece = next_piece_ < pieces.size(), any_event = next_event_ < events.size();
@@ -141,10 +151,7 @@ const Link* Chain::next() {
         else
             step();
     }
-    if (links_.empty()) return nullptr;
-    link_ = std::move(links_.front());
-    links_.pop_front();
-    return &link_;
+    return given_ < made_ ? &links_[given_++] : nullptr;
 }
 
 // ---- steps ----
@@ -166,7 +173,6 @@ void Chain::step() {
             differences_.at(held_)->left_out(degree, piece.end - piece.start, left_out);
         Link& link = add(Link::Kind::step);
         link.length = span;
-        link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
         slope.slope_after(span, held_, link.J);
         if (!options_.errors) watch_minima(slope, span);
         const bool is_end = span >= left;
@@ -188,16 +194,23 @@ void Chain::watch_minima(const FlowSlope& slope, double span) {
     const int order = slope.order();
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
         if (held_.contains(i)) continue;
+        std::array<double, MotionSeries::highest_order + 1> c{};
+        for (int k = 2; k <= order; ++k) c[static_cast<std::size_t>(k)] = slope.coefficient(k, 2 * tangent_.dof + i);
         const auto at = [&](double t) {
             double u = 0.0, h = 0.0;
-            for (int k = order; k >= 0; --k) {
-                const double c = slope.coefficient(k, 2 * tangent_.dof + i) / (k + 1);
-                u = u * t + c;
-                h = h * t + c / (k + 2);
+            for (int k = order; k >= 2; --k) {
+                u = u * t + k * c[static_cast<std::size_t>(k)];
+                h = h * t + c[static_cast<std::size_t>(k)];
             }
             return std::pair(h_[i] + (u_[i] + h * t) * t, u_[i] + u * t);
         };
-        constexpr int parts = 8;
+        // Where the rate falls all along the step, there is none.
+        double rising = 2.0 * c[2], power = 1.0;
+        for (int k = 3; k <= order; ++k) {
+            power *= span;
+            rising += k * (k - 1) * std::abs(c[static_cast<std::size_t>(k)]) * power;
+        }
+        const int parts = rising < 0.0 ? 0 : 8;
         double before = 0.0, falling = u_[i];
         for (int part = 1; part <= parts; ++part) {
             const double t = span * part / parts, rate = at(t).second;
@@ -231,11 +244,11 @@ void Chain::retract(MatrixXd& J, ContactSet onto) {
         }
     };
     each([&](ContactGradient& contact) {
-        const RowVectorXd dh = contact.h_row() * J;
+        const RowVectorXd dh = contact.h_row().lazyProduct(J);
         for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * dh;
     });
     each([&](ContactGradient& contact) {
-        const RowVectorXd du = contact.hdot_row() * J;
+        const RowVectorXd du = contact.hdot_row().lazyProduct(J);
         for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.v(k)) -= contact.n(k) * du;
     });
     for (std::size_t i = 0; i < tangent_.contacts; ++i)

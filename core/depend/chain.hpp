@@ -37,10 +37,11 @@ struct Link {
     std::optional<std::size_t> event;  // of the trajectory; a crossing and then a jump have it
     double length = 0.0;               // s, of a step
 
-    Eigen::MatrixXd J;      // of a step and a jump
-    Eigen::VectorXd F;      // of a crossing: the rates of all components before the event,
-    Eigen::RowVectorXd G;   // the gradient of what vanishes there,
-    double residual = 0.0;  // and its value
+    Eigen::MatrixXd J;         // of a step and a jump
+    Eigen::Index changed = 0;  // its first rows: those of parameters, behind them, are as they were
+    Eigen::VectorXd F;         // of a crossing: the rates of all components before the event,
+    Eigen::RowVectorXd G;      // the gradient of what vanishes there,
+    double residual = 0.0;     // and its value
     // Where errors are followed, besides. Of a step, in the rows of q and v: the terms that the run's polynomials leave
     // out, (c_{K+1} + c_{K+2} t + ...) t^(K+1). Of the crossing at an impact: the gradient of the gap by q and t, where the
     // step, before it was moved onto the surface, had come to `residual`; G, the gap once more, is of the gap's own series.
@@ -134,8 +135,8 @@ class Chain {
     std::size_t next_piece_ = 0, next_event_ = 0;
     bool waiting_ = false;       // between a cut and its Zeno point
     std::vector<double> h_, u_;  // of every contact, at the state
-    std::deque<Link> links_;
-    Link link_;
+    std::deque<Link> links_;     // whose room is used again
+    std::size_t made_ = 0, given_ = 0;
     std::string broken_;
     DerivativeMargins margins_;
 };

@@ -34,7 +34,7 @@ void Chain::meet_surface(std::size_t contact, ContactSet others, Link& crossing)
     surface.at(state_);
     crossing.by_place = surface.h_row();
     Link& link = add(Link::Kind::jump);
-    MatrixXd& J = link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
+    MatrixXd& J = link.J;
     ContactGradient& landing = this->surface(contact, others);
     landing.at(state_);
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= landing.n(k) * crossing.by_place;

@@ -32,11 +32,14 @@ Link& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
     return link;
 }
 
-// v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`.
+// v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`. n does not
+// depend on v.
 void Chain::take_out_rate(MatrixXd& J, ContactGradient& surface, double times, double u, const RowVectorXd& du) {
-    const MatrixXd before = J;
-    for (std::size_t k = 0; k < tangent_.dof; ++k)
-        J.row(tangent_.v(k)) -= surface.n(k) * du + times * u * (surface.n_row(k) * before);
+    for (std::size_t k = 0; k < tangent_.dof; ++k) {
+        RowVectorXd change = (times * u * surface.n_row(k)).lazyProduct(J);
+        change += surface.n(k) * du;
+        J.row(tangent_.v(k)) -= change;
+    }
 }
 
 void Chain::land(std::size_t event) {
@@ -91,12 +94,11 @@ void Chain::land(std::size_t event) {
     if (hddot_at(s) > 0.0) take_least(margins_.grazing_speed, -u);
 
     Link& link = add(Link::Kind::jump, event);
-    MatrixXd& J = link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
+    MatrixXd& J = link.J;
     // Back onto the surface, which the components of q and v leave by what steps leave out.
-    const RowVectorXd off = contact.h_row() * J;
-    for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * off;
+    for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * contact.h_row();
     J.row(tangent_.h(i)).setZero();
-    const RowVectorXd du = J.row(tangent_.u(i)), de = restitution->row(0) * J;
+    const RowVectorXd du = J.row(tangent_.u(i)), de = restitution->row(0);  // e is of parameters alone
     const bool completes = joins.contains(i);
     const bool rests = completes || now.held.contains(i);
     if (completes) {
@@ -120,7 +122,7 @@ void Chain::land(std::size_t event) {
         if (held_.contains(k) || k == i) continue;
         ContactGradient& other = surface(k, {});
         other.at(state_);
-        J.row(tangent_.u(k)) = other.hdot_row() * J;
+        J.row(tangent_.u(k)) = other.hdot_row().lazyProduct(J).eval();
         if (now.opened.contains(k)) J.row(tangent_.h(k)).setZero();
     }
     set_gaps();
@@ -177,7 +179,6 @@ void Chain::reach_zeno_point(std::size_t event) {
     take_least(margins_.a_inf, a);
     // The members that wait for longer go on for so long.
     Link& link = add(Link::Kind::jump, event);
-    link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
     link.J.col(tangent_.wait()) += rate();
     link.J.row(tangent_.wait()).setZero();
     retract(link.J, held_);
@@ -199,7 +200,6 @@ void Chain::release(std::size_t event) {
     take_least(margins_.release_jerk, jerk);
     cross(event, normal->row(0), normal->value(0));
     Link& link = add(Link::Kind::jump, event);
-    link.J = MatrixXd::Identity(tangent_.size(), tangent_.size());
     retract(link.J, held_);
     held_ = now.held;
     set_gaps();

@@ -83,13 +83,14 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
                 take(*link->event);
                 result.events.back().impact_speed = -Z.row(tangent.u(event.contacts.only())).transpose();
             }
-            const MatrixXd before = Z;
+            // The impact itself is drawn as Newton's law has it, whatever the run restarts from.
+            std::optional<MatrixXd> drawn;
+            if (link->completion) drawn = (link->completion->newton * Z).middleRows(tangent.v(0), n);
             link->apply(Z);
             take(*link->event);
             Derivatives::AtEvent& at = result.events.back();
             if (event.kind != Event::Kind::impact) at.v_before = at.v_after;
-            // The impact itself is drawn as Newton's law has it, whatever the run restarts from.
-            if (link->completion) at.v_after = (link->completion->newton * before).middleRows(tangent.v(0), n);
+            if (drawn) at.v_after = std::move(*drawn);
             continue;
         }
         link->apply(Z);

@@ -15,7 +15,7 @@ constexpr int lowest = 4;
 FlowDifference::FlowDifference(const Model& model, ContactSet held, const Tangent& tangent,
                                std::span<const double> parameters)
     : tangent_(tangent), motion_(model, held, parameters), from_half_(model, held, parameters) {
-    const bool has_clock = model.motion(held).series.depends_on(model.layout().t());
+    const bool has_clock = model.motion(held).series.inputs()[model.layout().t()];
     for (std::size_t k = 0; k < 2 * tangent.dof; ++k)
         beside_.push_back({tangent.variable(k), 0.0, MotionSeries(model, held, parameters)});
     if (has_clock) beside_.push_back({Tangent::t(), 0.0, MotionSeries(model, held, parameters)});
@@ -69,7 +69,7 @@ double FlowDifference::expand(const State& state, double length, int least_order
     return length;
 }
 
-void FlowDifference::slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const {
+void FlowDifference::slope_after(double span, ContactSet held, Eigen::MatrixXd& S) {
     for (const Beside& beside : beside_) {
         for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
             double sum = 0.0;

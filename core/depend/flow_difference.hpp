@@ -14,9 +14,9 @@ class FlowDifference : public FlowSlope {
 
     double expand(const State& state, double length, int least_order) override;
     int order() const override { return order_; }
-    // Of the motion itself. Behind q and v there is none of hddot.
+    // Of the motion itself.
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }
-    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const override;
+    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) override;
 
     // What polynomials of this degree leave out of q and v after a time, from the state of the last expansion on: the terms
     // that follow, or where these fall too slowly the difference to two steps of half the length.

@@ -1,165 +1,93 @@
 #include "depend/flow_slope.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
-#include "number/directed.hpp"
-#include "series/directed_order.hpp"
-#include "series/series_over.hpp"
+#include "number/lanes.hpp"
+#include "series/series_slopes.hpp"
 
 namespace achilles {
 
 namespace {
 
-constexpr int highest = 32;
-
-using Number = Directed<16>;
+constexpr int highest = SeriesSlopes::highest_order, first_few = 4;
+constexpr std::size_t N = SeriesSlopes::directions;
 using Eights = Lanes<16>;
-constexpr std::size_t N = Number::directions;
 
-// The series by so many variables of Tangent::variable(), eight at most.
-class Part {
+// The variables of a motion, as inputs of its program: q, v, then what it depends on of the parameters and the time.
+std::vector<std::uint32_t> variables_of(const SeriesProgram& program, const Tangent& tangent,
+                                        const std::vector<bool>& varied) {
+    const std::vector<bool> inputs = program.inputs();
+    std::vector<std::uint32_t> variables;
+    for (std::uint32_t k = 0; k < tangent.variables(); ++k) {
+        const bool is_clock = k + 1 == tangent.variables(), is_state = k < 2 * tangent.dof;
+        const bool is_still = !is_state && !is_clock && !varied.empty() && !varied[k - 2 * tangent.dof];
+        if (is_state || (!is_still && inputs[k])) variables.push_back(k);
+    }
+    return variables;
+}
+
+class FlowSlopeBySeries : public FlowSlope {
  public:
-    Part(const SeriesProgram& program, const Tangent& tangent, std::vector<std::size_t> variables,
-         std::span<const double> parameters)
-        : variables_(std::move(variables)),
-          dof_(tangent.dof),
-          contacts_(tangent.contacts),
-          clock_(tangent.variables() - 1),
-          series_(program) {
-        std::vector<Number> given;
-        for (std::size_t k = 0; k < parameters.size(); ++k) given.push_back(variable(parameters[k], 2 * dof_ + k));
-        series_.fix(given);
-        state_.resize(2 * dof_);
-    }
-
-    void begin(const State& state) {
-        for (std::size_t i = 0; i < dof_; ++i) {
-            const auto k = static_cast<Eigen::Index>(i);
-            state_[i] = variable(state.q[k], i);
-            state_[dof_ + i] = variable(state.v[k], dof_ + i);
-        }
-        series_.begin(state_.data(), variable(state.t, clock_));
-    }
-    void extend(int k) { series_.extend(k); }
-
-    // How large the terms k and k - 1 are after such a time beside the largest of the first few, at most.
-    double last_terms(int k, double span, ContactSet held) const {
-        constexpr int first = 4;
-        double far = 1.0;  // span^(k - 1)
-        for (int j = 1; j < k; ++j) far *= span;
-        double largest = 0.0;
-        for (std::size_t i = 0; i < 2 * dof_ + contacts_; ++i) {
-            const bool is_event = i >= 2 * dof_;
-            if (is_event && held.contains(i - 2 * dof_)) continue;
-            Eights sizes = 0.0, lasts = 0.0;
-            double size = 0.0, last = 0.0, power = 1.0;
-            const auto take = [&](int j, double to_the_j, Eights& slopes, double& value) {
-                const Number& c = series_.coefficient(j, i);
-                const double share = is_event ? to_the_j / (j + 1) : to_the_j;  // of its integral
-                slopes = max(slopes, abs(c.slope) * share);
-                value = std::max(value, std::abs(c.value) * share);
-            };
-            for (int j = 0; j < std::min(first, k - 1); ++j, power *= span) take(j, power, sizes, size);
-            take(k - 1, far, lasts, last);
-            take(k, far * span, lasts, last);
-            if (last > 0.0) largest = std::max(largest, last / std::max(size, last));
-            // What is so much smaller than the other directions' is rounding, or comes late.
-            double least = size;
-            for (std::size_t d = 0; d < variables_.size(); ++d) least = std::max(least, sizes[d]);
-            const Eights share = lasts / max(sizes, Eights(1e-6 * least));  // no number where both are 0
-            for (std::size_t d = 0; d < variables_.size(); ++d)
-                if (lasts[d] > 0.0) largest = std::max(largest, std::min(share[d], 1.0));
-        }
-        return largest;
-    }
-    double coefficient(int k, std::size_t i) const { return series_.coefficient(k, i).value; }
-
-    void slope_after(int order, double span, ContactSet held, const Tangent& tangent, Eigen::MatrixXd& S) const {
-        for (std::size_t i = 0; i < 2 * dof_; ++i) {
-            Eights sum = series_.coefficient(order, i).slope;
-            for (int k = order - 1; k >= 0; --k) sum = sum * span + series_.coefficient(k, i).slope;
-            put(sum, tangent.q(i), tangent, S);
-        }
-        for (std::size_t contact = 0; contact < contacts_; ++contact) {
-            if (held.contains(contact)) continue;
-            // u' = hddot, h' = u: the integrals of the series.
-            Eights u = 0.0, h = 0.0;
-            for (int k = order; k >= 0; --k) {
-                const Eights& c = series_.coefficient(k, 2 * dof_ + contact).slope;
-                const double once = 1.0 / (k + 1), twice = once / (k + 2);
-                u = u * span + c * once;
-                h = h * span + c * twice;
-            }
-            put(u * span, tangent.u(contact), tangent, S);
-            put(h * (span * span), tangent.h(contact), tangent, S);
-        }
-    }
-
- private:
-    Number variable(double x, std::size_t k) const {
-        const auto found = std::find(variables_.begin(), variables_.end(), k);
-        return found == variables_.end() ? Number(x)
-                                         : Number::variable(x, static_cast<std::size_t>(found - variables_.begin()));
-    }
-    void put(const Eights& slope, Eigen::Index row, const Tangent& tangent, Eigen::MatrixXd& S) const {
-        for (std::size_t d = 0; d < variables_.size(); ++d) S(row, tangent.variable(variables_[d])) = slope[d];
-    }
-
-    std::vector<std::size_t> variables_;
-    std::size_t dof_, contacts_, clock_;
-    SeriesOver<Number> series_;
-    std::vector<Number> state_;
-};
-
-class FlowSlopeOfParts : public FlowSlope {
- public:
-    FlowSlopeOfParts(const Model& model, ContactSet held, const Tangent& tangent, std::span<const double> parameters,
-                     const std::vector<bool>& varied, double tolerance)
-        : held_(held), tangent_(tangent), tolerance_(tolerance) {
-        const SeriesProgram& program = model.hddot_series(held);
-        std::vector<std::size_t> variables;
-        for (std::size_t k = 0; k < tangent.variables(); ++k) {
-            const bool is_clock = k + 1 == tangent.variables();
-            const std::uint32_t slot =
-                is_clock ? model.layout().t() : static_cast<std::uint32_t>(k);  // q, v, then the parameters
-            const bool is_state = k < 2 * tangent.dof;
-            const bool is_still = !is_state && !is_clock && !varied.empty() && !varied[k - 2 * tangent.dof];
-            if (is_state || (!is_still && program.depends_on(slot))) variables.push_back(k);
-        }
-        for (std::size_t first = 0; first < variables.size(); first += N) {
-            const auto begin = variables.begin() + static_cast<std::ptrdiff_t>(first);
-            const auto count = static_cast<std::ptrdiff_t>(std::min(N, variables.size() - first));
-            parts_.push_back(std::make_unique<Part>(program, tangent, std::vector(begin, begin + count), parameters));
-        }
-    }
+    FlowSlopeBySeries(const SeriesProgram& program, ContactSet held, const Tangent& tangent,
+                      std::span<const double> parameters, const std::vector<bool>& varied, double tolerance)
+        : held_(held),
+          tangent_(tangent),
+          tolerance_(tolerance),
+          variables_(variables_of(program, tangent, varied)),
+          series_(program, parameters, variables_),
+          start_(2 * tangent.dof),
+          value_limits_(rows()),
+          limits_(series_.groups() * rows()) {}
 
     double expand(const State& state, double length, int least_order) override {
-        for (const auto& part : parts_) part->begin(state);
+        const auto n = static_cast<Eigen::Index>(tangent_.dof);
+        std::copy_n(state.q.data(), n, start_.begin());
+        std::copy_n(state.v.data(), n, start_.begin() + n);
+        series_.begin(start_.data(), state.t);
         order_ = 0;
-        double excess = 0.0;
-        const int least = std::clamp(least_order, 2, highest);
+        // The last two terms are small beside the first few.
+        const int least = std::clamp(least_order, first_few + 1, highest);
+        raise_to_powers(length);
+        bool before = false;
         while (order_ < highest) {
-            ++order_;
-            for (const auto& part : parts_) part->extend(order_);
-            if (order_ < least) continue;
-            excess = last_terms(length);
-            if (excess <= tolerance_) return length;
+            series_.extend(++order_);
+            if (order_ == first_few - 1) set_limits();
+            if (order_ < least - 1) continue;
+            const bool now = is_small(order_);
+            if (now && before) return length;
+            before = now;
         }
         // Shorter, then: the last terms fall at least so fast. No shorter than steps of the run could be wrong by.
         const double least_length = 1e-3 * length;
-        while (!(excess <= tolerance_) && length > least_length) {
-            length *= std::isfinite(excess) ? std::clamp(std::pow(tolerance_ / excess, 1.0 / (highest - 1)), 0.05, 0.9)
-                                            : 0.05;
-            excess = last_terms(length);
+        for (double excess = last_terms(); excess > 1.0 && length > least_length; excess = last_terms()) {
+            length *= std::isfinite(excess) ? std::clamp(std::pow(excess, -1.0 / (highest - 1)), 0.05, 0.9) : 0.05;
+            raise_to_powers(length);
+            set_limits();
         }
         return length;
     }
     int order() const override { return order_; }
-    double coefficient(int k, std::size_t i) const override { return parts_.front()->coefficient(k, i); }
+    double coefficient(int k, std::size_t i) const override { return series_.value(k, i); }
 
-    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const override {
-        for (const auto& part : parts_) part->slope_after(order_, span, held, tangent_, S);
+    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) override {
+        if (span != powers_[1]) raise_to_powers(span);
+        for (std::size_t group = 0; group < series_.groups(); ++group) {
+            const auto sum = [&](std::size_t i, const Powers& weights, int first, Eigen::Index row) {
+                const Eight slope = series_.sum(group, i, weights.data(), first, order_);
+                for (std::size_t d = 0; d < directions(group); ++d)
+                    S(row, tangent_.variable(variables_[group * N + d])) = slope[d];
+            };
+            for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) sum(i, powers_, 0, tangent_.q(i));
+            // The gap, of which order 0 and 1 are given apart, and its rate.
+            for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
+                if (held.contains(contact)) continue;
+                sum(2 * tangent_.dof + contact, powers_, 2, tangent_.h(contact));
+                sum(2 * tangent_.dof + contact, rates_, 2, tangent_.u(contact));
+            }
+        }
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
             if (held.contains(contact)) continue;
             S(tangent_.h(contact), tangent_.h(contact)) = S(tangent_.u(contact), tangent_.u(contact)) = 1.0;
@@ -168,16 +96,78 @@ class FlowSlopeOfParts : public FlowSlope {
     }
 
  private:
-    double last_terms(double length) const {
+    using Powers = std::array<double, highest + 1>;
+
+    std::size_t directions(std::size_t group) const { return std::min(N, variables_.size() - group * N); }
+    // t^k; and k t^(k-1), from k = 2 on.
+    void raise_to_powers(double t) {
+        powers_[0] = 1.0;
+        for (std::size_t k = 1; k < powers_.size(); ++k) powers_[k] = powers_[k - 1] * t;
+        for (std::size_t k = 2; k < rates_.size(); ++k) rates_[k] = static_cast<double>(k) * powers_[k - 1];
+    }
+
+    // Row i of q, v and the gaps: order k of it, or of gaps of their rate, counts so much.
+    double weight(std::size_t i, int k) const {
+        return (i < 2 * tangent_.dof ? powers_ : rates_)[static_cast<std::size_t>(k)];
+    }
+    std::size_t rows() const { return 2 * tangent_.dof + tangent_.contacts; }
+
+    // The tolerance of each row's terms: of the largest of the first few. What is so much smaller than the other directions' is
+    // rounding, or comes late.
+    void set_limits() {
+        for (std::size_t i = 0; i < rows(); ++i) {
+            const bool is_held = i >= 2 * tangent_.dof && held_.contains(i - 2 * tangent_.dof);
+            const double none = is_held ? std::numeric_limits<double>::infinity() : 0.0;
+            double size = none;
+            for (int k = 0; k < first_few; ++k) size = std::max(size, std::abs(series_.value(k, i)) * weight(i, k));
+            value_limits_[i] = tolerance_ * size;
+            for (std::size_t group = 0; group < series_.groups(); ++group) {
+                Eights sizes = none;
+                for (int k = 0; k < first_few; ++k)
+                    sizes = max(abs(Eights(series_.slope(group, k, i))) * weight(i, k), sizes);
+                double least = size;
+                for (std::size_t d = 0; d < N; ++d) least = std::max(least, sizes[d]);
+                limits_[group * rows() + i] = tolerance_ * max(sizes, Eights(1e-6 * least));
+            }
+        }
+    }
+    bool is_small(int k) const {
+        const std::size_t states = 2 * tangent_.dof;
+        for (std::size_t i = 0; i < rows(); ++i)
+            if (std::abs(series_.value(k, i)) * weight(i, k) > value_limits_[i]) return false;
+        for (std::size_t group = 0; group < series_.groups(); ++group) {
+            const std::span limits(limits_.data() + group * rows(), rows());
+            if (series_.any_above(group, k, 0, limits.first(states), weight(0, k)) ||
+                series_.any_above(group, k, states, limits.subspan(states), weight(states, k)))
+                return false;
+        }
+        return true;
+    }
+    // How large the last two terms are beside what they may be, at most.
+    double last_terms() const {
         double largest = 0.0;
-        for (const auto& part : parts_) largest = std::max(largest, part->last_terms(order_, length, held_));
+        const auto take = [&](double term, double limit) {
+            if (term > limit) largest = std::max(largest, term / limit);
+        };
+        for (const int k : {order_ - 1, order_})
+            for (std::size_t i = 0; i < rows(); ++i) {
+                take(std::abs(series_.value(k, i)) * weight(i, k), value_limits_[i]);
+                for (std::size_t group = 0; group < series_.groups(); ++group)
+                    for (std::size_t d = 0; d < N; ++d)
+                        take(std::abs(series_.slope(group, k, i)[d]) * weight(i, k), limits_[group * rows() + i][d]);
+            }
         return largest;
     }
 
     ContactSet held_;
     Tangent tangent_;
     double tolerance_;
-    std::vector<std::unique_ptr<Part>> parts_;
+    std::vector<std::uint32_t> variables_;
+    SeriesSlopes series_;
+    std::vector<double> start_;  // q and v
+    Powers powers_{}, rates_{};  // of the step
+    std::vector<double> value_limits_;
+    std::vector<Eight> limits_;
     int order_ = 0;
 };
 
@@ -186,7 +176,7 @@ class FlowSlopeOfParts : public FlowSlope {
 std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, ContactSet held, const Tangent& tangent,
                                            std::span<const double> parameters, const std::vector<bool>& varied,
                                            double tolerance) {
-    return std::make_unique<FlowSlopeOfParts>(model, held, tangent, parameters, varied, tolerance);
+    return std::make_unique<FlowSlopeBySeries>(model.motion(held).series, held, tangent, parameters, varied, tolerance);
 }
 
 }  // namespace achilles

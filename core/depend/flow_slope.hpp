@@ -1,5 +1,5 @@
 // The derivatives of one smooth motion after a time by the state where it starts, the parameters and the start's time: the Taylor
-// series of runs over doubles with their directions (theory-derivatives.md 2).
+// series of runs, and what these rise by (theory-derivatives.md 2).
 #pragma once
 
 #include <memory>
@@ -18,10 +18,10 @@ class FlowSlope {
     virtual double expand(const State& state, double length, int least_order) = 0;
     // Of the last expansion.
     virtual int order() const = 0;
-    // Coefficient k of q and v, then of hddot of each contact.
+    // Coefficient k of q and v, then of the gap of each open contact (from k = 2 on).
     virtual double coefficient(int k, std::size_t i) const = 0;
     // The rows of q, v, and of the open contacts' h and u after a time, whatever the others are.
-    virtual void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) const = 0;
+    virtual void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) = 0;
 };
 
 // Of the motion that holds these contacts; by those parameters that may vary, or, if that is empty, by all.

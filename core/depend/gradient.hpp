@@ -14,7 +14,10 @@ class Gradient {
  public:
     Gradient(const Model& model, const Program& program, const Tangent& tangent, std::span<const double> parameters)
         : tangent_(tangent) {
-        for (std::size_t first = 0; first < tangent.variables(); first += lanes) {
+        const std::vector<bool> inputs = program.inputs_of(program.output_count());
+        for (std::size_t k = 0; k < tangent.variables(); ++k)
+            if (inputs[k]) variables_.push_back(k);
+        for (std::size_t first = 0; first == 0 || first < variables_.size(); first += lanes) {
             Evaluator<Number>& evaluator = evaluators_.emplace_back(program);
             for (std::size_t k = 0; k < parameters.size(); ++k)
                 evaluator.input(model.layout().parameter(k)) = number(parameters[k], 2 * tangent.dof + k, first);
@@ -40,8 +43,8 @@ class Gradient {
             for (std::size_t i = 0; i < values_.size(); ++i) {
                 const Number& output = evaluator.output(i);
                 values_[i] = output.value;
-                for (std::size_t j = 0; j < lanes && first + j < tangent_.variables(); ++j)
-                    rows_(static_cast<Eigen::Index>(i), tangent_.variable(first + j)) = output.slope[j];
+                for (std::size_t j = 0; j < lanes && first + j < variables_.size(); ++j)
+                    rows_(static_cast<Eigen::Index>(i), tangent_.variable(variables_[first + j])) = output.slope[j];
             }
         }
     }
@@ -52,12 +55,15 @@ class Gradient {
  private:
     static constexpr std::size_t lanes = 8;
     using Number = Directed<16>;
-    static Number number(double x, std::size_t variable, std::size_t first) {
-        return variable >= first && variable < first + lanes ? Number::variable(x, variable - first) : Number(x);
+    Number number(double x, std::size_t variable, std::size_t first) const {
+        for (std::size_t j = 0; j < lanes && first + j < variables_.size(); ++j)
+            if (variables_[first + j] == variable) return Number::variable(x, j);
+        return x;
     }
 
     Tangent tangent_;
-    std::vector<Evaluator<Number>> evaluators_;  // each of so many variables
+    std::vector<std::size_t> variables_;         // that the program depends on
+    std::vector<Evaluator<Number>> evaluators_;  // each of so many of them
     std::vector<double> values_;
     Eigen::MatrixXd rows_;
 };

@@ -96,7 +96,7 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
 }
 
 // From the results down to what they are made of.
-bool Program::depends_on(std::uint32_t slot, std::size_t outputs) const {
+std::vector<bool> Program::inputs_of(std::size_t outputs) const {
     const std::size_t first = slots_.count + constants_.size();
     std::vector<bool> needed(first + instructions_.size(), false);
     for (std::size_t i = 0; i < outputs; ++i) needed[outputs_[i]] = true;
@@ -106,7 +106,8 @@ bool Program::depends_on(std::uint32_t slot, std::size_t outputs) const {
         needed[in.a] = true;
         if (is_binary(in.operation)) needed[in.b] = true;
     }
-    return needed[slot];
+    needed.resize(slots_.count);
+    return needed;
 }
 
 }  // namespace achilles

@@ -40,8 +40,8 @@ class Program {
     std::uint32_t input_count() const { return slots_.count; }
     std::size_t output_count() const { return outputs_.size(); }
     std::size_t size() const { return instructions_.size(); }
-    // Whether one of the first so many outputs depends on an input.
-    bool depends_on(std::uint32_t slot, std::size_t outputs) const;
+    // By slot: the inputs that the first so many outputs depend on.
+    std::vector<bool> inputs_of(std::size_t outputs) const;
 
  private:
     template <class Scalar>

@@ -10,6 +10,7 @@
 #include "program/machine.hpp"
 #include "series/inner_sums.hpp"
 #include "series/series.hpp"
+#include "series/slope_program.hpp"
 
 namespace achilles {
 
@@ -51,6 +52,7 @@ class SeriesCompiler {
  private:
     using Kind = SeriesProgram::Kind;
     using Seed = SeriesProgram::Seed;
+    using Operand = SeriesProgram::Operand;
 
     // coefficient * series, and a sum of such terms: what moves in a register.
     struct Term {
@@ -59,10 +61,6 @@ class SeriesCompiler {
     using Form = std::vector<Term>;
     static constexpr std::size_t longest_form = 6;
 
-    // A register as a factor: its order 0, and scale * series beyond.
-    struct Operand {
-        std::uint32_t value, series, scale;
-    };
     static constexpr std::uint32_t one = 0;  // the coefficient
 
     static bool has_edge(Operation operation) {
@@ -185,19 +183,17 @@ class SeriesCompiler {
                  std::optional<std::uint32_t> partner_value = {}) {
         const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
         if (const auto found = made_.find(key); found != made_.end()) return found->second;
-        seed.a = a.value;
-        seed.b = b.value;
-        seed.scale_a = a.scale;
-        seed.scale_b = b.scale;
-        seed.result = value;
+        seed.a = a;
+        seed.b = b;
         seed.rule = static_cast<std::uint32_t>(series_.plan_.rules.size());
         const std::uint32_t r = next_series_++;
         const Operand result{value, r, one};
         Operand partner = result;
         if (seed.kind == Kind::sin_cos || seed.kind == Kind::tangent) {
             partner = {partner_value ? *partner_value : next_register_++, next_series_++, one};
-            seed.partner = partner.value;
         }
+        seed.result = result;
+        seed.partner = partner;
         const std::uint32_t p = partner.series;
         // The factor of w is known where it is made of scales alone (see SeriesEvaluator::begin).
         const std::int8_t by_a = known(a.scale), by_b = known(b.scale);
@@ -368,6 +364,7 @@ class SeriesCompiler {
 SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_t events) : program_(program) {
     plan_.events = static_cast<std::uint32_t>(events);
     SeriesCompiler(*this).compile(dof + events);
+    slopes_ = std::make_shared<SlopeProgram>();
     if (const auto best = best_width()) code_ = OrderCode::of(plan_, *best);
 }
 

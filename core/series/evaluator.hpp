@@ -65,7 +65,11 @@ class SeriesEvaluator {
             if (k == 1 && code_) return code_->make_first(tables_);
         make_order(program_->plan_, sums_, tables_, static_cast<std::size_t>(k));
     }
-    // Order k of an output, after extend(k) until the next.
+    // All registers of order 0, those that the program itself has not among them.
+    const Number* registers() { return zero_.numbers().data(); }
+    // Order k of all series, after extend(k) until the next.
+    const Number* series() const { return tables_.now; }
+    // The same of an output.
     const Number& output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
 
     // Of a motion, see make_orders(); after order 1.

@@ -11,6 +11,8 @@ class LaneAccess {
     static std::shared_ptr<const MachineCode> machine_code_of(const Program& program);
     static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
     static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
+    static bool has_clock(const Program& program) { return program.slots_.has_clock(); }
+    static std::uint32_t clock(const Program& program) { return program.slots_.clock(); }
     template <class Number>
     static const Program*& program_of(Evaluator<Number>& evaluator) {
         return evaluator.program_;

@@ -3,6 +3,7 @@
 #include "program/program_code.hpp"
 #include "series/lane_order.hpp"
 #include "series/order.hpp"
+#include "series/slope_order_code.hpp"
 
 namespace achilles {
 
@@ -10,6 +11,7 @@ std::optional<Width> best_width() { return std::nullopt; }
 void ask_environment_for_code() {}
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width) { return nullptr; }
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan&, Width) { return nullptr; }
+std::shared_ptr<const SlopeOrderCode> SlopeOrderCode::of(const SlopePlan&) { return nullptr; }
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan&, const LanePlan&) { return nullptr; }
 
 }  // namespace achilles

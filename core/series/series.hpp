@@ -22,6 +22,8 @@
 
 namespace achilles {
 
+struct SlopeProgram;
+
 // Compiled once, shared between threads. Inputs outside the program's fixed slots move with time.
 class SeriesProgram {
  public:
@@ -35,8 +37,10 @@ class SeriesProgram {
     std::size_t rules() const { return plan_.rules.size(); }
     // Whether a function in it has an edge, past which it is no number: a root, a logarithm.
     bool is_partial() const { return partial_; }
-    // Whether a series depends on an input.
-    bool depends_on(std::uint32_t slot) const { return program_.depends_on(slot, plan_.coordinates() + plan_.events); }
+    // By slot: the inputs that the series depend on.
+    std::vector<bool> inputs() const { return program_.inputs_of(plan_.coordinates() + plan_.events); }
+    // How the series rise where inputs do (slope_plan.hpp), made where that is first asked.
+    const SlopeProgram& slopes() const;
 
  private:
     template <class Number>
@@ -44,6 +48,8 @@ class SeriesProgram {
     template <class Number>
     friend class SeriesOver;
     friend class SeriesCompiler;
+    friend class SeriesSlopes;
+    friend class SlopePlanner;
     friend class LaneAccess;
 
     // A number that depends on the parameters alone: one of the program's registers, or made of two others.
@@ -64,12 +70,15 @@ class SeriesProgram {
         integral_of_ratio,  // r' = sign a'/b: log, asin, acos, atan
         power               // a^b, b does not move
     };
+    // A register as a factor: its order 0, and scale * series beyond, `scale` being a coefficient.
+    struct Operand {
+        std::uint32_t value = 0, series = 0, scale = 0;
+    };
     struct Seed {
         Kind kind;
         Operation function = Operation::number;  // of integral_of_ratio
         double sign = 1.0;
-        std::uint32_t a = 0, b = 0, result = 0, partner = 0;  // registers of order 0
-        std::uint32_t scale_a = 0, scale_b = 0;               // coefficients: operand = a_0 + scale * series
+        Operand a{}, b{}, result{}, partner{};
         std::uint32_t rule = 0;
     };
     // A rule whose factors are coefficients.
@@ -79,6 +88,8 @@ class SeriesProgram {
     };
 
     // See series/start.hpp.
+    template <class Scalar>
+    void fix_coefficients(const Scalar* registers, Scalar* coefficients) const;
     template <class Scalar>
     void fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const;
     template <class Scalar>
@@ -95,6 +106,7 @@ class SeriesProgram {
     std::size_t hidden_ = 0;                 // the first of these
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
+    std::shared_ptr<SlopeProgram> slopes_;
 };
 
 }  // namespace achilles

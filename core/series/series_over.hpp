@@ -1,6 +1,5 @@
 // The Taylor coefficients of a motion over any number, an interval or one with its derivatives: the plan that runs have,
-// order by order (recurrence.hpp), with every constant as that number sees it. For proofs and derivatives; there is no machine
-// code in it.
+// order by order (recurrence.hpp), with every constant as that number sees it. For proofs; there is no machine code in it.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +8,6 @@
 #include <vector>
 
 #include "number/jet.hpp"
-#include "series/directed_order.hpp"
 #include "series/lane_access.hpp"
 #include "series/recurrence.hpp"
 #include "series/series.hpp"
@@ -78,10 +76,7 @@ class SeriesOver {
     void extend(int k) {
         const SeriesPlan& plan = program_->plan_;
         Number* const row = rows_.data() + static_cast<std::size_t>(k) * plan.states();
-        if constexpr (std::is_same_v<Number, Directed<16>>)
-            make_directed_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
-        else
-            make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
+        make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
     }
     // Whether the series depend on the time by itself.
     bool has_clock() const { return program_->plan_.clock != 0; }

@@ -44,7 +44,7 @@ Scalar combined(Operation operation, const Scalar& a, const Scalar& b) {
 
 // What depends on the parameters alone.
 template <class Scalar>
-void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const {
+void SeriesProgram::fix_coefficients(const Scalar* registers, Scalar* coefficients) const {
     coefficients[0] = 1.0;
     for (std::size_t i = 1; i < coefficients_.size(); ++i) {
         const Coefficient& c = coefficients_[i];
@@ -52,6 +52,10 @@ void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::arra
                               ? registers[c.a]
                               : combined<Scalar>(c.operation, coefficients[c.a], coefficients[c.b]);
     }
+}
+template <class Scalar>
+void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const {
+    fix_coefficients(registers, coefficients);
     for (const Combination& c : combinations_)
         for (std::size_t i = 0; i < 3; ++i) factors[c.rule][i] = coefficients[c.coefficient[i]];
 }
@@ -61,11 +65,12 @@ template <class Scalar>
 void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scalar, 3>* factors) const {
     using std::cosh, std::exp, std::pow, std::sinh, std::sqrt, std::tan, std::tanh;
     for (const Seed& seed : seeds_) {
-        const Scalar a = z[seed.a], b = z[seed.b], by_a = coefficients[seed.scale_a], by_b = coefficients[seed.scale_b];
+        const Scalar a = z[seed.a.value], b = z[seed.b.value];
+        const Scalar by_a = coefficients[seed.a.scale], by_b = coefficients[seed.b.scale];
         const double sign = seed.sign;
         std::array<Scalar, 3>* const rule = factors + seed.rule;
-        Scalar& r = z[seed.result];
-        const bool hidden = seed.result >= hidden_;
+        Scalar& r = z[seed.result.value];
+        const bool hidden = seed.result.value >= hidden_;
         switch (seed.kind) {
             case Kind::multiply:
                 if (hidden) r = a * b;
@@ -96,12 +101,12 @@ void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scal
                 rule[0] = {by_a * r, 0.0, by_a};
                 break;
             case Kind::sin_cos: {
-                Scalar& c = z[seed.partner];
+                Scalar& c = z[seed.partner.value];
                 if (sign < 0.0) {
-                    if (hidden || seed.partner >= hidden_) sine_and_cosine(a, r, c);
+                    if (hidden || seed.partner.value >= hidden_) sine_and_cosine(a, r, c);
                 } else {
                     if (hidden) r = sinh(a);
-                    if (seed.partner >= hidden_) c = cosh(a);
+                    if (seed.partner.value >= hidden_) c = cosh(a);
                 }
                 rule[0] = {by_a * c, 0.0, by_a};
                 rule[1] = {sign * by_a * r, 0.0, sign * by_a};
@@ -109,7 +114,7 @@ void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scal
             }
             case Kind::tangent: {
                 if (hidden) r = sign > 0.0 ? tan(a) : tanh(a);
-                const Scalar w = z[seed.partner] = 1.0 + sign * (r * r);
+                const Scalar w = z[seed.partner.value] = 1.0 + sign * (r * r);
                 rule[0] = {by_a * w, 0.0, by_a};
                 rule[1] = {sign * 2.0 * r, 0.0, sign};
                 break;
