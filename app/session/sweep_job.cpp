@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <mutex>
@@ -23,20 +22,6 @@ constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // of one run
 
 struct Stopped {};
 
-// The rows of a chunk, in pieces so short that somebody who gives them up need not wait.
-void add_rows(const SweepTable& table, Chunk chunk, const std::stop_token& stop, SweepData& data) {
-    using Clock = std::chrono::steady_clock;
-    std::uint64_t piece = 8;
-    for (std::uint64_t done = 0; done < chunk.count;) {
-        if (stop.stop_requested()) throw Stopped();
-        const std::uint64_t count = std::min(piece, chunk.count - done);
-        const auto began = Clock::now();
-        data.add(table.rows(chunk.first + done, count));
-        done += count;
-        if (Clock::now() - began < std::chrono::milliseconds(5)) piece *= 2;
-    }
-}
-
 std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep,
                                           const std::stop_token& stop) {
     const SweepTable table(model, sweep);
@@ -44,9 +29,12 @@ std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& mo
     std::mutex mutex;
     std::map<std::uint64_t, SweepData> waiting;  // chunks that are made, by their first points
     const std::atomic<bool> never{false};
+    const auto go_on = [&] {
+        if (stop.stop_requested()) throw Stopped();
+    };
     const auto task = [&](Chunk chunk) {
         SweepData part(table);
-        add_rows(table, chunk, stop, part);
+        part.add(table.rows(chunk.first, chunk.count, go_on));
         const std::scoped_lock lock(mutex);
         waiting.emplace(chunk.first, std::move(part));
         return std::string();

@@ -35,6 +35,7 @@ class PaperConditions : public TruncationConditions {
     PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, const Ground& ground);
 
     bool fails_at_point(const Collision& collision) override;
+    void restart(const Interval& e) override { e_ = e; }
 
  protected:
     std::optional<Certificate> do_certify(const Collision& collision) override;

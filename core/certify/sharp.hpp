@@ -45,7 +45,10 @@ class SharpConditions : public TruncationConditions {
     SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, const Ground& ground);
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;
-    void forget() override { wide_speed_ = too_wide_ = last_speed_ = 0.0; }
+    void restart(const Interval& e) override {
+        e_ = e;
+        wide_speed_ = too_wide_ = last_speed_ = 0.0;
+    }
 
  protected:
     std::optional<Certificate> do_certify(const Collision& collision) override;

@@ -31,8 +31,9 @@ class TruncationConditions {
     virtual bool fails_at_point(const Collision& collision) = 0;
     // Quicker: the same by the impact speed w alone, and what the collisions before have shown.
     virtual bool fails_by_speed(double /*speed*/) { return false; }
-    // Another run begins: what its collisions have shown is none of the next one's business.
-    virtual void forget() {}
+    // Another run begins, of this restitution and the same motion: what the collisions before have shown is none of its
+    // business.
+    virtual void restart(const Interval& e) = 0;
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     // Takes long: ask fails_at_point() first.
     std::optional<Certificate> certify(const Collision& collision) {

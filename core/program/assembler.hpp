@@ -29,11 +29,14 @@ class Assembler : public Xbyak::CodeGenerator {
     using Operand = Xbyak::Operand;
 
     // Numbers of the function stand at (numbers, index), one double each or eight, one after the other.
-    Assembler(const Xbyak::Reg64& numbers, unsigned free, Width width = Width::one)
+    Assembler(const Xbyak::Reg64& numbers, unsigned free) : Assembler(numbers, free, Width::one, Width::one) {}
+    // An instruction works on a whole number or, of eight doubles, on four: see for_each_part().
+    Assembler(const Xbyak::Reg64& numbers, unsigned free, Width of_number, Width of_vector)
         : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow, &ordinary_memory),
           numbers_(numbers),
           free_(free),
-          width_(width) {
+          doubles_(static_cast<std::ptrdiff_t>(of_number)),
+          width_(of_vector) {
         setDefaultJmpNEAR(true);  // how far a jump forward goes is not known when it is written
     }
     // All that was written, its jumps in place; wherever it is copied to, it does the same.
@@ -44,15 +47,30 @@ class Assembler : public Xbyak::CodeGenerator {
 
     // ---- numbers ----
 
+    // Of an instruction.
     Width width() const { return width_; }
-    // Where a number stands, in doubles, and as an operand.
-    std::ptrdiff_t place(std::uint32_t index) const {
-        return static_cast<std::ptrdiff_t>(index) * static_cast<std::ptrdiff_t>(width_);
+    // Does for each part of the numbers that is as wide as a vector what `write` writes for one. Registers hold what belongs
+    // to the part; where there are several, none of it is left for what comes before or after.
+    template <class Write>
+    void for_each_part(const Write& write) {
+        const auto wide = static_cast<std::ptrdiff_t>(width_);
+        if (wide == doubles_) return write();
+        for (part_ = 0; part_ < doubles_; part_ += wide) {
+            forget_all();
+            write();
+        }
+        forget_all();
+        part_ = 0;
     }
-    Xbyak::Address number(std::uint32_t index) const { return at(numbers_, place(index)); }
-    // A register as wide as numbers are.
+    // How many doubles from the beginning of a number its part begins that is worked on.
+    std::ptrdiff_t part() const { return part_; }
+    // How many doubles from the first number another one begins; and its part as an operand.
+    std::ptrdiff_t place(std::uint32_t index) const { return static_cast<std::ptrdiff_t>(index) * doubles_; }
+    Xbyak::Address number(std::uint32_t index) const { return at(numbers_, place(index) + part_); }
+    // A register as wide as an instruction.
     Xmm vector(unsigned reg) const {
-        return {width_ == Width::one ? Operand::XMM : Operand::ZMM, static_cast<int>(reg)};
+        constexpr auto one = Operand::XMM, four = Operand::YMM, eight = Operand::ZMM;
+        return {width_ == Width::one ? one : width_ == Width::four ? four : eight, static_cast<int>(reg)};
     }
 
     // A register for the result with this index. What it held is forgotten.
@@ -95,6 +113,12 @@ class Assembler : public Xbyak::CodeGenerator {
         return otherwise;
     }
 
+    // The same double everywhere.
+    void broadcast(const Xmm& to, const Operand& from) {
+        if (width_ == Width::eight) return vbroadcastsd(Xbyak::Zmm(to.getIdx()), from);
+        vbroadcastsd(Xbyak::Ymm(to.getIdx()), from);
+    }
+
     // ---- arithmetic ----
 
     // The instruction for one double, and that for a vector of them.
@@ -122,7 +146,7 @@ class Assembler : public Xbyak::CodeGenerator {
         const Xmm one(to.getIdx());
         mov(rax, std::uint64_t{1} << 63);  // -0.0
         vmovq(one, rax);
-        if (width_ != Width::one) vbroadcastsd(Xbyak::Zmm(to.getIdx()), one);
+        if (width_ != Width::one) broadcast(to, one);
         apply(vsub, to, to, index);
     }
     // to = sqrt(number)
@@ -169,7 +193,9 @@ class Assembler : public Xbyak::CodeGenerator {
 
     Xbyak::Reg64 numbers_;
     unsigned free_;
+    std::ptrdiff_t doubles_;  // of a number
     Width width_;
+    std::ptrdiff_t part_ = 0;
     unsigned results_ = 0;
     std::unordered_map<std::uint32_t, unsigned> holding_;  // the register that holds a number
     std::array<std::optional<std::uint32_t>, 16> held_;    // and the other way round

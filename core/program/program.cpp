@@ -91,7 +91,7 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
     }
     for (const Expression output : outputs) outputs_.push_back(place[output.id()]);
     const auto first = slots_.count + static_cast<std::uint32_t>(constants_.size() + fixed_);
-    code_ = machine_code(std::span(instructions_).subspan(fixed_), first, Width::one);
+    code_ = machine_code(std::span(instructions_).subspan(fixed_), first);
     if (code_) run_code_ = code_->as<void(double*)>();
 }
 

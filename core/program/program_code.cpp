@@ -114,9 +114,33 @@ void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t 
     code.store(code.xmm0, result);
 }
 
-void arithmetic(Assembler& code, Assembler::Arithmetic op, const Instruction& in, std::uint32_t result) {
+bool is_arithmetic(const Instruction& in) {
+    switch (in.operation) {
+        case Operation::add:
+        case Operation::subtract:
+        case Operation::multiply:
+        case Operation::divide:
+        case Operation::negate:
+        case Operation::sqrt:
+            return true;
+        default:
+            return false;
+    }
+}
+
+void write_arithmetic(Assembler& code, const Instruction& in, std::uint32_t result) {
     const Xmm reg = code.result(result);
-    code.combine(op, reg, in.a, in.b);
+    if (in.operation == Operation::negate) {
+        code.negate(reg, in.a);
+    } else if (in.operation == Operation::sqrt) {
+        code.sqrt(reg, in.a);
+    } else {
+        code.combine(in.operation == Operation::add        ? Assembler::vadd
+                     : in.operation == Operation::subtract ? Assembler::vsub
+                     : in.operation == Operation::multiply ? Assembler::vmul
+                                                           : Assembler::vdiv,
+                     reg, in.a, in.b);
+    }
     code.store(reg, result);
 }
 
@@ -166,38 +190,6 @@ bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result)
     return true;
 }
 
-// False if there is no code for it.
-bool write(Assembler& code, const Instruction& in, std::uint32_t result) {
-    switch (in.operation) {
-        case Operation::add:
-            arithmetic(code, Assembler::vadd, in, result);
-            return true;
-        case Operation::subtract:
-            arithmetic(code, Assembler::vsub, in, result);
-            return true;
-        case Operation::multiply:
-            arithmetic(code, Assembler::vmul, in, result);
-            return true;
-        case Operation::divide:
-            arithmetic(code, Assembler::vdiv, in, result);
-            return true;
-        case Operation::negate: {
-            const Xmm reg = code.result(result);
-            code.negate(reg, in.a);
-            code.store(reg, result);
-            return true;
-        }
-        case Operation::sqrt: {
-            const Xmm reg = code.result(result);
-            code.sqrt(reg, in.a);
-            code.store(reg, result);
-            return true;
-        }
-        default:
-            return code.width() == Width::one ? write_for_one(code, in, result) : write_for_lanes(code, in, result);
-    }
-}
-
 // The results that are sine and cosine of one operand.
 struct Waves {
     std::optional<std::uint32_t> sine, cosine;
@@ -231,24 +223,41 @@ void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
     code.call(one ? reinterpret_cast<const void*>(&both) : reinterpret_cast<const void*>(&sine_and_cosine_of_lanes));
 }
 
+// A function. False if there is no code for it.
+bool write_call(Assembler& code, const Instruction& in, std::uint32_t result, std::map<std::uint32_t, Waves>& waves) {
+    const bool is_wave = in.operation == Operation::sin || in.operation == Operation::cos;
+    if (is_wave && waves[in.a].sine && waves[in.a].cosine) {
+        call_both(code, in.a, waves[in.a]);
+        return true;
+    }
+    return code.width() == Width::one ? write_for_one(code, in, result) : write_for_lanes(code, in, result);
+}
+
+// Vectors of the processor that work on numbers of so many doubles, and of which it has enough.
+bool can_work(Width of_number, Width of_vector) {
+    const bool fit = (of_number == Width::one) == (of_vector == Width::one);
+    const auto best = best_width();
+    return fit && best && of_vector <= *best;
+}
+
 }  // namespace
 
+// Functions are of all parts of a number at once, so the parts of what lies between two of them are written in turn.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
-                                                Width width) {
-    if (const auto best = best_width();
-        !best || width > *best || instructions.empty() || instructions.size() > most_instructions)
+                                                Width of_number, Width of_vector) {
+    if (!can_work(of_number, of_vector) || instructions.empty() || instructions.size() > most_instructions)
         return nullptr;
-    Assembler code(Xbyak::util::rbx, 2, width);
+    Assembler code(Xbyak::util::rbx, 2, of_number, of_vector);
     code.prologue();
     std::map<std::uint32_t, Waves> waves = waves_of(instructions, first);
-    for (const Instruction& in : instructions) {
-        const std::uint32_t result = first++;
-        const bool is_wave = in.operation == Operation::sin || in.operation == Operation::cos;
-        if (is_wave && waves[in.a].sine && waves[in.a].cosine) {
-            call_both(code, in.a, waves[in.a]);
-        } else if (!write(code, in, result)) {
-            return nullptr;
-        }
+    const auto result_of = [&](std::size_t i) { return first + static_cast<std::uint32_t>(i); };
+    for (std::size_t i = 0; i < instructions.size(); ++i) {
+        const std::size_t begin = i;
+        while (i < instructions.size() && is_arithmetic(instructions[i])) ++i;
+        code.for_each_part([&] {
+            for (std::size_t k = begin; k < i; ++k) write_arithmetic(code, instructions[k], result_of(k));
+        });
+        if (i < instructions.size() && !write_call(code, instructions[i], result_of(i), waves)) return nullptr;
     }
     code.epilogue();
     return MachineCode::of(code.bytes());

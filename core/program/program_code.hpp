@@ -9,8 +9,11 @@
 namespace achilles {
 
 // Code of type void(double* registers) for these instructions, the first of which writes register `first`; may be none.
-// With a width of eight it is of type void(Eight* registers).
+// Of numbers of eight doubles it is of type void(Eight* registers), by vectors of four or of eight.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
-                                                Width width);
+                                                Width of_number, Width of_vector);
+inline std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first) {
+    return machine_code(instructions, first, Width::one, Width::one);
+}
 
 }  // namespace achilles

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -29,11 +30,11 @@ class SeriesEvaluator {
         : SeriesEvaluator(&program, program.code_) {
         fix(parameters);
     }
-    // To be fixed before it is used.
-    SeriesEvaluator(const SeriesProgram& program, bool machine_code) requires(!is_one)
+    // With machine code by vectors of four or eight, or without. To be fixed before it is used.
+    SeriesEvaluator(const SeriesProgram& program, std::optional<Width> machine_code) requires(!is_one)
         : SeriesEvaluator(&program, nullptr, machine_code) {
         if constexpr (!is_one)  // clang 14 instantiates this for one too
-            if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan);
+            if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan, *machine_code);
     }
 
     // Evaluates what depends on the parameters alone.
@@ -95,7 +96,8 @@ class SeriesEvaluator {
  private:
     static constexpr std::size_t line = SeriesPlan::aligned * sizeof(double);
 
-    SeriesEvaluator(const SeriesProgram* program, std::shared_ptr<const Code> code, bool machine_code = true)
+    SeriesEvaluator(const SeriesProgram* program, std::shared_ptr<const Code> code,
+                    std::optional<Width> machine_code = {})
         : program_(program),
           inputs_(program->program_.slots_.parameters_begin),
           zero_(program->program_, machine_code, program->registers_),

@@ -7,8 +7,8 @@ namespace achilles {
 
 class LaneAccess {
  public:
-    // Machine code over lanes for what moves; may be none.
-    static std::shared_ptr<const MachineCode> machine_code_of(const Program& program);
+    // Machine code over lanes for what moves, by vectors of four or eight; may be none.
+    static std::shared_ptr<const MachineCode> machine_code_of(const Program& program, Width vectors);
     static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
     static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
     static bool has_clock(const Program& program) { return program.slots_.has_clock(); }

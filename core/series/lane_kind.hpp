@@ -9,7 +9,7 @@ namespace achilles {
 
 template <std::size_t Bytes>
 std::unique_ptr<LaneStepper> LaneKind<Bytes>::make_stepper(const LanePrograms& programs, double tolerance,
-                                                           bool machine_code) {
+                                                           std::optional<Width> machine_code) {
     return std::make_unique<LaneStepperOver<Lanes<Bytes>>>(programs, tolerance, machine_code);
 }
 

@@ -28,11 +28,11 @@ struct LanePlan {
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);
 };
 
-// Orders as machine code, for AVX-512: the same bits as recurrence.hpp.
+// Orders as machine code: the same bits as recurrence.hpp.
 class LaneOrderCode {
  public:
-    // Nothing where that is not to be had.
-    static std::shared_ptr<const LaneOrderCode> of(const SeriesPlan& plan, const LanePlan& lanes);
+    // By vectors of four or eight. Nothing where that is not to be had.
+    static std::shared_ptr<const LaneOrderCode> of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors);
 
     // Orders 1 .. last, last >= 4, where order 1 of q and v and sums of zero stand in `now`. All numbers are eight side
     // by side: `now` holds an order of the series and the inner sums (SeriesPlan::numbers()), then the rows of what is

@@ -12,32 +12,35 @@ namespace achilles {
 
 namespace {
 
-using Xbyak::Zmm;
+using Xbyak::Xmm;
 using Index = std::ptrdiff_t;  // of doubles
 
 // The function's arguments, by the calling convention, and the pointers of the loop over older rows.
 constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, row = Xbyak::util::rdx,
                        weights = Xbyak::util::rcx, last = Xbyak::util::r8, motion = Xbyak::util::r9,
                        left_row = Xbyak::util::rax, right_row = Xbyak::util::r10, before = Xbyak::util::r11;
-constexpr unsigned scratch = 3;     // free vector registers
-constexpr unsigned first_sum = 16;  // and those of inner sums
-constexpr std::size_t most_sums = 16;
+constexpr unsigned scratch = 3;  // free vector registers
 constexpr Index by_order = 0, by_inverse_of_next = 1, by_inverse = 2, weights_per_order = 3;
 
-Zmm zmm(std::size_t number) { return Zmm(static_cast<int>(number)); }
 Index lane(std::size_t number) { return static_cast<Index>(number * Eight::count); }
 
 }  // namespace
 
+// AVX-512 has 32 registers: inner sums have 16 of their own, and where they all do, they and the results stay there from
+// one order to the next. Vectors of four have 16, and a number fills two: each half of an order is written by itself,
+// inner sums take the registers of its results when these are through, and all is in memory.
 class LaneOrderWriter {
  public:
-    LaneOrderWriter(const SeriesPlan& plan, const LanePlan& lanes)
+    LaneOrderWriter(const SeriesPlan& plan, const LanePlan& lanes, Width vectors)
         : plan_(plan),
           lanes_(lanes),
-          code_(now, scratch, Width::eight),
+          code_(now, scratch, Width::eight, vectors),
           by_left_(lanes.sums.size()),
-          all_held_(plan.clock == 0 && 2 * plan.coordinates() + plan.rules.size() <= code_.room()),
-          one_group_(lanes.sums.size() <= most_sums) {
+          many_registers_(vectors == Width::eight),
+          first_sum_(many_registers_ ? 16 : scratch),
+          end_of_registers_(many_registers_ ? 32 : 16),
+          all_held_(many_registers_ && plan.clock == 0 && 2 * plan.coordinates() + plan.rules.size() <= code_.room()),
+          one_group_(many_registers_ && lanes.sums.size() <= end_of_registers_ - first_sum_) {
         std::iota(by_left_.begin(), by_left_.end(), 0u);
         std::stable_sort(by_left_.begin(), by_left_.end(),
                          [&](std::uint32_t a, std::uint32_t b) { return sum(a).left < sum(b).left; });
@@ -60,20 +63,28 @@ class LaneOrderWriter {
     Index stride() const { return lane(lanes_.kept.size()); }
     // Row 1, from `now` on.
     Index first_row() const { return lane(plan_.numbers()) + stride(); }
+    // The part of a number that is worked on, so far from an address on.
+    Xbyak::Address part(const Xbyak::Reg64& base, Index number) const { return at(base, number + code_.part()); }
+    Xmm vector(std::size_t reg) const { return code_.vector(static_cast<unsigned>(reg)); }
 
     // Order k, 4 for all that follow; and on to the next.
     void order(unsigned k) {
-        remember(k > 1);
-        inputs(k == 1);
-        for (std::size_t i = 0; i < plan_.rules.size(); ++i)
-            write_rule(code_, plan_.rules[i], factors, lane(3 * i), !all_held_);
-        for (std::size_t i = 0; i < plan_.events; ++i)
-            code_.vmovupd(at(motion, lane(2 * plan_.coordinates() + i)), code_.held_or(zmm(0), plan_.event(i)));
-        keep();
-        add_up(k);
+        code_.for_each_part([&] { part_of_order(k); });
         code_.lea(row, at(row, stride()));
         code_.lea(motion, at(motion, lane(plan_.states())));
         code_.lea(weights, at(weights, weights_per_order));
+    }
+
+    void part_of_order(unsigned k) {
+        remember(k > 1);
+        inputs(k == 1);
+        for (std::size_t i = 0; i < plan_.rules.size(); ++i)
+            write_rule(code_, plan_.rules[i], factors, lane(3 * i) + code_.part(), !all_held_);
+        for (std::size_t i = 0; i < plan_.events; ++i)
+            code_.vmovupd(part(motion, lane(2 * plan_.coordinates() + i)), code_.held_or(vector(0), plan_.event(i)));
+        keep();
+        if (!many_registers_) code_.forget_all();
+        add_up(k);
     }
 
     // What the order before has left in registers: results have the same ones in all orders.
@@ -83,7 +94,8 @@ class LaneOrderWriter {
             for (const std::uint32_t output : plan_.outputs)
                 if (const auto reg = code_.holder(output)) left.emplace_back(output, reg->getIdx());
         if (any && one_group_)
-            for (unsigned i = 0; i < by_left_.size(); ++i) left.emplace_back(plan_.series + by_left_[i], first_sum + i);
+            for (unsigned i = 0; i < by_left_.size(); ++i)
+                left.emplace_back(plan_.series + by_left_[i], first_sum_ + i);
         code_.forget_all();
         for (const auto& [number, reg] : left) code_.hold(number, reg);
     }
@@ -92,13 +104,13 @@ class LaneOrderWriter {
     // last, before them those with row k - 1: the others need not wait.
     void add_up(unsigned k) {
         const std::span<const std::uint32_t> all(by_left_);
-        for (std::size_t i = 0; i < all.size(); i += most_sums)
-            add_up(all.subspan(i, std::min(most_sums, all.size() - i)), k);
+        const std::size_t most = end_of_registers_ - first_sum_;
+        for (std::size_t i = 0; i < all.size(); i += most) add_up(all.subspan(i, std::min(most, all.size() - i)), k);
     }
     void add_up(std::span<const std::uint32_t> sums, unsigned k) {
         const Index first = first_row(), next = stride();
-        code_.zero(zmm(0));
-        for (unsigned i = 0; i < sums.size(); ++i) code_.vmovapd(zmm(first_sum + i), zmm(0));
+        code_.zero(vector(0));
+        for (unsigned i = 0; i < sums.size(); ++i) code_.vmovapd(vector(first_sum_ + i), vector(0));
         if (k >= 4) {
             code_.lea(left_row, at(now, first + 2 * next));
             code_.lea(right_row, at(row, -2 * next));
@@ -117,77 +129,76 @@ class LaneOrderWriter {
         if (k >= 3) add_products(sums, now, first + next, row, -next);
         if (k >= 4) add_products(sums, row, -next, now, first + next);
         if (k >= 2) add_products(sums, row, 0, now, first);
-        for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], zmm(first_sum + i));
+        for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], vector(first_sum_ + i));
     }
     // The right factors are fetched once too where there are registers for them.
     void add_products(std::span<const std::uint32_t> sums, const Xbyak::Reg64& left, Index to_left,
                       const Xbyak::Reg64& right, Index to_right) {
-        constexpr Zmm x(0), product(1);
-        constexpr unsigned last_register = 31;
+        const Xmm x = vector(0), product = vector(1);
         std::map<std::uint32_t, unsigned> fetched;
-        unsigned next = first_sum + static_cast<unsigned>(sums.size());
+        unsigned next = first_sum_ + static_cast<unsigned>(sums.size());
         for (const std::uint32_t i : sums)
-            if (next <= last_register && fetched.emplace(sum(i).right, next).second)
-                code_.vmovupd(zmm(next++), at(right, to_right + lane(sum(i).right)));
+            if (next < end_of_registers_ && fetched.emplace(sum(i).right, next).second)
+                code_.vmovupd(vector(next++), part(right, to_right + lane(sum(i).right)));
         for (unsigned i = 0; i < sums.size(); ++i) {
             const auto [x_place, y_place] = sum(sums[i]);
-            if (i == 0 || sum(sums[i - 1]).left != x_place) code_.vmovupd(x, at(left, to_left + lane(x_place)));
+            if (i == 0 || sum(sums[i - 1]).left != x_place) code_.vmovupd(x, part(left, to_left + lane(x_place)));
             if (const auto y = fetched.find(y_place); y != fetched.end()) {
-                code_.vmulpd(product, x, zmm(y->second));
+                code_.vmulpd(product, x, vector(y->second));
             } else {
-                code_.vmulpd(product, x, at(right, to_right + lane(y_place)));
+                code_.vmulpd(product, x, part(right, to_right + lane(y_place)));
             }
-            code_.vaddpd(zmm(first_sum + i), zmm(first_sum + i), product);
+            code_.vaddpd(vector(first_sum_ + i), vector(first_sum_ + i), product);
         }
     }
 
     // The term x_1 y_k, from the register of y_k where it has one.
-    void finish(std::uint32_t i, const Zmm& total) {
-        constexpr Zmm product(1), weight(2);
+    void finish(std::uint32_t i, const Xmm& total) {
+        const Xmm product = vector(1), weight = vector(2);
         const auto [left, right] = sum(i);
         const auto newest = code_.holder(lanes_.kept[right].series);
-        if (!newest) code_.vmovupd(product, at(row, lane(right)));
-        code_.vmulpd(product, newest ? *newest : product, at(now, first_row() + lane(left)));
+        if (!newest) code_.vmovupd(product, part(row, lane(right)));
+        code_.vmulpd(product, newest ? *newest : product, part(now, first_row() + lane(left)));
         code_.vaddpd(total, total, product);
         if (i < plan_.weighted) {
-            code_.vbroadcastsd(weight, at(weights, by_inverse_of_next));
+            code_.broadcast(weight, at(weights, by_inverse_of_next));
             code_.vmulpd(total, total, weight);
         }
-        if (!one_group_) code_.vmovupd(at(now, lane(plan_.series + i)), total);
+        if (!one_group_) code_.vmovupd(part(now, lane(plan_.series + i)), total);
     }
 
     // q_k = v_{k-1}/k, v_k = v'_{k-1}/k; those of order 1 are given.
     void inputs(bool given) {
-        constexpr Zmm inverse(0);
+        const Xmm inverse = vector(0);
         const auto n = static_cast<std::uint32_t>(plan_.coordinates());
-        code_.vbroadcastsd(inverse, at(weights, by_inverse));
+        code_.broadcast(inverse, at(weights, by_inverse));
         for (std::uint32_t i = 0; i < 2 * n; ++i) {
-            const Xbyak::Xmm result = code_.result(1 + i);
+            const Xmm result = code_.result(1 + i);
             if (given) {
-                code_.vmovupd(result, at(now, lane(1 + i)));
+                code_.vmovupd(result, part(now, lane(1 + i)));
                 continue;
             }
             if (i < n) {
                 const Index below = lane(n + i) - lane(plan_.states());
-                code_.vmulpd(result, inverse, at(motion, below));
+                code_.vmulpd(result, inverse, part(motion, below));
             } else {
                 code_.apply(Assembler::vmul, result, inverse, plan_.outputs[i - n]);
             }
             if (!all_held_) code_.store(result, 1 + i);
-            code_.vmovupd(at(motion, lane(i)), result);
+            code_.vmovupd(part(motion, lane(i)), result);
         }
     }
 
     void keep() {
-        constexpr Zmm weight(1);
+        const Xmm weight = vector(1);
         for (std::size_t i = 0; i < lanes_.kept.size(); ++i) {
             const auto [series, weighted] = lanes_.kept[i];
-            const Xbyak::Xmm number = code_.held_or(zmm(0), series);
+            const Xmm number = code_.held_or(vector(0), series);
             if (weighted) {
-                code_.vbroadcastsd(weight, at(weights, by_order));
+                code_.broadcast(weight, at(weights, by_order));
                 code_.vmulpd(weight, weight, number);
             }
-            code_.vmovupd(at(row, lane(i)), weighted ? weight : number);
+            code_.vmovupd(part(row, lane(i)), weighted ? weight : number);
         }
     }
 
@@ -195,13 +206,16 @@ class LaneOrderWriter {
     const LanePlan& lanes_;
     Assembler code_;
     std::vector<std::uint32_t> by_left_;  // the sums
-    bool all_held_;                       // no result leaves its register before the order is through
-    bool one_group_;                      // all sums have registers of their own
+    bool many_registers_;
+    unsigned first_sum_, end_of_registers_;
+    bool all_held_;   // no result leaves its register before the order is through
+    bool one_group_;  // all sums have registers of their own
 };
 
-std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, const LanePlan& lanes) {
-    if (best_width() != Width::eight || plan.rules.size() > most_rules_in_code) return nullptr;
-    LaneOrderWriter writer(plan, lanes);
+std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors) {
+    const auto best = best_width();
+    if (!best || vectors > *best || plan.rules.size() > most_rules_in_code) return nullptr;
+    LaneOrderWriter writer(plan, lanes, vectors);
     writer.write();
     auto orders = std::make_shared<LaneOrderCode>();
     orders->code_ = MachineCode::of(writer.bytes());

@@ -21,22 +21,24 @@ const bool has_avx512 = [] {
 
 }  // namespace
 
+std::vector<Vectors> possible_vectors() {
+    const std::optional<Width> of_code = best_width();
+    std::vector<Vectors> all;
+#ifdef ACHILLES_HAS_AVX512
+    if (of_code == Width::eight) all.push_back(Vectors::avx512_with_machine_code);
+#endif
+    if (of_code) all.push_back(Vectors::portable_with_machine_code);
+#ifdef ACHILLES_HAS_AVX512
+    if (has_avx512) all.push_back(Vectors::avx512);
+#endif
+    all.push_back(Vectors::portable);
+    return all;
+}
+
 #ifdef ACHILLES_HAS_AVX512
 
 void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
     (has_avx512 ? Avx512Lanes::sine_and_cosine : PortableLanes::sine_and_cosine)(angle, sine, cosine);
-}
-
-std::vector<Vectors> possible_vectors() {
-    if (!has_avx512) return {Vectors::portable};
-    if (best_width() != Width::eight) return {Vectors::avx512, Vectors::portable};
-    return {Vectors::avx512_with_machine_code, Vectors::avx512, Vectors::portable};
-}
-
-std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance, Vectors vectors) {
-    if (vectors == Vectors::portable) return PortableLanes::make_stepper(programs, resolved(tolerance), false);
-    const bool machine_code = vectors == Vectors::avx512_with_machine_code;
-    return Avx512Lanes::make_stepper(programs, resolved(tolerance), machine_code);
 }
 
 #else
@@ -45,12 +47,22 @@ void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
     PortableLanes::sine_and_cosine(angle, sine, cosine);
 }
 
-std::vector<Vectors> possible_vectors() { return {Vectors::portable}; }
-
-std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance, Vectors) {
-    return PortableLanes::make_stepper(programs, resolved(tolerance), false);
-}
-
 #endif
+
+std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance, Vectors vectors) {
+    const double least = resolved(tolerance);
+    switch (vectors) {
+#ifdef ACHILLES_HAS_AVX512
+        case Vectors::avx512:
+            return Avx512Lanes::make_stepper(programs, least, {});
+        case Vectors::avx512_with_machine_code:
+            return Avx512Lanes::make_stepper(programs, least, Width::eight);
+#endif
+        case Vectors::portable_with_machine_code:
+            return PortableLanes::make_stepper(programs, least, Width::four);
+        default:
+            return PortableLanes::make_stepper(programs, least, {});
+    }
+}
 
 }  // namespace achilles

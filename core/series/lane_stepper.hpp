@@ -3,7 +3,7 @@
 // A step is plain where it shows at once that no event lies in it, or just the impact that ends a flight. Anything else
 // (a gap within its remainder, a release, an edge, a number that is none) is left to the run's own stepper, which takes
 // the step again. All steps have the order at which the cost over the length is least here, whatever the runs, so that
-// none depends on its neighbours.
+// none depends on its neighbours; brief flights, which end long before that could serve, have a lower one.
 #pragma once
 
 #include <array>
@@ -34,6 +34,7 @@ struct LaneStep {
     // its end, by the series.
     Eight h, hdot, error, rate_error, known;
     Eight duration;  // of the (last) step, s
+    Eight brief;     // of a flight: how long a brief one might have been here, s
     // The contact quantities where it ends, and what the rounding of q does to h.
     Eight end_h, end_hdot, end_W, end_gap_t, rounding;
     // In contact: how many steps were made, of which only the last may not be plain; the least gap at their ends.
@@ -51,14 +52,15 @@ class LaneStepper {
     virtual ~LaneStepper() = default;
     // The runs' parameters, in the order of the description.
     virtual void fix(const std::vector<Eight>& parameters) = 0;
-    // One step.
-    virtual void fly(LaneStep& step) = 0;
+    // One step. A brief one should come to its end before LaneStep::brief of a flight like it, or it is but a part of it.
+    virtual void fly(LaneStep& step, bool brief = false) = 0;
     // Steps until one of the runs comes to its end, or to a step that is not plain; at most so many.
     virtual void stay(LaneStep& step, long most) = 0;
 };
 
-// By which vectors the numbers are worked on. The results are the same to the last bit.
-enum class Vectors { portable, avx512, avx512_with_machine_code };
+// By which vectors the numbers are worked on: those that every processor has, with machine code for AVX2 or without, or those of
+// AVX-512, with its own. The results are the same to the last bit.
+enum class Vectors { portable, portable_with_machine_code, avx512, avx512_with_machine_code };
 // What this processor and this build can do, the fastest first.
 std::vector<Vectors> possible_vectors();
 std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance,

@@ -19,17 +19,24 @@ namespace achilles {
 // As in Execution: steps as short as the resolution of time, and none left.
 inline constexpr double stall = 0x1p-51, end_of_time = 1e-15;
 
+// What lies between two steps costs as much as a step, so that it takes a higher order than the step alone would have; a
+// brief flight ends long before that could serve.
+inline int order_of_flights(const SeriesProgram& flight, double tolerance, double of_best) {
+    return std::min(static_cast<int>(of_best * best_order(flight, tolerance, costs_of_eight_runs)),
+                    OrderCode::highest_order - 1);
+}
+
 template <class Number>
 class LaneStepperOver final : public LaneStepper {
     using Mask = Condition<Number>;
     static constexpr std::size_t contact = 0;  // the only one
 
  public:
-    LaneStepperOver(const LanePrograms& programs, double tolerance, bool machine_code)
+    LaneStepperOver(const LanePrograms& programs, double tolerance, std::optional<Width> machine_code)
         : dof_(programs.coordinates),
           // Most flights end long before their series.
-          flight_{{programs.flight, machine_code},
-                  {static_cast<int>(0.7 * best_order(programs.flight, tolerance, costs_of_eight_runs)), false}},
+          flight_{{programs.flight, machine_code}, {order_of_flights(programs.flight, tolerance, 1.2), false}},
+          brief_(order_of_flights(programs.flight, tolerance, 0.6), false),
           contact_{{programs.contact, machine_code},
                    {best_order(programs.contact, tolerance, costs_of_eight_runs), true}},
           contact_terms_(ProgramOver<Number>(programs.contact_terms, machine_code), programs.coordinates),
@@ -62,12 +69,14 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     // Flight, where partial sums tell that the gap stays open, or only falls (first_descent()).
-    [[gnu::flatten]] void fly(LaneStep& step) override {
+    [[gnu::flatten]] void fly(LaneStep& step, bool brief) override {
         step_.gap(contact) = {step.h, step.hdot, step.error, step.rate_error, step.state_error};
-        Mask plain = expand(flight_, step, {});
+        const FixedOrder<Number>& order_policy = brief ? brief_ : flight_.order;
+        Mask plain = expand(flight_.series, order_policy, step, {});
         if (!any(plain)) return say(step, plain, plain);
         const Number target = step_.aim(Number(step.until) - step.t);
-        const Number span = flight_.order.natural_step(step_, target);
+        const Number span = order_policy.natural_step(step_, target);
+        step.brief = brief_.reach(step_);
         const Number least = shortest(step);
         plain &= span > least;
         step_.event_terms(contact, span, terms_.data());
@@ -99,7 +108,7 @@ class LaneStepperOver final : public LaneStepper {
     // Contact, where the force keeps its sign by more than its remainder: true there.
     [[gnu::flatten]] Mask stay_once(LaneStep& step, Number& span) {
         step_.gap(contact) = {0.0, 0.0, 0.0, 0.0, step.state_error};
-        Mask plain = expand(contact_, step, ContactSet::of(contact));
+        Mask plain = expand(contact_.series, contact_.order, step, ContactSet::of(contact));
         span = 0.0;
         if (!any(plain)) return plain;
         span = contact_.order.natural_step(step_, Number(step.until) - step.t);
@@ -117,10 +126,11 @@ class LaneStepperOver final : public LaneStepper {
     Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
 
     // The series at the state where the step starts. True where they are numbers.
-    Mask expand(Expansion& motion, const LaneStep& step, ContactSet held) {
+    Mask expand(SeriesEvaluator<Number>& series, const FixedOrder<Number>& order, const LaneStep& step,
+                ContactSet held) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
         step_.time() = step.t;
-        const auto start = step_.expand(motion.series, motion.order, held, Number(step.until) - step.t);
+        const auto start = step_.expand(series, order, held, Number(step.until) - step.t);
         return start.numbers & start.regular;
     }
 
@@ -265,7 +275,9 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     std::size_t dof_;
-    Expansion flight_, contact_;
+    Expansion flight_;
+    FixedOrder<Number> brief_;  // of flights
+    Expansion contact_;
     ContactTerms<ProgramOver<Number>> contact_terms_;
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step

@@ -9,9 +9,11 @@ namespace achilles {
 
 std::optional<Width> best_width() { return std::nullopt; }
 void ask_environment_for_code() {}
-std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width) { return nullptr; }
+std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, std::uint32_t, Width, Width) {
+    return nullptr;
+}
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan&, Width) { return nullptr; }
 std::shared_ptr<const SlopeOrderCode> SlopeOrderCode::of(const SlopePlan&) { return nullptr; }
-std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan&, const LanePlan&) { return nullptr; }
+std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan&, const LanePlan&, Width) { return nullptr; }
 
 }  // namespace achilles

@@ -61,8 +61,13 @@ class FixedOrder {
         step.give_rates();
         return order_;
     }
-    // To where the last two terms reach 1, and half of the step is within the reach of the two before.
+    // As far as is wanted, or as it reaches.
     Number natural_step(const TaylorStep<Number>& step, const Number& longest) const {
+        return min(reach(step), longest);
+    }
+    // To where the last two terms reach 1, and half of it is within the reach of the two before; the step is expanded to this
+    // order, or further.
+    Number reach(const TaylorStep<Number>& step) const {
         constexpr int counted = 4;
         Number exponent = 900.0;  // of 2
         for (int i = 0; i < counted; ++i) {
@@ -70,7 +75,7 @@ class FixedOrder {
             const double late = ends_late_ ? (i + 1) * reciprocals[static_cast<std::size_t>(k)] : 0.0;
             exponent = min(step.reach(k, step.size(k), i >= 2 ? 1.0 : late), exponent);
         }
-        return min(rough_exp2(exponent), longest);
+        return rough_exp2(exponent);
     }
 
  private:

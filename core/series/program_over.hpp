@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -17,8 +18,9 @@ class ProgramOver {
     static constexpr bool is_one = std::is_same_v<Number, double>;  // whose machine code is the program's own
 
  public:
-    // With room for so many registers, if these are more than the program's.
-    explicit ProgramOver(const Program& program, bool machine_code = true, std::size_t registers = 0)
+    // Lanes may have machine code by vectors of four or eight. With room for so many registers, if these are more than the
+    // program's.
+    explicit ProgramOver(const Program& program, std::optional<Width> machine_code = {}, std::size_t registers = 0)
         : program_(&program) {
         if constexpr (is_one) {
             evaluator_ = Evaluator<double>(program);
@@ -30,7 +32,7 @@ class ProgramOver {
             numbers().resize(std::max(registers, constants.size()), Number(0.0));
             for (std::size_t i = 0; i < constants.size(); ++i) numbers()[i] = constants[i];
             if (!machine_code) return;
-            code_ = LaneAccess::machine_code_of(program);
+            code_ = LaneAccess::machine_code_of(program, *machine_code);
             if (code_) run_ = code_->as<void(Number*)>();
         }
     }

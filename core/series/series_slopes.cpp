@@ -22,7 +22,8 @@ struct Kind {
 const Kind kind = [] {
     Kind best;
 #ifdef ACHILLES_HAS_AVX512
-    if (possible_vectors().front() != Vectors::portable)
+    const std::vector<Vectors> possible = possible_vectors();
+    if (std::find(possible.begin(), possible.end(), Vectors::avx512) != possible.end())
         best = {SlopeKind<64>::make_order, SlopeKind<64>::make_hidden, SlopeKind<64>::any_above, SlopeKind<64>::add_up};
 #endif
     return best;

@@ -31,7 +31,7 @@ Zmm zmm(std::size_t number) { return Zmm(static_cast<int>(number)); }
 
 class SlopeOrderWriter {
  public:
-    explicit SlopeOrderWriter(const SlopePlan& plan) : plan_(plan), code_(rise, scratch, Width::eight) {}
+    explicit SlopeOrderWriter(const SlopePlan& plan) : plan_(plan), code_(rise, scratch, Width::eight, Width::eight) {}
 
     void write() {
         code_.mov(rise, ACHILLES_TABLE(rise));

@@ -88,7 +88,8 @@ void Execution::land_alone(const Contact& contact) {
 bool Execution::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
         all_conditions_.push_back(
-            {which_, next_.held, timed([&] { return truncation_conditions(*model_, run_, which_, next_.held); })});
+            {which_, next_.held, timed([&] { return truncation_conditions(*model_, run_, which_, next_.held); }),
+             model_->evaluator<Interval>(model_->restitution(which_), run_.parameters).output(0)});
         conditions_ = all_conditions_.back().conditions.get();
     }
     return !conditions_->fails_at_point(collision);

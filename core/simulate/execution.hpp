@@ -36,8 +36,8 @@ class Execution {
     Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
               InDoubt in_doubt);
 
-    // As if it were made anew, for another run of the same parameters, tolerance, method and truncation. False, and
-    // nothing is done, where these differ.
+    // As if it were made anew, for another run of the same tolerance, method and truncation, whose parameters differ at most in
+    // what restitutions alone depend on. False, and nothing is done, where one of the first differs.
     bool restart(const Run& run);
 
     // The step that is needed; null once the run is over: at its end time, at a bound on what it may take, cancelled,
@@ -72,6 +72,7 @@ class Execution {
     };
 
     void begin();
+    void bounce_as(const Run& run);
     void start_at_rest(ContactSet resting);
     bool is_time_left() const;
     bool is_cancelled();
@@ -182,6 +183,7 @@ class Execution {
         std::size_t contact;
         ContactSet held;
         std::unique_ptr<TruncationConditions> conditions;
+        Interval e;  // the restitution that they know
     };
     std::vector<OfContact> all_conditions_;
     struct PairOf {

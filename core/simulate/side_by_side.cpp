@@ -12,6 +12,21 @@ namespace {
 
 constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter than the lanes
 
+// The parameters that stand in the motion or in the gap, of which all else that is asked of a run is made: by another, runs
+// differ in their restitution alone, or not at all.
+std::vector<std::size_t> moving_parameters(const Model& model) {
+    const Program* const programs[] = {&model.motion({}).program, &model.motion(ContactSet::of(0)).program,
+                                       &model.contact_terms(), &model.energy()};
+    std::vector<std::vector<bool>> inputs;
+    for (const Program* program : programs) inputs.push_back(program->inputs_of(program->output_count()));
+    std::vector<std::size_t> moving;
+    for (std::size_t i = 0; i < model.default_run().parameters.size(); ++i)
+        if (std::any_of(inputs.begin(), inputs.end(),
+                        [&](const std::vector<bool>& of_one) -> bool { return of_one[model.layout().parameter(i)]; }))
+            moving.push_back(i);
+    return moving;
+}
+
 }  // namespace
 
 SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run)
@@ -28,20 +43,26 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, Vectors vector
                  !model->motion(ContactSet::of(0)).series.is_partial()),
       vectors_(vectors) {
     result_.starts.resize(1);
+    if (has_lanes_) moving_ = moving_parameters(*model);
+}
+
+bool SideBySide::move_alike(const std::vector<double>& some, const std::vector<double>& others) const {
+    return std::all_of(moving_.begin(), moving_.end(), [&](std::size_t i) { return some[i] == others[i]; });
 }
 
 void SideBySide::work(const Share& share) {
     const Ground ground;
     share_ = &share;
     while (true) {
-        while (flying_.size() + staying_.size() < most_under_way) {
+        while (lines_[0].size() + lines_[1].size() + lines_[2].size() < most_under_way) {
             const std::size_t index = share.next.fetch_add(1);
             if (index >= share.count) break;
             begin(index);
         }
-        if (flying_.empty() && staying_.empty()) return;
-        const bool flying = flying_.size() >= staying_.size();
-        step(flying ? flying_ : staying_, flying);
+        const auto longest = std::max_element(lines_.begin(), lines_.end(),
+                                              [](const Line& a, const Line& b) { return a.size() < b.size(); });
+        if (longest->empty()) return;
+        step(static_cast<Kind>(longest - lines_.begin()));
     }
 }
 
@@ -69,34 +90,53 @@ SideBySide::Member& SideBySide::member_for(std::size_t index, const Run& run) {
     Member& member = *spare_.back();
     spare_.pop_back();
     member.index = index;
-    if (!member.execution.restart(run)) {
+    member.before = {};
+    member.alone = member.leaves = false;
+    const bool alike = move_alike(member.execution.run().parameters, run.parameters);
+    if (!alike || !member.execution.restart(run)) {
         member.surfaces = Surfaces(*model_, run);
         member.execution = Execution(model_, run, member.surfaces, nullptr, Keep::end, Execution::InDoubt::end);
         member.stepper = EventStepper(*model_, run, member.surfaces);
-        member.set = set_of(run.parameters);
     }
+    if (!alike) member.set = set_of(run.parameters);
     return member;
 }
 
 std::size_t SideBySide::set_of(const std::vector<double>& parameters) {
-    if (sets_ == 0 || parameters != last_parameters_) {
+    if (sets_ == 0 || !move_alike(parameters, last_parameters_)) {
         ++sets_;
         last_parameters_ = parameters;
     }
     return sets_;
 }
 
+// From the surface, slower than the bounce before: it is shorter as it is slower. The gap's tolerance goes with the height,
+// so what a brief flight may take falls with it, as the root of the speed at most where terms of order 4 and more tell.
+bool SideBySide::Member::is_brief() const {
+    const EventStart& start = request->starts.front();
+    if (start.multiplicity != 1 || !(0.0 < start.gap.hdot && start.gap.hdot <= before.hdot)) return false;
+    constexpr double room = 1.2;
+    const double slower = start.gap.hdot / before.hdot;
+    return room * slower * before.duration * before.duration <= before.brief * before.brief;
+}
+
 // Puts the run into a line for lanes, or lets its own stepper answer until a line will do. A step in contact that lanes
-// refused is made alone once, except on the way to a Zeno point; else the rest of the stretch is (Member::alone).
+// refused is made alone once, except on the way to a Zeno point; a flight that leaves the surface, until its gap is known
+// to be open; else the rest of the stretch is (Member::alone).
 void SideBySide::go_on(Member& member, bool refused) {
     Execution& run = member.execution;
     while ((member.request = run.next()) != nullptr) {
         const bool flying = member.request->held.empty();
-        if (member.request->begins) member.alone = false;
-        if (member.request->plain && !member.alone && !refused) return (flying ? flying_ : staying_).push_back(&member);
+        if (member.request->begins || (member.leaves && member.request->plain)) member.alone = member.leaves = false;
+        if (member.request->plain && !member.alone && !refused) {
+            const Kind kind = !flying ? Kind::contact : member.is_brief() ? Kind::brief_flight : Kind::flight;
+            return lines_[static_cast<std::size_t>(kind)].push_back(&member);
+        }
+        member.before = {};
         StepRequest& own = member.own;
         own = *member.request;
         if (!member.alone) own.begins = true;  // for this stepper: the step before was not its own
+        member.leaves = member.leaves || (flying && !refused && member.request->starts.front().multiplicity > 1);
         member.alone = !refused || flying || run.completing();
         refused = false;  // it was said of the first request
         run.accept(member.stepper.step(own));
@@ -124,18 +164,24 @@ void SideBySide::choose(Line& line) {
     });
 }
 
-void SideBySide::step(Line& line, bool flying) {
-    choose(line);
+void SideBySide::step(Kind kind) {
+    choose(lines_[static_cast<std::size_t>(kind)]);
     LaneStepper& stepper = prepare();
+    const bool flying = kind != Kind::contact;
     gather(flying);
     if (flying) {
-        stepper.fly(step_);
+        stepper.fly(step_, kind == Kind::brief_flight);
     } else {
         stepper.stay(step_, most_steps());
     }
     for (std::size_t lane = 0; lane < members_.size(); ++lane) {
-        if (read(lane, flying)) members_[lane]->execution.accept(result_);
-        go_on(*members_[lane], step_.end[lane] == LaneStep::End::not_plain);
+        Member& member = *members_[lane];
+        const EventStart start = member.request->starts.front();
+        member.before = {};
+        if (step_.end[lane] == LaneStep::End::impact && start.multiplicity == 1)
+            member.before = {step_.duration[lane], start.gap.hdot, step_.brief[lane]};
+        if (read(lane, flying)) member.execution.accept(result_);
+        go_on(member, step_.end[lane] == LaneStep::End::not_plain);
     }
 }
 

@@ -1,6 +1,7 @@
 // Runs whose ends are wanted, eight at a time.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <map>
 
@@ -11,8 +12,8 @@
 
 namespace achilles {
 
-// One thread's share of them. A few dozen runs are under way; the requests of those in flight and of those in contact
-// wait in two lines, and eight of whichever is longer are answered by one vector step. What is not plain is answered by
+// One thread's share of them. A few dozen runs are under way; the requests of those in flight, in brief flight and in contact
+// wait in three lines, and eight of whichever is longest are answered by one vector step. What is not plain is answered by
 // the run's own stepper.
 class SideBySide {
  public:
@@ -33,22 +34,30 @@ class SideBySide {
     struct Member {
         Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run);
         std::size_t index;
-        std::size_t set = 0;  // of parameters: no two members with one number differ in them
+        std::size_t set = 0;  // of parameters: no two members with one number differ in those that move them
         Surfaces surfaces;
         Execution execution;
         EventStepper stepper;
         const StepRequest* request = nullptr;  // that waits in line
         StepRequest own;                       // as its own stepper is asked
-        bool alone = false;                    // the rest of this stretch is left to its own stepper
+        bool alone = false;                    // the rest of this stretch is left to its own stepper,
+        bool leaves = false;                   // or but what is not plain where it leaves the surface
+        // Of the bounce before, in one step: how long it was, how fast it began, and how long a brief one might have been.
+        struct Bounce {
+            double duration = 0.0, hdot = 0.0, brief = 0.0;
+        } before;
+        bool is_brief() const;
     };
+    enum class Kind { flight, brief_flight, contact };
     using Line = std::vector<Member*>;
 
     void begin(std::size_t index);
     Member& member_for(std::size_t index, const Run& run);
     std::size_t set_of(const std::vector<double>& parameters);
+    bool move_alike(const std::vector<double>& some, const std::vector<double>& others) const;
     void go_on(Member& member, bool refused);
     void finish(Member& member);
-    void step(Line& line, bool flying);
+    void step(Kind kind);
     void choose(Line& line);
     // The run in a lane; lanes without one repeat the first.
     Member& member_in(std::size_t lane) const { return *members_[lane < members_.size() ? lane : 0]; }
@@ -69,7 +78,9 @@ class SideBySide {
     Vectors vectors_;               // which are these
     const Share* share_ = nullptr;  // while it works
     std::vector<std::unique_ptr<Member>> all_;
-    Line flying_, staying_, spare_;
+    std::array<Line, 3> lines_;  // by Kind
+    Line spare_;
+    std::vector<std::size_t> moving_;  // the parameters that the motion depends on
     std::size_t sets_ = 0;
     std::vector<double> last_parameters_;  // of the last set
     struct Prepared {

@@ -39,12 +39,17 @@ SweepTable::SweepTable(std::shared_ptr<const Model> model, Sweep sweep)
 
 SweepTable::~SweepTable() = default;
 
-Rows SweepTable::rows(std::uint64_t first, std::uint64_t count) const {
+Rows SweepTable::rows(std::uint64_t first, std::uint64_t count, const std::function<void()>& before_each) const {
     const Ground ground;
     std::unique_ptr<Worker>& worker = workers_->of_threads.local();
     if (!worker) worker = std::make_unique<Worker>(*this);
+    const RunOf run_of = [&](std::size_t i) {
+        if (before_each) before_each();
+        return points_.run(first + i);
+    };
     try {
-        return measures_.needs_everything() ? one_by_one(*worker, first, count) : ends(*worker, first, count);
+        return measures_.needs_everything() ? one_by_one(*worker, first, count, run_of)
+                                            : ends(*worker, first, count, run_of);
     } catch (...) {
         worker.reset();  // it stands in the middle of its work
         throw;
@@ -52,7 +57,7 @@ Rows SweepTable::rows(std::uint64_t first, std::uint64_t count) const {
 }
 
 // Eight at a time. They come to an end in any order, and are put in their places.
-Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count) const {
+Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const {
     const std::size_t n = count, width = measures_.numbers();
     Rows rows;
     rows.points.resize(n);
@@ -72,8 +77,7 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count) 
         rows.ends[i] = RunEnd(trajectory->outcome.kind);
         rows.signatures[i] = signature_of(*trajectory);
     };
-    worker.runs.simulate(
-        n, [&](std::size_t i) { return points_.run(first + i); }, take);
+    worker.runs.simulate(n, run_of, take);
     return rows;
 }
 
@@ -105,12 +109,13 @@ void SweepTable::add_sections(Measuring& measuring, const Trajectory& trajectory
     }
 }
 
-Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count) const {
+Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const {
     Rows rows;
     for (std::uint64_t point = first; point < first + count; ++point) {
+        const Run run = run_of(point - first);
         std::optional<Trajectory> trajectory;
         try {
-            trajectory = simulate(model_, points_.run(point));
+            trajectory = simulate(model_, run);
         } catch (const InputError&) {
             add_nothing(point, RunEnd(), signature_of_nothing, rows);
             continue;

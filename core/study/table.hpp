@@ -1,6 +1,7 @@
 // A sweep as a table: which columns it has, and the rows of some of its points.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,14 +39,16 @@ class SweepTable {
     bool is_section() const { return sweep_.at.has_value(); }
 
     // The rows of points first, ..., first + count - 1: the same whatever others are asked for, before or at once on other
-    // threads.
-    Rows rows(std::uint64_t first, std::uint64_t count) const;
+    // threads. `before_each` run it is called, and may throw: that is how a caller cancels.
+    Rows rows(std::uint64_t first, std::uint64_t count, const std::function<void()>& before_each = {}) const;
 
  private:
     struct Worker;  // what one thread keeps from one question to the next
     struct Workers;
-    Rows ends(Worker& worker, std::uint64_t first, std::uint64_t count) const;
-    Rows one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count) const;
+    // run_of(i): the run at point first + i.
+    using RunOf = std::function<Run(std::size_t)>;
+    Rows ends(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const;
+    Rows one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const;
     void add_sections(Measuring& measuring, const Trajectory& trajectory, std::uint64_t point, Rows& rows) const;
     void add_nothing(std::uint64_t point, RunEnd end, std::uint64_t signature, Rows& rows) const;
 

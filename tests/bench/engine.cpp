@@ -64,8 +64,14 @@
 //   contact to where what is left out, not the last term, reaches the tolerance -4 percent
 //   steps in contact repeated in the lanes until one of the runs ends them      -5 percent
 //   one program for the guess of a cut instead of three; sines by pairs of terms -5 percent
+//   without AVX-512: machine code for AVX2, each half of an order by itself, and
+//   halves of programs between two calls of functions                           -46 percent of the 128-bit loops'
+// Of the pendulum's map (bench_explorer sweep), whose flights take many steps:
+//   flights of 1.2 times the order that a step alone would have, brief ones, as
+//   the bounce before tells them, of half of that                               -12 percent
+//   a flight after a release goes back to the lanes once its gap is open        -12 percent
 // What gave nothing: rows summed in another order, no vzeroupper between orders, more or fewer runs under way (12 to
-// 48), 256-bit vectors instead of 128 without machine code.
+// 48), 256-bit vectors instead of 128 without machine code, or for what is left to the compiler beside machine code.
 #include "bench/engine.hpp"
 
 #include <fmt/format.h>

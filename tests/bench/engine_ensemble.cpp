@@ -40,6 +40,8 @@ std::string name_of(Vectors vectors) {
     switch (vectors) {
         case Vectors::portable:
             return ", by portable eight";
+        case Vectors::portable_with_machine_code:
+            return ", and AVX2 machine code";
         case Vectors::avx512:
             return ", by AVX-512";
         case Vectors::avx512_with_machine_code:

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -47,8 +48,11 @@ class MachineCodes : public testing::Test {
         EXPECT_EQ(best_width(), widest_of_processor());
         if (!widest_of_processor()) GTEST_SKIP() << "no AVX2, or built without: everything is evaluated by loops";
     }
-    // Where there are vectors of eight.
-    static bool has_eight() { return widest_of_processor() == Width::eight; }
+    // The vectors that work on runs side by side, of four or of eight.
+    static std::vector<Width> of_lanes() {
+        if (widest_of_processor() == Width::eight) return {Width::four, Width::eight};
+        return {Width::four};
+    }
 
  private:
     test::MachineCodeSwitch on_{nullptr};
@@ -67,7 +71,7 @@ constexpr Instruction few[] = {{Operation::add, 0, 1}, {Operation::multiply, 2, 
 // ---- where there is code ----
 
 TEST_F(MachineCodes, AreMadeOfExpressions) {
-    const auto code = machine_code(few, 2, Width::one);
+    const auto code = machine_code(few, 2);
     ASSERT_TRUE(code);
     std::array<double, 5> registers{0.25, 3.0, 0.0, 0.0, 0.0};
     code->as<void(double*)>()(registers.data());
@@ -87,15 +91,21 @@ TEST_F(MachineCodes, AreMadeOfTheOrdersOfSeries) {
 }
 
 TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
-    if (!has_eight()) GTEST_SKIP() << "no AVX-512: runs side by side are computed by the compiler's vectors";
-    if (possible_vectors().front() == Vectors::portable) GTEST_SKIP() << "built without AVX-512";
-    EXPECT_EQ(possible_vectors().front(), Vectors::avx512_with_machine_code);
+    const auto possible = possible_vectors();
+    EXPECT_EQ(std::count(possible.begin(), possible.end(), Vectors::portable_with_machine_code), 1);
+#if defined(__GNUC__) && !defined(__clang__)
+    if (widest_of_processor() == Width::eight) {
+        EXPECT_EQ(possible.front(), Vectors::avx512_with_machine_code);
+    }
+#endif
     for (const auto& [system, key] : test::problems) {
         const auto model = test::load(system);
-        EXPECT_TRUE(LaneAccess::machine_code_of(model->contact_terms())) << system;
-        for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
-            const SeriesPlan& plan = LaneAccess::plan_of(*series);
-            EXPECT_TRUE(LaneOrderCode::of(plan, LanePlan(plan, series->inner_sums()))) << system;
+        for (const Width vectors : of_lanes()) {
+            EXPECT_TRUE(LaneAccess::machine_code_of(model->contact_terms(), vectors)) << system;
+            for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
+                const SeriesPlan& plan = LaneAccess::plan_of(*series);
+                EXPECT_TRUE(LaneOrderCode::of(plan, LanePlan(plan, series->inner_sums()), vectors)) << system;
+            }
         }
     }
 }
@@ -105,14 +115,21 @@ TEST_F(MachineCodes, AreNotMadeWhereTheyAreSwitchedOff) {
     const SeriesPlan& plan = LaneAccess::plan_of(model->motion({}).series);
     for (const char* value : {"", "1", "on"}) {
         const test::MachineCodeSwitch on(value);
-        EXPECT_TRUE(machine_code(few, 2, Width::one)) << value;
+        EXPECT_TRUE(machine_code(few, 2)) << value;
     }
     const test::MachineCodeSwitch off("0");
     EXPECT_FALSE(best_width());
-    EXPECT_FALSE(machine_code(few, 2, Width::one));
+    EXPECT_FALSE(machine_code(few, 2));
     EXPECT_FALSE(OrderCode::of(plan, Width::four));
-    EXPECT_FALSE(LaneOrderCode::of(plan, LanePlan(plan, model->motion({}).series.inner_sums())));
-    for (const Vectors vectors : possible_vectors()) EXPECT_NE(vectors, Vectors::avx512_with_machine_code);
+    const LanePlan lanes(plan, model->motion({}).series.inner_sums());
+    for (const Width vectors : {Width::four, Width::eight}) {
+        EXPECT_FALSE(LaneOrderCode::of(plan, lanes, vectors));
+        EXPECT_FALSE(machine_code(few, 2, Width::eight, vectors));
+    }
+    for (const Vectors vectors : possible_vectors()) {
+        EXPECT_NE(vectors, Vectors::avx512_with_machine_code);
+        EXPECT_NE(vectors, Vectors::portable_with_machine_code);
+    }
 }
 
 // Also run with the variable set: core/without_machine_code.
@@ -152,7 +169,7 @@ std::size_t bytes_of_code() {
 }
 
 TEST_F(MachineCodes, StandWhereNothingIsWritten) {
-    const auto code = machine_code(few, 2, Width::one);
+    const auto code = machine_code(few, 2);
     ASSERT_TRUE(code);
     const auto address = reinterpret_cast<std::uintptr_t>(code->as<void(double*)>());
     bool found = false;
@@ -185,7 +202,7 @@ TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
     ASSERT_GE(child, 0);
     if (child == 0) {
         if (!test::deny_executable_memory()) _exit(not_denied);
-        if (machine_code(few, 2, Width::one)) _exit(has_code);
+        if (machine_code(few, 2)) _exit(has_code);
         const auto model = test::load("ball_on_sine");
         make_lane_stepper(model->lane_programs(), 1e-10);
         _exit(run_of(model) == expected ? as_expected : other_bits);
@@ -356,18 +373,20 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
             const double hddot = one[width * k + 2 * dof + 1], of_gap = factor * one[width * (k + 2) + 2 * dof];
             EXPECT_NEAR(hddot, of_gap, 1e-10 * (1.0 + std::abs(hddot))) << system << ", order " << k;
         }
-        if (!has_eight()) continue;
         std::vector<Lanes<16>> fixed(parameters.begin(), parameters.end());
-        const auto eight_by = [&](bool machine_code) {
+        const auto eight_by = [&](std::optional<Width> machine_code) {
             SeriesEvaluator<Lanes<16>> evaluator(series, machine_code);
             evaluator.fix(std::span<const Lanes<16>>(fixed));
             return rows_of(std::move(evaluator));
         };
-        const auto by_code = eight_by(true), by_loops = eight_by(false);
-        for (std::size_t i = 0; i < one.size(); ++i) {
-            for (std::size_t lane = 0; lane < Eight::count; ++lane)
-                EXPECT_EQ(by_code[i][lane], by_loops[i][lane]) << system << ", row " << i / width;
-            EXPECT_NEAR(by_code[i][5], one[i], 1e-9 * (1.0 + std::abs(one[i]))) << system << ", row " << i / width;
+        const auto by_loops = eight_by({});
+        for (const Width vectors : of_lanes()) {
+            const auto by_code = eight_by(vectors);
+            for (std::size_t i = 0; i < one.size(); ++i) {
+                for (std::size_t lane = 0; lane < Eight::count; ++lane)
+                    EXPECT_EQ(by_code[i][lane], by_loops[i][lane]) << system << ", row " << i / width;
+                EXPECT_NEAR(by_code[i][5], one[i], 1e-9 * (1.0 + std::abs(one[i]))) << system << ", row " << i / width;
+            }
         }
     }
 }

@@ -143,8 +143,8 @@ std::string bytes_of(const LaneStep& step) {
     for (const Eight& x : step.q_and_v) append(bytes, x);
     for (const Eight& x : step.impulse_direction) append(bytes, x);
     for (const Eight& x : step.g) append(bytes, x);
-    for (const Eight* x : {&step.t, &step.h, &step.hdot, &step.error, &step.rate_error, &step.duration, &step.end_h,
-                           &step.end_hdot, &step.end_W, &step.end_gap_t, &step.rounding})
+    for (const Eight* x : {&step.t, &step.h, &step.hdot, &step.error, &step.rate_error, &step.duration, &step.brief,
+                           &step.end_h, &step.end_hdot, &step.end_W, &step.end_gap_t, &step.rounding})
         append(bytes, *x);
     for (const LaneStep::End end : step.end) bytes.push_back(static_cast<char>(end));
     return bytes;
@@ -153,23 +153,27 @@ std::string bytes_of(const LaneStep& step) {
 TEST(LaneSteps, AreTheSameToTheLastBitByAnyVectors) {
     for (const auto& [name, model] : models()) {
         for (const double tolerance : {1e-6, 1e-13}) {
-            std::vector<std::string> flights, contacts;
+            std::vector<std::string> flights, brief_flights, contacts;
             for (const Vectors vectors : possible_vectors()) {
                 const auto stepper = make_lane_stepper(model->lane_programs(), tolerance, vectors);
                 stepper->fix(parameters_of(*model));
                 Uniform uniform(2);
                 flights.emplace_back();
+                brief_flights.emplace_back();
                 contacts.emplace_back();
                 for (int i = 0; i < 20; ++i) {
-                    LaneStep flight = any_step(*model, uniform), contact = flight;
+                    LaneStep flight = any_step(*model, uniform), brief_flight = flight, contact = flight;
                     stepper->fly(flight);
                     flights.back() += bytes_of(flight);
+                    stepper->fly(brief_flight, true);
+                    brief_flights.back() += bytes_of(brief_flight);
                     stepper->stay(contact, 3);
                     contacts.back() += bytes_of(contact);
                 }
             }
             for (std::size_t i = 1; i < flights.size(); ++i) {
                 EXPECT_TRUE(flights[i] == flights[0]) << name << " " << tolerance << ", vectors " << i;
+                EXPECT_TRUE(brief_flights[i] == brief_flights[0]) << name << " " << tolerance << ", vectors " << i;
                 EXPECT_TRUE(contacts[i] == contacts[0]) << name << " " << tolerance << ", vectors " << i;
             }
         }
@@ -246,6 +250,35 @@ TEST(LaneSteps, KnowLowFlightsAgainstTheirHeight) {
     stepper->fly(step);
     for (const LaneStep::End end : step.end)
         EXPECT_EQ(static_cast<int>(end), static_cast<int>(LaneStep::End::no_event));
+}
+
+// Where it ends before a brief one's order is used up it is the same flight; else a part of it, as long as that serves.
+TEST(LaneSteps, OfBriefFlightsLandWhereOthersDo) {
+    const auto model = test::load("ball_on_sine");
+    const auto stepper = make_lane_stepper(model->lane_programs(), 1e-10);
+    std::vector<Eight> parameters;
+    for (const double value : model->default_run().parameters) parameters.push_back(eight(value));
+    stepper->fix(parameters);
+    const auto flight = [&](double speed, bool brief) {
+        LaneStep step(model->lane_programs().coordinates);
+        step.q_and_v[2] = eight(1.0);  // from x = y = 0, along the slope
+        step.q_and_v[3] = eight(1.0 + speed);
+        step.hdot = eight(speed);
+        step.known = eight(1.0);
+        step.until = eight(10.0);
+        stepper->fly(step, brief);
+        return step;
+    };
+    using End = LaneStep::End;
+    const LaneStep low = flight(1e-3, true), low_by_others = flight(1e-3, false);
+    EXPECT_EQ(static_cast<int>(low.end[0]), static_cast<int>(End::impact));
+    EXPECT_LT(low.duration[0], low.brief[0]);
+    EXPECT_NEAR(low.duration[0], low_by_others.duration[0], 1e-12);
+    EXPECT_NEAR(low.brief[0], low_by_others.brief[0], 1e-9);  // either tells how long it might have been
+    const LaneStep high = flight(1.0, true), high_by_others = flight(1.0, false);
+    EXPECT_EQ(static_cast<int>(high.end[0]), static_cast<int>(End::no_event));
+    EXPECT_EQ(high.duration[0], high.brief[0]);
+    EXPECT_LT(high.duration[0], high_by_others.duration[0]);
 }
 
 // ---- runs ----
@@ -392,6 +425,23 @@ TEST(RunsSideBySide, DependOnNoNeighbourAndNoThread) {
         const auto attempts = together(model, runs, threads);
         for (std::size_t i = 0; i < runs.size(); ++i)
             EXPECT_TRUE(end_of(attempts[i]) == alone[i]) << i << " on " << threads << " threads";
+    }
+}
+
+// Runs that differ in the restitution alone follow one another in what the one before has compiled.
+TEST(RunsSideBySide, ForgetTheRestitutionOfTheRunBefore) {
+    const auto model = test::load("double_pendulum");
+    for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {
+        auto runs = near_default(*model, 60, 0.0, 9);
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            runs[i].parameters.back() = 0.1 + 0.008 * static_cast<double>(i);  // e
+            runs[i].options.truncation.conditions = conditions;
+        }
+        const auto attempts = together(model, runs, 1);
+        for (std::size_t i = 0; i < runs.size(); ++i) {
+            EXPECT_GE(std::get<Trajectory>(attempts[i]).phases.size(), 3u) << i;
+            EXPECT_TRUE(end_of(attempts[i]) == end_of(together(model, {runs[i]})[0])) << i;
+        }
     }
 }
 
