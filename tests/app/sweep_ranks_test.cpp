@@ -9,8 +9,10 @@ namespace achilles::test {
 namespace {
 
 constexpr const char* program = ACHILLES_BINARY_DIR "/achilles";
-// Root may, more ranks than cores may, and what MPI keeps until the end is its own.
-constexpr const char* mpirun = "ASAN_OPTIONS=detect_leaks=0 mpirun --oversubscribe --allow-run-as-root ";
+// What MPI keeps until the end is its own.
+const std::string with_mpi = "ASAN_OPTIONS=detect_leaks=0 ";
+// Root may, and more ranks than cores may.
+const std::string mpirun = with_mpi + "mpirun --oversubscribe --allow-run-as-root ";
 
 int count_of(const std::string& what, const std::string& text) {
     int count = 0;
@@ -141,7 +143,7 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
     EXPECT_EQ(count_of("lib/achilles/libachilles_mpi.so is missing", file("err")), 1) << file("err");
     EXPECT_FALSE(has("a.csv"));
     EXPECT_EQ(script(assets + "ACHILLES_MPI=0 " + mpirun + "-n 1 ./achilles " + sweep), 0);
-    const Answer other = folder_.run(sweep, "PMI_RANK=0 PMI_SIZE=3");
+    const Answer other = folder_.run(sweep, with_mpi + "PMI_RANK=0 PMI_SIZE=3");
     EXPECT_EQ(other.status, 2);
     EXPECT_NE(other.err.find("3 processes were started, which cannot share a sweep: each reaches 1"), other.err.npos);
 }
