@@ -78,7 +78,8 @@ void Session::apply(const Command& command) {
         history_.remember(command, before, moment());
         follow_sweep();
         follow_proof(0.0);
-        follow_dependence(0.0);
+        // Who waits for runs as long as they take waits for this, too: no clock may tell what a journal leads to.
+        follow_dependence(patience_ ? Patience(0.0) : patience_);
     } catch (const Forbidden&) {
         throw;
     } catch (const InputError& problem) {
