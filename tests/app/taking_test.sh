@@ -39,11 +39,11 @@ recorded '^hide export$' "the dialog stays"
 
 # A mechanism on paper, dropped: its session is there again.
 "$build/achilles" figure impact_oscillator --mechanism --at 3 --width-mm 85 --out "$folder/mechanism.svg"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/mechanism.svg" || fail "nobody takes a picture"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/mechanism.svg" || fail "nobody takes a picture"
 recorded '^open impact_oscillator' "a mechanism that is dropped is not opened"
 recorded '^seek 3$' "a mechanism that is dropped does not lead to its instant"
 # And the dialog's own picture.
-timeout 30 "$build/x11_hand" drop "$window" "$folder/papers/a.svg" || fail "nobody takes a second picture"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/papers/a.svg" || fail "nobody takes a second picture"
 opened_twice() { [ "$(grep -c '^open double_pendulum' "$folder/record")" -eq 2 ]; }
 await opened_twice || fail "an exported figure does not lead back"
 settle

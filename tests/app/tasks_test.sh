@@ -13,6 +13,7 @@ place_of() { grep "^place $1 " "$folder/places" | cut -d' ' -f3-; }
 point() {
     local x y
     read -r x y _ < <(place_of "$1") || fail "nobody knows where $1 is"
+    settle  # what a new run shows moves other things to their places
     mouse_at="$x $y"
     xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
 }

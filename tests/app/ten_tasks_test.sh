@@ -11,6 +11,7 @@ act() { actions=$((actions + 1)); xdotool "$@" sleep 0.2; }
 point() {
     local x y
     read -r x y < <(grep "^place $1 " "$folder/places" | cut -d' ' -f3-) || fail "nobody knows where $1 is"
+    settle  # what a new run shows moves other things to their places
     xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
 }
 click() {

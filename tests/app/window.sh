@@ -17,6 +17,23 @@ trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -
 export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder XDG_STATE_HOME=$folder/state
 
 fail() { echo "$(basename "$0" .sh): $*" >&2; exit 1; }
+# How many times slower than an ordinary build this one is, as under the sanitizers: a click that comes before what it is to
+# click has been drawn is lost, and so every pause here, of the hand too, is as much longer.
+patience=${ACHILLES_PATIENCE:-1}
+sleep() { for _ in $(seq "$patience"); do command sleep "$1"; done; }
+xdotool() {
+    local word before="" words=()
+    for word in "$@"; do
+        case $before in
+            sleep) for _ in $(seq 2 "$patience"); do words+=("$word" sleep); done ;;
+            --delay) word=$((word * patience)) ;;
+        esac
+        words+=("$word")
+        before=$word
+    done
+    command xdotool "${words[@]}"
+}
+
 # Waits up to 30 s for a command to succeed.
 await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
 
@@ -52,9 +69,9 @@ is_asleep() { ! sed 's/.*) //' /proc/"$explorer"/task/*/stat | grep -qv '^S'; }
 # Until the window shows what was done, also where other work keeps it from drawing at once: it sleeps, and its screen is as
 # it was some time ago.
 settle() {
-    for _ in $(seq 60); do
+    for _ in $(seq 120); do
         cp "$folder/Xvfb_screen0" "$folder/before"
-        sleep 0.4
+        sleep 0.2
         if is_asleep && cmp -s "$folder/Xvfb_screen0" "$folder/before"; then return 0; fi
     done
     fail "the window does not come to rest"

@@ -13,7 +13,7 @@ read -r _ x y width < <(grep '^slider ' "$folder/places")
 read -r _ tab_x tab_y < <(grep '^tab ' "$folder/places")
 
 open_window "" ball_on_sine --record "$folder/journal"
-sleep 0.5
+settle
 
 xdotool mousemove --window "$window" $((x + width / 3)) "$y" sleep 0.3 mousedown 1 sleep 0.3
 for step in 1 2 3 4; do xdotool mousemove --window "$window" $((x + width / 3 + step * width / 10)) "$y" sleep 0.2; done
@@ -90,19 +90,19 @@ grep -q '^step 1' "$folder/second" || fail "the right arrow does not step"
 # Files dropped on the window: a system is opened, a journal is replayed.
 cp "$folder/mine.toml" "$folder/dropped.toml"
 printf 'grid 3 2\n' > "$folder/dropped.journal"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
 await grep -q "^open $folder/dropped.toml" "$folder/second" || fail "a system that is dropped is not opened"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
 await grep -q '^grid 3 2' "$folder/second" || fail "a journal that is dropped is not replayed"
 "$build/achilles" screenshot impact_oscillator --do "seek 3" --size 700x500 --out "$folder/dropped.png"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
 await grep -q '^open impact_oscillator' "$folder/second" || fail "a picture that is dropped is not opened as a session"
 await grep -q '^seek 3' "$folder/second" || fail "a picture that is dropped does not lead to what it shows"
 # A journal that wants to write files is asked about first; Escape refuses. What is dropped meanwhile waits for the answer.
 printf 'save %s/stolen.toml\n' "$folder" > "$folder/greedy.journal"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
 "$build/achilles" screenshot --set e=0.25 --do "seek 4" --size 700x500 --out "$folder/own.png" "$folder/mine.toml"
-timeout 30 "$build/x11_hand" drop "$window" "$folder/own.png" || fail "nobody takes a file while a question is open"
+timeout 120 "$build/x11_hand" drop "$window" "$folder/own.png" || fail "nobody takes a file while a question is open"
 xdotool sleep 0.8 key Return sleep 0.3
 grep -q '^seek 4' "$folder/second" && fail "a question is lost in what is dropped after it"
 xdotool key Escape sleep 0.8
@@ -148,4 +148,4 @@ open_window "while a long run is under way" ball_on_sine --set e=1 --end 1e9 --m
 sleep 2
 begin=$SECONDS
 close_window
-[ $((SECONDS - begin)) -le 10 ] || fail "a long run keeps the window from closing"
+[ $((SECONDS - begin)) -le $((10 * patience)) ] || fail "a long run keeps the window from closing"
