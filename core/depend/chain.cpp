@@ -8,14 +8,33 @@ namespace achilles {
 
 using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
-// The matrices are small: a product by its entries is faster than one by blocks.
+namespace {
+
+// Rows first .. first + Rows of J Z. Most of a column of Z is zero: each change is of one parameter at most.
+template <int Rows>
+void multiply(const MatrixXd& J, const MatrixXd& Z, Eigen::Index first, MatrixXd& product) {
+    for (Eigen::Index c = 0; c < Z.cols(); ++c) {
+        Eigen::Matrix<double, Rows, 1> sum = Eigen::Matrix<double, Rows, 1>::Zero();
+        for (Eigen::Index j = 0; j < J.cols(); ++j)
+            if (const double z = Z(j, c); z != 0.0) sum += z * J.col(j).segment<Rows>(first);
+        product.col(c).segment<Rows>(first) = sum;
+    }
+}
+
+}  // namespace
+
+// The matrices are small: a product by their entries is faster than one by blocks. They have an even number of rows that change.
 void Link::apply(MatrixXd& Z) const {
     if (kind == Kind::crossing) {
         const RowVectorXd along = (G / G.dot(F)).lazyProduct(Z);
         Z.noalias() -= F.lazyProduct(along);
-    } else {
-        Z.topRows(changed) = J.topRows(changed).lazyProduct(Z).eval();
+        return;
     }
+    MatrixXd product(changed, Z.cols());
+    Eigen::Index first = 0;
+    for (; first + 8 <= changed; first += 8) multiply<8>(J, Z, first, product);
+    for (; first < changed; first += 2) multiply<2>(J, Z, first, product);
+    Z.topRows(changed) = product;
 }
 
 MatrixXd Link::matrix() const {

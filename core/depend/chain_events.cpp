@@ -81,10 +81,11 @@ void Chain::land(std::size_t event) {
     ContactGradient& contact = surface(i, others);
     contact.at(state_);
     auto& restitution = restitutions_[i];
-    if (!restitution)
+    if (!restitution) {  // of parameters alone
         restitution =
             std::make_unique<Gradient>(*model_, model_->restitution(i), tangent_, trajectory_->run.parameters);
-    restitution->at(state_);
+        restitution->at(state_);
+    }
     const double e = restitution->value(0), u = u_[i];
     const auto hddot_at = [&](const Vector& v) {
         return surfaces_.of(i, others).normal_acceleration({state_.q, v, state_.t});

@@ -13,6 +13,7 @@ namespace achilles {
 namespace {
 
 constexpr int highest = SeriesSlopes::highest_order, first_few = 4;
+constexpr double nearly = 8.0;
 constexpr std::size_t N = SeriesSlopes::directions;
 using Eights = Lanes<16>;
 
@@ -48,7 +49,7 @@ class FlowSlopeBySeries : public FlowSlope {
         std::copy_n(state.v.data(), n, start_.begin() + n);
         series_.begin(start_.data(), state.t);
         order_ = 0;
-        // The last two terms are small beside the first few.
+        // The last term is small beside the first few, and the one before nearly.
         const int least = std::clamp(least_order, first_few + 1, highest);
         raise_to_powers(length);
         bool before = false;
@@ -56,9 +57,8 @@ class FlowSlopeBySeries : public FlowSlope {
             series_.extend(++order_);
             if (order_ == first_few - 1) set_limits();
             if (order_ < least - 1) continue;
-            const bool now = is_small(order_);
-            if (now && before) return length;
-            before = now;
+            if (before && is_small(order_, 1.0)) return length;
+            before = is_small(order_, nearly);
         }
         // Shorter, then: the last terms fall at least so fast. No shorter than steps of the run could be wrong by.
         const double least_length = 1e-3 * length;
@@ -131,14 +131,15 @@ class FlowSlopeBySeries : public FlowSlope {
             }
         }
     }
-    bool is_small(int k) const {
+    // Whether the terms of order k are within their limits, or so many times these.
+    bool is_small(int k, double times) const {
         const std::size_t states = 2 * tangent_.dof;
         for (std::size_t i = 0; i < rows(); ++i)
-            if (std::abs(series_.value(k, i)) * weight(i, k) > value_limits_[i]) return false;
+            if (std::abs(series_.value(k, i)) * weight(i, k) > times * value_limits_[i]) return false;
         for (std::size_t group = 0; group < series_.groups(); ++group) {
             const std::span limits(limits_.data() + group * rows(), rows());
-            if (series_.any_above(group, k, 0, limits.first(states), weight(0, k)) ||
-                series_.any_above(group, k, states, limits.subspan(states), weight(states, k)))
+            if (series_.any_above(group, k, 0, limits.first(states), weight(0, k) / times) ||
+                series_.any_above(group, k, states, limits.subspan(states), weight(states, k) / times))
                 return false;
         }
         return true;

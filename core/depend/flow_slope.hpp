@@ -13,8 +13,8 @@ class FlowSlope {
  public:
     virtual ~FlowSlope() = default;
 
-    // Expands at a state to at least this order, and so far that the last terms are below the tolerance of the sum, values and
-    // derivatives, after `length` (s) or as much of it as is returned.
+    // Expands at a state to at least this order, and so far that of the sum after `length` (s), values and derivatives, the last
+    // term is below the tolerance and the one before nearly; or after as much of it as is returned.
     virtual double expand(const State& state, double length, int least_order) = 0;
     // Of the last expansion.
     virtual int order() const = 0;

@@ -63,8 +63,11 @@ SeriesSlopes::SeriesSlopes(const SeriesProgram& program, std::span<const double>
         group.rise.resize(plan_->series);
         group.states.resize(orders * width_);
     }
-    for (const SlopePlan::Factor& factor : plan_->factors)
-        scales_of_factors_.push_back(groups_.empty() ? 1.0 : groups_.front().coefficients[factor.scale].value);
+    for (const std::uint32_t f : plan_->known_factors()) {
+        const SlopePlan::Factor& factor = plan_->factors[f];
+        const double scale = groups_.empty() ? 1.0 : groups_.front().coefficients[factor.scale].value;
+        known_factors_.push_back({f * orders, factor.series, scale});
+    }
 }
 
 auto SeriesSlopes::number(double x, std::size_t group, std::uint32_t slot) const -> Number {
@@ -131,8 +134,8 @@ void SeriesSlopes::extend(int k) {
         series_.extend(motion_, k, k);
     }
     const double* const now = series_.series();
-    for (std::size_t f = 0; f < plan_->factors.size(); ++f)
-        knowns_[f * orders + static_cast<std::size_t>(k)] = scales_of_factors_[f] * now[plan_->factors[f].series];
+    double* const order = knowns_.data() + k;
+    for (const auto& [place, series, scale] : known_factors_) order[place] = scale * now[series];
     for (Group& group : groups_) kind.make_order(*plan_, tables(group), code_.get(), static_cast<std::size_t>(k));
 }
 

@@ -52,7 +52,13 @@ class SeriesSlopes {
     std::size_t dof_, width_;
     SeriesEvaluator<double> series_;
     MotionOrders motion_;
-    std::vector<double> rows_, knowns_, scales_of_factors_, scales_of_rules_;
+    struct Known {
+        std::size_t place;  // in knowns_, of order 0
+        std::size_t series;
+        double scale;
+    };
+    std::vector<Known> known_factors_;
+    std::vector<double> rows_, knowns_, scales_of_rules_;
     std::shared_ptr<const SlopeOrderCode> code_;  // may be none
     std::vector<Group> groups_;
 };

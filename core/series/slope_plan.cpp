@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "series/series.hpp"
 #include "series/slope_program.hpp"
@@ -135,6 +136,15 @@ class SlopePlanner {
     SlopePlan& plan_;
     std::map<SlopePlan::Factor, std::uint32_t> ids_;
 };
+
+std::vector<std::uint32_t> SlopePlan::known_factors() const {
+    std::set<std::uint32_t> known;
+    for (const Rule& rule : rules) {
+        for (std::size_t i = 0; i < rule.count; ++i) known.insert(rule.products[i].known);
+        if (rule.kind == Rule::Kind::power) known.insert({rule.own, rule.divisor});
+    }
+    return {known.begin(), known.end()};
+}
 
 SlopePlan::SlopePlan(const SeriesProgram& program) { SlopePlanner(program, *this).write(); }
 

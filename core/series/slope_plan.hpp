@@ -50,6 +50,9 @@ struct SlopePlan {
     std::size_t coordinates() const { return outputs.size() - events; }
     std::size_t states() const { return 2 * coordinates() + events; }
 
+    // The factors of which more than order 0 is multiplied, as what is known.
+    std::vector<std::uint32_t> known_factors() const;
+
     SlopePlan() = default;
     explicit SlopePlan(const SeriesProgram& program);
 };
