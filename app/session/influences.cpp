@@ -126,7 +126,9 @@ void InfluencesJob::update(Patience patience) {
             made_ = made;
             problem_ = problem;
         }
-        if (of != *asked_) begin();
+        if (of == *asked_) return;
+        begin();
+        if (left() == 0.0) return;  // each is seen, however soon the next is made
     }
 }
 
