@@ -10,30 +10,30 @@ using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-// Rows first .. first + Rows of J Z. Most of a column of Z is zero: each change is of one parameter at most.
-template <int Rows>
-void multiply(const MatrixXd& J, const MatrixXd& Z, Eigen::Index first, MatrixXd& product) {
-    for (Eigen::Index c = 0; c < Z.cols(); ++c) {
-        Eigen::Matrix<double, Rows, 1> sum = Eigen::Matrix<double, Rows, 1>::Zero();
+// Columns first .. first + Columns of the product. Much of J is zero.
+template <int Columns>
+void multiply(const RowMatrix& J, const RowMatrix& Z, Eigen::Index first, RowMatrix& product) {
+    for (Eigen::Index i = 0; i < product.rows(); ++i) {
+        Eigen::Matrix<double, 1, Columns> sum = Eigen::Matrix<double, 1, Columns>::Zero();
         for (Eigen::Index j = 0; j < J.cols(); ++j)
-            if (const double z = Z(j, c); z != 0.0) sum += z * J.col(j).segment<Rows>(first);
-        product.col(c).segment<Rows>(first) = sum;
+            if (const double c = J(i, j); c != 0.0) sum += c * Z.row(j).segment<Columns>(first);
+        product.row(i).segment<Columns>(first) = sum;
     }
 }
 
 }  // namespace
 
-// The matrices are small: a product by their entries is faster than one by blocks. They have an even number of rows that change.
-void Link::apply(MatrixXd& Z) const {
+// The matrices are small: a product by their entries is faster than one by blocks.
+void Link::apply(RowMatrix& Z) const {
     if (kind == Kind::crossing) {
         const RowVectorXd along = (G / G.dot(F)).lazyProduct(Z);
         Z.noalias() -= F.lazyProduct(along);
         return;
     }
-    MatrixXd product(changed, Z.cols());
+    RowMatrix product(changed, Z.cols());
     Eigen::Index first = 0;
-    for (; first + 8 <= changed; first += 8) multiply<8>(J, Z, first, product);
-    for (; first < changed; first += 2) multiply<2>(J, Z, first, product);
+    for (; first + 8 <= Z.cols(); first += 8) multiply<8>(J, Z, first, product);
+    for (; first < Z.cols(); ++first) multiply<1>(J, Z, first, product);
     Z.topRows(changed) = product;
 }
 
@@ -78,7 +78,7 @@ void Chain::check(const Run& run) {
         "reinitialization = \"kinetic\"");
 }
 
-void Chain::complete(MatrixXd& Z) {
+void Chain::complete(RowMatrix& Z) {
     const State start = trajectory_->run.start();
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
         ContactGradient& contact = surface(i, {});
@@ -184,10 +184,10 @@ void Chain::step() {
     state_.t = piece.start;
     FlowSlope& slope = this->slope(held_);
     const int degree = static_cast<int>(piece.degree);
-    MatrixXd left_out;
+    RowMatrix left_out;
     while (state_.t < piece.end) {
         const double left = piece.end - state_.t;
-        const double span = slope.expand(state_, left, options_.errors ? degree + FlowDifference::more_orders : degree);
+        const double span = slope.expand(state_, left, options_.errors ? degree + FlowDifference::more_orders : 0);
         if (options_.errors && state_.t == piece.start)
             differences_.at(held_)->left_out(degree, piece.end - piece.start, left_out);
         Link& link = add(Link::Kind::step);
@@ -250,7 +250,7 @@ void Chain::watch_minima(const FlowSlope& slope, double span) {
 
 // The rows of q and v of what lies on h = 0, hdot = 0 of these contacts: dq -= n dh, then dv -= n dhdot. One after the other,
 // each while those before it are held, so that they stay there.
-void Chain::retract(MatrixXd& J, ContactSet onto) {
+void Chain::retract(RowMatrix& J, ContactSet onto) {
     ContactSet before;
     const auto each = [&](const auto& act) {
         before = {};

@@ -2,7 +2,7 @@
 // (theory-derivatives.md 1). It is made from what the run has recorded, so that every decision is the run's.
 //
 //     Chain chain(trajectory);
-//     Matrix Z = ...;  chain.complete(Z);                  one column a change, its rows as Tangent says
+//     RowMatrix Z = ...;  chain.complete(Z);                  one column a change, its rows as Tangent says
 //     while (const Link* link = chain.next()) link->apply(Z);
 //
 // Z after a link is the change following the event, (t', X'): that of the state where the run stands then, which each member of
@@ -37,7 +37,7 @@ struct Link {
     std::optional<std::size_t> event;  // of the trajectory; a crossing and then a jump have it
     double length = 0.0;               // s, of a step
 
-    Eigen::MatrixXd J;         // of a step and a jump
+    RowMatrix J;               // of a step and a jump
     Eigen::Index changed = 0;  // its first rows: those of parameters, behind them, are as they were
     Eigen::VectorXd F;         // of a crossing: the rates of all components before the event,
     Eigen::RowVectorXd G;      // the gradient of what vanishes there,
@@ -50,13 +50,13 @@ struct Link {
     // Of the jump at which a bouncing is cut.
     struct Completion {
         std::size_t contact;
-        ContactSet held;         // the others that are
-        double speed;            // w
-        Eigen::MatrixXd newton;  // the impact that is drawn there, in place of the J that the run goes on from
+        ContactSet held;   // the others that are
+        double speed;      // w
+        RowMatrix newton;  // the impact that is drawn there, in place of the J that the run goes on from
     };
     std::optional<Completion> completion;
 
-    void apply(Eigen::MatrixXd& Z) const;
+    void apply(RowMatrix& Z) const;
     Eigen::MatrixXd matrix() const;
 };
 
@@ -81,7 +81,7 @@ class Chain {
 
     const Tangent& tangent() const { return tangent_; }
     // Fills the rows of h and u at the start from those of t, q, v and p.
-    void complete(Eigen::MatrixXd& Z);
+    void complete(RowMatrix& Z);
     // The contacts on which the run starts at rest: a change must leave their h and u at 0.
     ContactSet resting_at_start() const { return resting_; }
 
@@ -107,10 +107,9 @@ class Chain {
     Link& cross(std::size_t event, Eigen::RowVectorXd G, double residual);
     void meet_surface(std::size_t contact, ContactSet others, Link& crossing);
     double residual_before(std::size_t contact);
-    void take_out_rate(Eigen::MatrixXd& J, ContactGradient& surface, double times, double u,
-                       const Eigen::RowVectorXd& du);
-    void retract(Eigen::MatrixXd& J, ContactSet onto);
-    Eigen::RowVectorXd wait_row(const Eigen::MatrixXd& J, std::size_t contact, ContactSet others, double speed);
+    void take_out_rate(RowMatrix& J, ContactGradient& surface, double times, double u, const Eigen::RowVectorXd& du);
+    void retract(RowMatrix& J, ContactSet onto);
+    Eigen::RowVectorXd wait_row(const RowMatrix& J, std::size_t contact, ContactSet others, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
     void set_gaps();
     void watch_minima(const FlowSlope& slope, double span);

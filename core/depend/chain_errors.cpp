@@ -5,8 +5,6 @@
 
 namespace achilles {
 
-using Eigen::MatrixXd;
-
 // The gap where the last step came to by its own polynomials, before it was moved onto the surface: 0 where that is its rounding.
 // What was added to the first order of q is how far it was moved.
 double Chain::residual_before(std::size_t contact) {
@@ -34,7 +32,7 @@ void Chain::meet_surface(std::size_t contact, ContactSet others, Link& crossing)
     surface.at(state_);
     crossing.by_place = surface.h_row();
     Link& link = add(Link::Kind::jump);
-    MatrixXd& J = link.J;
+    RowMatrix& J = link.J;
     ContactGradient& landing = this->surface(contact, others);
     landing.at(state_);
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= landing.n(k) * crossing.by_place;

@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
+using Eigen::RowVectorXd, Eigen::VectorXd;
 
 void Chain::happen(std::size_t event) {
     const Event& now = trajectory_->events[event];
@@ -34,7 +34,7 @@ Link& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
 
 // v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`. n does not
 // depend on v.
-void Chain::take_out_rate(MatrixXd& J, ContactGradient& surface, double times, double u, const RowVectorXd& du) {
+void Chain::take_out_rate(RowMatrix& J, ContactGradient& surface, double times, double u, const RowVectorXd& du) {
     for (std::size_t k = 0; k < tangent_.dof; ++k) {
         RowVectorXd change = (times * u * surface.n_row(k)).lazyProduct(J);
         change += surface.n(k) * du;
@@ -95,7 +95,7 @@ void Chain::land(std::size_t event) {
     if (hddot_at(s) > 0.0) take_least(margins_.grazing_speed, -u);
 
     Link& link = add(Link::Kind::jump, event);
-    MatrixXd& J = link.J;
+    RowMatrix& J = link.J;
     // Back onto the surface, which the components of q and v leave by what steps leave out.
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * contact.h_row();
     J.row(tangent_.h(i)).setZero();
@@ -103,7 +103,7 @@ void Chain::land(std::size_t event) {
     const bool completes = joins.contains(i);
     const bool rests = completes || now.held.contains(i);
     if (completes) {
-        MatrixXd newton = J;
+        RowMatrix newton = J;
         take_out_rate(newton, contact, 1.0 + e, u, (1.0 + e) * du + u * de);
         link.completion = Link::Completion{i, others, -u, std::move(newton)};
         take_out_rate(J, contact, 1.0, u, du);
@@ -153,7 +153,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
 
 // The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md 4, by the components before the
 // jump; J is what q, v, t and p are of these at the restart, where the state stands.
-RowVectorXd Chain::wait_row(const MatrixXd& J, std::size_t contact, ContactSet others, double speed) {
+RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet others, double speed) {
     auto& trend = trends_[{others, contact}];
     if (!trend)
         trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,

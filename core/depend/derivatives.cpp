@@ -13,7 +13,7 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // Directions that leave a surface on which the run starts at rest: the run beside it would start in the air, or below it.
-void refuse(Chain& chain, const Model& model, const MatrixXd& Z, std::vector<std::string>& refused) {
+void refuse(Chain& chain, const Model& model, const RowMatrix& Z, std::vector<std::string>& refused) {
     const Tangent& tangent = chain.tangent();
     constexpr double rounding = 1e-12;
     for (Index k = 0; k < Z.cols(); ++k) {
@@ -53,7 +53,7 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
     const Tangent& tangent = chain.tangent();
     Derivatives result;
     result.refused.resize(static_cast<std::size_t>(K));
-    MatrixXd Z = MatrixXd::Zero(tangent.size(), K);
+    RowMatrix Z = MatrixXd::Zero(tangent.size(), K);
     Z.middleRows(tangent.q(0), 2 * n) = directions.topRows(2 * n);
     Z.middleRows(tangent.p(0), P) = directions.middleRows(2 * n, P);
     Z.row(Tangent::t()) = directions.row(2 * n + P);

@@ -69,7 +69,7 @@ double FlowDifference::expand(const State& state, double length, int least_order
     return length;
 }
 
-void FlowDifference::slope_after(double span, ContactSet held, Eigen::MatrixXd& S) {
+void FlowDifference::slope_after(double span, ContactSet held, RowMatrix& S) {
     for (const Beside& beside : beside_) {
         for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
             double sum = 0.0;
@@ -96,7 +96,7 @@ void FlowDifference::slope_after(double span, ContactSet held, Eigen::MatrixXd& 
     }
 }
 
-void FlowDifference::left_out(int degree, double span, Eigen::MatrixXd& delta) {
+void FlowDifference::left_out(int degree, double span, RowMatrix& delta) {
     const int first = degree + 1, last = std::min(order_, degree + more_orders);
     delta.setZero(tangent_.size(), 1);
     if (first > last) return;
@@ -113,7 +113,7 @@ void FlowDifference::left_out(int degree, double span, Eigen::MatrixXd& delta) {
     if (open > most_open * largest && largest > rounding) by_halves(degree, span, delta);
 }
 
-void FlowDifference::by_halves(int degree, double span, Eigen::MatrixXd& delta) {
+void FlowDifference::by_halves(int degree, double span, RowMatrix& delta) {
     const double half = 0.5 * span;
     State middle = state_;
     middle.t += half;

@@ -16,11 +16,11 @@ class FlowDifference : public FlowSlope {
     int order() const override { return order_; }
     // Of the motion itself.
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }
-    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) override;
+    void slope_after(double span, ContactSet held, RowMatrix& S) override;
 
     // What polynomials of this degree leave out of q and v after a time, from the state of the last expansion on: the terms
     // that follow, or where these fall too slowly the difference to two steps of half the length.
-    void left_out(int degree, double span, Eigen::MatrixXd& delta);
+    void left_out(int degree, double span, RowMatrix& delta);
     static constexpr int more_orders = 8;  // to which it must have been expanded
 
  private:
@@ -30,7 +30,7 @@ class FlowDifference : public FlowSlope {
         MotionSeries motion;
     };
     void expand_beside(const State& state);
-    void by_halves(int degree, double span, Eigen::MatrixXd& delta);
+    void by_halves(int degree, double span, RowMatrix& delta);
     double last_terms(double length) const;
     double slope(const Beside& beside, int k, std::size_t i) const {
         return (beside.motion.coefficient(k, i) - motion_.coefficient(k, i)) / beside.distance;

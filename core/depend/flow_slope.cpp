@@ -72,7 +72,7 @@ class FlowSlopeBySeries : public FlowSlope {
     int order() const override { return order_; }
     double coefficient(int k, std::size_t i) const override { return series_.value(k, i); }
 
-    void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) override {
+    void slope_after(double span, ContactSet held, RowMatrix& S) override {
         if (span != powers_[1]) raise_to_powers(span);
         for (std::size_t group = 0; group < series_.groups(); ++group) {
             const auto sum = [&](std::size_t i, const Powers& weights, int first, Eigen::Index row) {

@@ -21,7 +21,7 @@ class FlowSlope {
     // Coefficient k of q and v, then of the gap of each open contact (from k = 2 on).
     virtual double coefficient(int k, std::size_t i) const = 0;
     // The rows of q, v, and of the open contacts' h and u after a time, whatever the others are.
-    virtual void slope_after(double span, ContactSet held, Eigen::MatrixXd& S) = 0;
+    virtual void slope_after(double span, ContactSet held, RowMatrix& S) = 0;
 };
 
 // Of the motion that holds these contacts; by those parameters that may vary, or, if that is empty, by all.

@@ -65,7 +65,7 @@ class Gradient {
     std::vector<std::size_t> variables_;         // that the program depends on
     std::vector<Evaluator<Number>> evaluators_;  // each of so many of them
     std::vector<double> values_;
-    Eigen::MatrixXd rows_;
+    RowMatrix rows_;
 };
 
 // A contact's quantities with their derivatives, by name.

@@ -11,6 +11,9 @@
 
 namespace achilles {
 
+// Of changes, one a column: events act on rows.
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 struct Tangent {
     std::size_t dof = 0, contacts = 0, parameters = 0;
 

@@ -66,7 +66,7 @@ SeriesSlopes::SeriesSlopes(const SeriesProgram& program, std::span<const double>
     for (const std::uint32_t f : plan_->known_factors()) {
         const SlopePlan::Factor& factor = plan_->factors[f];
         const double scale = groups_.empty() ? 1.0 : groups_.front().coefficients[factor.scale].value;
-        known_factors_.push_back({f * orders, factor.series, scale});
+        known_factors_.push_back({f, factor.series, scale});
     }
 }
 
@@ -80,8 +80,8 @@ auto SeriesSlopes::number(double x, std::size_t group, std::uint32_t slot) const
 }
 
 SlopeTables SeriesSlopes::tables(Group& group) const {
-    return {group.coefficients.data(), scales_of_rules_.data(), series_.series(),   knowns_.data(),
-            group.risings.data(),      group.rise.data(),       group.states.data()};
+    return {group.coefficients.data(), scales_of_rules_.data(), series_.series(),    knowns_.data(),
+            group.risings.data(),      group.rise.data(),       group.states.data(), plan_->factors.size()};
 }
 
 void SeriesSlopes::begin(const double* q_and_v, double time) {
@@ -89,10 +89,10 @@ void SeriesSlopes::begin(const double* q_and_v, double time) {
     const std::vector<SlopePlan::Factor>& factors = plan_->factors;
     std::copy_n(q_and_v, 2 * dof_, rows_.data());
     series_.begin(rows_.data(), time);
-    for (std::size_t f = 0; f < factors.size(); ++f) knowns_[f * orders] = series_.registers()[factors[f].value];
+    for (std::size_t f = 0; f < factors.size(); ++f) knowns_[f] = series_.registers()[factors[f].value];
     for (std::size_t i = 0; i < plan_->rules.size(); ++i) {
         const SlopePlan::Rule& rule = plan_->rules[i];
-        const double inverse = rule.divides ? 1.0 / knowns_[rule.divisor * orders] : 1.0;
+        const double inverse = rule.divides ? 1.0 / knowns_[rule.divisor] : 1.0;
         scales_of_rules_[2 * i] = rule.by * inverse;
         scales_of_rules_[2 * i + 1] = rule.lead * inverse;
     }
@@ -134,8 +134,8 @@ void SeriesSlopes::extend(int k) {
         series_.extend(motion_, k, k);
     }
     const double* const now = series_.series();
-    double* const order = knowns_.data() + k;
-    for (const auto& [place, series, scale] : known_factors_) order[place] = scale * now[series];
+    double* const order = knowns_.data() + static_cast<std::size_t>(k) * plan_->factors.size();
+    for (const auto& [factor, series, scale] : known_factors_) order[factor] = scale * now[series];
     for (Group& group : groups_) kind.make_order(*plan_, tables(group), code_.get(), static_cast<std::size_t>(k));
 }
 

@@ -53,8 +53,7 @@ class SeriesSlopes {
     SeriesEvaluator<double> series_;
     MotionOrders motion_;
     struct Known {
-        std::size_t place;  // in knowns_, of order 0
-        std::size_t series;
+        std::size_t factor, series;
         double scale;
     };
     std::vector<Known> known_factors_;

@@ -23,12 +23,13 @@ struct SlopeTables {
     const SlopeCoefficient* coefficients = nullptr;
     const double* scales = nullptr;  // by/d_0 and lead/d_0 of each rule
     const double* now = nullptr;     // order k of all series
-    const double* knowns = nullptr;  // all orders of each factor: `orders` of them, one after the other
-    Eight* risings = nullptr;        // what they rise by
-    Eight* rise = nullptr;           // what order k of each series does
-    Eight* states = nullptr;         // what q, v and the event functions do, order by order
+    const double* knowns = nullptr;  // each factor, order by order
+    Eight* risings = nullptr;  // what they rise by: all orders of each factor, `orders` of them, one after the other
+    Eight* rise = nullptr;     // what order k of each series does
+    Eight* states = nullptr;   // what q, v and the event functions do, order by order
     static constexpr std::size_t orders = 33;
-    const double* known(std::uint32_t factor) const { return knowns + factor * orders; }
+    std::size_t factors = 0;
+    double known(std::uint32_t factor, std::size_t order) const { return knowns[order * factors + factor]; }
     Eight* rising(std::uint32_t factor) const { return risings + factor * orders; }
 };
 

@@ -27,16 +27,17 @@ template <std::size_t Bytes>
 template <std::size_t Bytes>
 Lanes<Bytes> power_slope(const SlopePlan::Rule& rule, const SlopeTables& tables, std::size_t k) {
     using Slopes = Lanes<Bytes>;
-    const double *const r = tables.known(rule.own), *const a = tables.known(rule.divisor);
+    const auto r = [&](std::size_t j) { return tables.known(rule.own, j); };
+    const auto a = [&](std::size_t j) { return tables.known(rule.divisor, j); };
     const Eight *const r_slope = tables.rising(rule.own), *const a_slope = tables.rising(rule.divisor);
-    const double b = *tables.known(rule.leading);
+    const double b = tables.known(rule.leading, 0);
     Slopes sum = 0.0;
     for (std::size_t j = 0; j <= k; ++j) {
         const double from_start = static_cast<double>(j), to_end = static_cast<double>(k - j);
-        add_product(sum, (b * from_start - to_end) * r[k - j], Slopes(a_slope[j]));
-        if (j < k) add_product(sum, (b * to_end - from_start) * a[k - j], Slopes(r_slope[j]));
+        add_product(sum, (b * from_start - to_end) * r(k - j), Slopes(a_slope[j]));
+        if (j < k) add_product(sum, (b * to_end - from_start) * a(k - j), Slopes(r_slope[j]));
     }
-    return times(1.0 / (static_cast<double>(k) * a[0]), sum);
+    return times(1.0 / (static_cast<double>(k) * a(0)), sum);
 }
 
 // The terms of lower orders come first, product by product, then those with order k.
@@ -47,9 +48,9 @@ template <std::size_t Bytes>
     Slopes sum = 0.0;
     const std::span products(rule.products.data(), rule.count);
     for (std::size_t j = 1; j <= k; ++j)
-        for (const auto& [u, x] : products) add_product(sum, tables.known(u)[j], Slopes(tables.rising(x)[k - j]));
+        for (const auto& [u, x] : products) add_product(sum, tables.known(u, j), Slopes(tables.rising(x)[k - j]));
     for (const auto& [u, x] : products)
-        if (x != rule.own) add_product(sum, tables.known(u)[0], Slopes(tables.rising(x)[k]));
+        if (x != rule.own) add_product(sum, tables.known(u, 0), Slopes(tables.rising(x)[k]));
     if (rule.divides || rule.by != 1.0) sum = times(scales[0], sum);
     if (rule.lead != 0.0) add_product(sum, scales[1], Slopes(tables.rising(rule.leading)[k]));
     return sum;
@@ -110,6 +111,7 @@ void make_rules(const SlopePlan& plan, const SlopeTables& tables, std::size_t k)
 template <std::size_t Bytes>
 void SlopeKind<Bytes>::make_order(const SlopePlan& plan, const SlopeTables& tables, const SlopeOrderCode* code,
                                   std::size_t k) {
+    if (code != nullptr) return code->make_order(tables, k);
     using Slopes = Lanes<Bytes>;
     const std::size_t n = plan.coordinates();
     Eight* const row = tables.states + k * plan.states();
@@ -121,11 +123,7 @@ void SlopeKind<Bytes>::make_order(const SlopePlan& plan, const SlopeTables& tabl
     }
     for (std::size_t i = 0; i < 2 * n; ++i)
         give<Bytes>(plan, tables, k, static_cast<std::uint32_t>(1 + i), Slopes(row[i]));
-    if (code != nullptr) {
-        code->make_order(tables, k);
-    } else {
-        make_rules<Bytes>(plan, tables, k);
-    }
+    make_rules<Bytes>(plan, tables, k);
     for (std::size_t i = 0; i < plan.events; ++i) row[2 * n + i] = Slopes(tables.rise[plan.outputs[n + i]]);
 }
 

@@ -1,6 +1,7 @@
 #include "series/slope_order_code.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <map>
 #include <tuple>
@@ -17,9 +18,10 @@ using Index = std::ptrdiff_t;  // of doubles
 // The function's arguments, by the calling convention, what it takes from the tables, and the pointers of the loop.
 constexpr Reg64 tables = Xbyak::util::rdi, k = Xbyak::util::rsi, rise = Xbyak::util::rdx, knowns = Xbyak::util::rcx,
                 newest = Xbyak::util::r8, scales = Xbyak::util::r9, left = Xbyak::util::r10, right = Xbyak::util::r11,
-                first = Xbyak::util::rax, coefficients = left, now = right;  // after the loop
+                first = Xbyak::util::rax, coefficients = left, now = right,  // outside the loop
+    row = k;                                                                 // at last
 constexpr unsigned scratch = 3;                                              // free vector registers
-constexpr unsigned first_sum = 16;                                           // and those of sums
+constexpr unsigned first_sum = 16, inverse = first_sum;                      // and those of sums; 1/k before the loop
 constexpr std::size_t most_sums = 16, most_rules = 2000;
 constexpr Index eight = static_cast<Index>(Eight::count);
 
@@ -36,11 +38,14 @@ class SlopeOrderWriter {
     void write() {
         code_.mov(rise, ACHILLES_TABLE(rise));
         code_.mov(knowns, ACHILLES_TABLE(knowns));
-        code_.mov(first, ACHILLES_TABLE(risings));
         code_.mov(scales, ACHILLES_TABLE(scales));
         code_.mov(newest, k);
         code_.shl(newest, 6);
-        code_.add(newest, first);
+        code_.add(newest, ACHILLES_TABLE(risings));
+        code_.mov(coefficients, ACHILLES_TABLE(coefficients));
+        code_.mov(now, ACHILLES_TABLE(now));
+        write_states();
+        code_.mov(first, ACHILLES_TABLE(risings));
         std::vector<Term> terms;
         for (std::uint32_t i = 0; i < plan_.rules.size(); ++i)
             for (std::size_t p = 0; p < plan_.rules[i].count; ++p)
@@ -49,6 +54,11 @@ class SlopeOrderWriter {
         code_.mov(coefficients, ACHILLES_TABLE(coefficients));
         code_.mov(now, ACHILLES_TABLE(now));
         for (std::uint32_t i = 0; i < plan_.rules.size(); ++i) write(i);
+        for (std::size_t i = 0; i < plan_.events; ++i) {
+            const std::size_t n = plan_.coordinates();
+            code_.get(zmm(0), plan_.outputs[n + i]);
+            code_.vmovupd(at(row, eight * static_cast<Index>(2 * n + i)), zmm(0));
+        }
         code_.vzeroupper();
         code_.ret();
     }
@@ -62,8 +72,7 @@ class SlopeOrderWriter {
     using Rule = SlopePlan::Rule;
     using Rules = std::vector<Rule>::const_iterator;
 
-    static Index rising(std::uint32_t factor) { return eight * known(factor); }
-    static Index known(std::uint32_t factor) { return static_cast<Index>(SlopeTables::orders) * factor; }
+    static Index rising(std::uint32_t factor) { return eight * static_cast<Index>(SlopeTables::orders) * factor; }
     static Xbyak::Address all_lanes(const Reg64& base, Index doubles) {
         return Xbyak::util::ptr_b[base + static_cast<std::size_t>(8 * doubles)];
     }
@@ -84,17 +93,17 @@ class SlopeOrderWriter {
         std::sort(terms.begin(), terms.end());
         code_.zero(zmm(0));
         for (const auto& [rule, sum] : sums) code_.vmovapd(sum, zmm(0));
-        code_.lea(left, at(knowns, 1));
+        code_.lea(left, at(knowns, static_cast<Index>(plan_.factors.size())));
         code_.lea(right, at(newest, -eight));
         const Xbyak::Label loop = code_.L();
         for (std::size_t i = 0; i < terms.size(); ++i) {
             const Term& term = terms[i];
             const Zmm& sum = sums.at(term.rule);
             if (i == 0 || terms[i - 1].rising != term.rising) code_.vmovupd(zmm(0), at(right, rising(term.rising)));
-            code_.vmulpd(zmm(1), zmm(0), all_lanes(left, known(term.known)));
+            code_.vmulpd(zmm(1), zmm(0), all_lanes(left, term.known));
             code_.vaddpd(sum, sum, zmm(1));
         }
-        code_.add(left, 8);
+        code_.add(left, 8 * static_cast<std::uint32_t>(plan_.factors.size()));
         code_.sub(right, 8 * static_cast<std::uint32_t>(eight));
         code_.cmp(right, first);
         code_.jae(loop);
@@ -144,7 +153,7 @@ class SlopeOrderWriter {
             for (std::size_t p = 0; p < rule.count; ++p) {
                 const auto [u, x] = rule.products[p];
                 if (x == rule.own) continue;
-                code_.vmulpd(zmm(0), newest_of(x), all_lanes(knowns, known(u)));
+                code_.vmulpd(zmm(0), newest_of(x), all_lanes(knowns, u));
                 code_.vaddpd(result, result, zmm(0));
             }
             if (rule.divides || rule.by != 1.0)
@@ -154,11 +163,47 @@ class SlopeOrderWriter {
                 code_.vaddpd(result, result, zmm(0));
             }
         }
-        code_.store(result, rule.result);
-        for (std::uint32_t f = plan_.first_factor[rule.result]; f < plan_.first_factor[rule.result + 1]; ++f) {
+        give(rule.result, result);
+    }
+    // Order k of a series, and of the factors that are made of it.
+    void give(std::uint32_t series, const Zmm& rise_of_it) {
+        code_.store(rise_of_it, series);
+        for (std::uint32_t f = plan_.first_factor[series]; f < plan_.first_factor[series + 1]; ++f) {
             const std::uint32_t scale = plan_.factors[f].scale;
-            if (scale != 0) add_multiple(zmm(0), scale, rule.result, true);
-            code_.vmovupd(at(newest, rising(f)), scale == 0 ? result : zmm(0));
+            if (scale != 0) add_multiple(zmm(0), scale, series, true);
+            code_.vmovupd(at(newest, rising(f)), scale == 0 ? rise_of_it : zmm(0));
+        }
+    }
+    // q and v: where k = 1 they stand; else they are those below them, and the accelerations of then, by k.
+    void write_states() {
+        const std::size_t n = plan_.coordinates();
+        const Index width = eight * static_cast<Index>(plan_.states());
+        const Reg64 here = first;
+        const auto state = [&](std::size_t i) { return at(here, eight * static_cast<Index>(i)); };
+        const auto below = [&](std::size_t i) { return at(here, eight * static_cast<Index>(i) - width); };
+        code_.imul(here, k, static_cast<int>(8 * width));
+        code_.add(here, ACHILLES_TABLE(states));
+        Xbyak::Label stand;
+        code_.cmp(k, 1);
+        code_.je(stand);
+        code_.vcvtsi2sd(Xmm(1), Xmm(1), k);
+        code_.mov(k, std::bit_cast<std::uint64_t>(1.0));
+        code_.vmovq(Xmm(0), k);
+        code_.vdivsd(Xmm(0), Xmm(0), Xmm(1));
+        code_.vbroadcastsd(zmm(inverse), Xmm(0));
+        for (std::size_t i = 0; i < n; ++i) {
+            code_.vmulpd(zmm(0), zmm(inverse), below(n + i));
+            code_.vmulpd(zmm(1), zmm(inverse), code_.number(plan_.outputs[i]));
+            code_.vmovupd(state(i), zmm(0));
+            code_.vmovupd(state(n + i), zmm(1));
+        }
+        code_.L(stand);
+        code_.mov(row, here);
+        for (std::size_t i = 0; i < 2 * n; ++i) {
+            const auto series = static_cast<std::uint32_t>(1 + i);
+            const Zmm result(code_.result(series).getIdx());
+            code_.vmovupd(result, state(i));
+            give(series, result);
         }
     }
 

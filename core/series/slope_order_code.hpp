@@ -9,13 +9,13 @@ namespace achilles {
 
 class MachineCode;
 
-// All products of lower orders are added up in one pass, each row of slopes loaded once; then come the rules.
+// All products of lower orders are added up in one pass, each row of slopes loaded once; then come the states and the rules.
 class SlopeOrderCode {
  public:
     // Nothing where that is not to be had.
     static std::shared_ptr<const SlopeOrderCode> of(const SlopePlan& plan);
 
-    // Order k >= 1 of what the rules make, where that of q and v stands.
+    // What SlopeKind::make_order makes.
     void make_order(const SlopeTables& tables, std::size_t k) const { function_(&tables, k); }
 
  private:
