@@ -11,14 +11,16 @@ namespace achilles::test {
 
 namespace {
 
-double size(const Reals& x) {
+template <class Number>
+double size(const List<Number>& x) {
     double most = 0.0;
-    for (const Real& entry : x) most = std::max(most, std::abs(static_cast<double>(entry)));
+    for (const Number& entry : x) most = std::max(most, std::abs(static_cast<double>(entry)));
     return most;
 }
 
-Point sum(const std::vector<Point>& coefficients, const Real& t) {
-    Point result = coefficients.back();
+template <class Number>
+PointOf<Number> sum(const std::vector<PointOf<Number>>& coefficients, const Number& t) {
+    PointOf<Number> result = coefficients.back();
     result.t = coefficients.front().t + t;
     for (std::size_t k = coefficients.size() - 1; k-- > 0;) {
         for (std::size_t i = 0; i < result.q.size(); ++i) {
@@ -39,7 +41,8 @@ double safe_step(double step, std::size_t order, std::array<double, 2> last, dou
 }
 
 // All of the duration where expand() stopped early.
-double safe_step(const std::vector<Point>& path, double duration, double tolerance) {
+template <class Number>
+double safe_step(const std::vector<PointOf<Number>>& path, double duration, double tolerance) {
     if (path.size() <= max_order) return duration;
     const auto term = [&](std::size_t k) { return std::max(size(path[k].v), size(path[k].q)); };
     return safe_step(duration, max_order, {term(max_order - 1), term(max_order)}, tolerance);
@@ -53,35 +56,38 @@ Real distance(const Reals& a, const Reals& b) {
     return sqrt(total);
 }
 
-TrueMotion::TrueMotion(const Model& model, const Run& run, double longest_step, std::size_t contact, ContactSet held)
+template <class Number>
+TrueMotionOf<Number>::TrueMotionOf(const Model& model, const Numbers& parameters, double longest_step,
+                                   std::size_t contact, ContactSet held)
     : dof_(static_cast<std::size_t>(model.dof())),
       clock_(model.layout().t()),
       longest_step_(longest_step),
-      e_(model.evaluator<Real>(model.restitution(contact), run.parameters).output(0)),
-      flight_(model.motion(held).program, model.layout(), run.parameters),
-      contact_motion_(model.motion(held.with(contact)).program, model.layout(), run.parameters),
-      gap_(model.gap(contact), model.layout(), run.parameters),
-      release_(model.programs_of(contact, held).release_terms, model.layout(), run.parameters),
-      surface_(model.evaluator<Real>(model.programs_of(contact, held).contact_terms, run.parameters)),
-      free_surface_(model.evaluator<Real>(model.programs_of(contact).contact_terms, run.parameters)),
-      normal_(model.evaluator<Real>(model.programs_of(contact, held).release_terms, run.parameters)),
-      acceleration_(model.evaluator<Real>(model.motion(held.with(contact)).program, run.parameters)) {
+      e_(evaluator<Number>(model, model.restitution(contact), parameters).output(0)),
+      flight_(model.motion(held).program, model.layout(), parameters),
+      contact_motion_(model.motion(held.with(contact)).program, model.layout(), parameters),
+      gap_(model.gap(contact), model.layout(), parameters),
+      release_(model.programs_of(contact, held).release_terms, model.layout(), parameters),
+      surface_(evaluator<Number>(model, model.programs_of(contact, held).contact_terms, parameters)),
+      free_surface_(evaluator<Number>(model, model.programs_of(contact).contact_terms, parameters)),
+      normal_(evaluator<Number>(model, model.programs_of(contact, held).release_terms, parameters)),
+      acceleration_(evaluator<Number>(model, model.motion(held.with(contact)).program, parameters)) {
     for (std::size_t j = 0; j < model.contacts(); ++j) {
         if (j == contact) continue;
         if (held.contains(j)) {
             const auto terms = [&](ContactSet others) {
-                return model.evaluator<Real>(model.programs_of(j, others).contact_terms, run.parameters);
+                return evaluator<Number>(model, model.programs_of(j, others).contact_terms, parameters);
             };
             held_.push_back({terms(held.without(j).with(contact)), terms(held.without(j)),
-                             model.evaluator<Real>(model.programs_of(j, held.without(j)).force, run.parameters)});
+                             evaluator<Number>(model, model.programs_of(j, held.without(j)).force, parameters)});
         } else {
-            open_.push_back(model.evaluator<Real>(model.gap(j), run.parameters));
+            open_.push_back(evaluator<Number>(model, model.gap(j), parameters));
         }
     }
 }
 
+template <class Number>
 template <class Terms>
-void TrueMotion::set(Terms& terms, const Point& point) const {
+void TrueMotionOf<Number>::set(Terms& terms, const Point& point) const {
     for (std::size_t i = 0; i < dof_; ++i) {
         terms.input(i) = point.q[i];
         terms.input(dof_ + i) = point.v[i];
@@ -90,7 +96,8 @@ void TrueMotion::set(Terms& terms, const Point& point) const {
     terms.run();
 }
 
-TrueMotion::Contact TrueMotion::contact(const Point& point) {
+template <class Number>
+typename TrueMotionOf<Number>::Contact TrueMotionOf<Number>::contact(const Point& point) {
     set(surface_, point);
     Contact result{surface_.h(), surface_.hdot(), {}, {}};
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -101,25 +108,27 @@ TrueMotion::Contact TrueMotion::contact(const Point& point) {
 }
 
 // kappa = -g_i n_j, with the direction of j while the rest is held.
-TrueMotion::Others TrueMotion::others(const Point& point) {
+template <class Number>
+typename TrueMotionOf<Number>::Others TrueMotionOf<Number>::others(const Point& point) {
     Others result;
     set(free_surface_, point);
     for (Held& other : held_) {
         set(other.force, point);
         result.forces.push_back(other.force.output(0));
         set(other.without, point);
-        Real kappa = 0;
+        Number kappa = 0;
         for (std::size_t i = 0; i < dof_; ++i) kappa -= free_surface_.gradient(i) * other.without.impulse_direction(i);
         result.transmissions.push_back(kappa);
     }
-    for (Evaluator<Real>& gap : open_) {
+    for (Evaluator<Number>& gap : open_) {
         set(gap, point);
         result.gaps.push_back(gap.output(0));
     }
     return result;
 }
 
-Point TrueMotion::collision(const State& before) {
+template <class Number>
+PointOf<Number> TrueMotionOf<Number>::collision(const State& before) {
     Point point;
     for (std::size_t i = 0; i < dof_; ++i) {
         point.q.emplace_back(before.q[static_cast<Eigen::Index>(i)]);
@@ -142,19 +151,22 @@ Point TrueMotion::collision(const State& before) {
     return point;
 }
 
-Point TrueMotion::restart(const Point& collision, Reinitialization kind) {
+template <class Number>
+PointOf<Number> TrueMotionOf<Number>::restart(const Point& collision, Reinitialization kind) {
     const Contact c = contact(collision);
-    Real g2 = 0;
-    for (const Real& entry : c.g) g2 += entry * entry;
+    Number g2 = 0;
+    for (const Number& entry : c.g) g2 += entry * entry;
     Point result = collision;
     for (std::size_t i = 0; i < dof_; ++i)
-        result.v[i] -= c.hdot * (kind == Reinitialization::kinetic ? c.n[i] : Real(c.g[i] / g2));
+        result.v[i] -= c.hdot * (kind == Reinitialization::kinetic ? c.n[i] : Number(c.g[i] / g2));
     return result;
 }
 
 // Terms until two in a row are negligible after `duration`, or there are no more.
-TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Point& from, double duration,
-                                            double tolerance) {
+template <class Number>
+typename TrueMotionOf<Number>::Coefficients TrueMotionOf<Number>::expand(Evaluator<Series<Number>>& motion,
+                                                                         const Point& from, double duration,
+                                                                         double tolerance) {
     Coefficients path{from};
     int negligible = 0;
     double power = 1.0;
@@ -163,7 +175,7 @@ TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Poi
             motion.set(i, k, path[k].q[i]);
             motion.set(dof_ + i, k, path[k].v[i]);
         }
-        motion.set(clock_, k, k == 0 ? from.t : Real(k == 1));
+        motion.set(clock_, k, k == 0 ? from.t : Number(k == 1));
         motion.run(k);
         Point next;
         for (std::size_t i = 0; i < dof_; ++i) {
@@ -179,17 +191,18 @@ TrueMotion::Coefficients TrueMotion::expand(Evaluator<Series>& motion, const Poi
 
 // An output of a program along the path, to as many orders as it needs, which may be more than the path's: the sine of
 // a parabola. Where all of them are not enough, the step becomes shorter.
-Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, std::size_t output, double& step,
-                        double tolerance) {
-    Reals result;
+template <class Number>
+List<Number> TrueMotionOf<Number>::along(const Coefficients& path, Evaluator<Series<Number>>& program,
+                                         std::size_t output, double& step, double tolerance) {
+    Numbers result;
     int negligible = 0;
     double power = 1.0;
     for (std::size_t k = 0; k <= max_order && (negligible < 2 || k < path.size()); ++k) {
         for (std::size_t i = 0; i < dof_; ++i) {
-            program.set(i, k, k < path.size() ? path[k].q[i] : Real(0));
-            program.set(dof_ + i, k, k < path.size() ? path[k].v[i] : Real(0));
+            program.set(i, k, k < path.size() ? path[k].q[i] : Number(0));
+            program.set(dof_ + i, k, k < path.size() ? path[k].v[i] : Number(0));
         }
-        program.set(clock_, k, k == 0 ? path[0].t : Real(k == 1));
+        program.set(clock_, k, k == 0 ? path[0].t : Number(k == 1));
         program.run(k);
         result.push_back(program.output(output, k));
         negligible = std::abs(static_cast<double>(result.back())) * power < tolerance ? negligible + 1 : 0;
@@ -203,22 +216,23 @@ Reals TrueMotion::along(const Coefficients& path, Evaluator<Series>& program, st
 }
 
 // Every event is where a quantity comes down through zero.
-bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double expected, double tolerance) {
-    Real left = longest;
+template <class Number>
+bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longest, double expected, double tolerance) {
+    Number left = longest;
     for (int steps = 0; left > 0; flight.known = 0) {
         if (++steps > 3000) throw std::runtime_error("the truth about this motion takes too many steps");
         const double reach = std::min({expected, static_cast<double>(left), longest_step_});
         const bool in_contact = until == Until::release || until == Until::least_force;
         const Coefficients path = expand(in_contact ? contact_motion_ : flight_, flight.point, reach, tolerance);
         double step = safe_step(path, reach, tolerance);
-        Reals watched = along(path, in_contact ? release_ : gap_, 0, step, tolerance);  // hddot, or h
+        Numbers watched = along(path, in_contact ? release_ : gap_, 0, step, tolerance);  // hddot, or h
         if (until == Until::dip || until == Until::least_force) watched = derivative(watched);
         if (until == Until::dip || until == Until::release)
-            for (Real& c : watched) c = -c;
+            for (Number& c : watched) c = -c;
         // Known roots are zero, and would be found again.
         if (until == Until::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
         const auto event = first_descent(watched, step);
-        const Real taken = event ? *event : step < static_cast<double>(left) ? Real(step) : left;
+        const Number taken = event ? *event : step < static_cast<double>(left) ? Number(step) : left;
         flight.time += taken;
         flight.point = sum(path, taken);
         left -= taken;
@@ -228,33 +242,40 @@ bool TrueMotion::move(Flight& flight, Until until, const Real& longest, double e
     return false;
 }
 
-bool TrueMotion::fly(Flight& flight, const Real& longest, double expected, double tolerance) {
+template <class Number>
+bool TrueMotionOf<Number>::fly(Flight& flight, const Number& longest, double expected, double tolerance) {
     return move(flight, Until::impact, longest, expected, tolerance);
 }
 
-bool TrueMotion::fly_to_dip(Flight& flight, const Real& longest, double expected, double tolerance) {
+template <class Number>
+bool TrueMotionOf<Number>::fly_to_dip(Flight& flight, const Number& longest, double expected, double tolerance) {
     return move(flight, Until::dip, longest, expected, tolerance);
 }
 
-bool TrueMotion::stay(Flight& contact, const Real& longest, double tolerance) {
+template <class Number>
+bool TrueMotionOf<Number>::stay(Flight& contact, const Number& longest, double tolerance) {
     return move(contact, Until::release, longest, static_cast<double>(longest), tolerance);
 }
 
-bool TrueMotion::stay_to_dip(Flight& contact, const Real& longest, double tolerance) {
+template <class Number>
+bool TrueMotionOf<Number>::stay_to_dip(Flight& contact, const Number& longest, double tolerance) {
     return move(contact, Until::least_force, longest, static_cast<double>(longest), tolerance);
 }
 
-Real TrueMotion::normal_acceleration(const Point& point) {
+template <class Number>
+Number TrueMotionOf<Number>::normal_acceleration(const Point& point) {
     set(normal_, point);
     return normal_.hddot();
 }
 
-Real TrueMotion::jerk(const Point& point) {
+template <class Number>
+Number TrueMotionOf<Number>::jerk(const Point& point) {
     set(normal_, point);
     return normal_.jerk();
 }
 
-Point TrueMotion::drift(const Point& slid, const Real& time) {
+template <class Number>
+PointOf<Number> TrueMotionOf<Number>::drift(const Point& slid, const Number& time) {
     set(acceleration_, slid);
     Point result = slid;
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -265,17 +286,18 @@ Point TrueMotion::drift(const Point& slid, const Real& time) {
     return result;
 }
 
-std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) {
+template <class Number>
+std::optional<ZenoPointOf<Number>> TrueMotionOf<Number>::zeno(const Point& collision, double until) {
     ZenoPoint result{0, collision, 0, {}, {}};
     Point& point = result.point;
     const double first = -static_cast<double>(contact(point).hdot);
     for (; result.impacts < 100000; ++result.impacts) {
         const Contact c = contact(point);
         const Point slid = restart(point, Reinitialization::kinetic);
-        const Real w = -c.hdot, a = -normal_acceleration(slid);
+        const Number w = -c.hdot, a = -normal_acceleration(slid);
         if (!(w > 0) || !(a > 0)) return std::nullopt;
         if (e_ == 0 || w < until * first) {
-            const Real rest = 2 * e_ * w / (a * (1 - e_));
+            const Number rest = 2 * e_ * w / (a * (1 - e_));
             point = constrained(slid, rest, 1e-32);
             result.time += rest;
             return result;
@@ -294,12 +316,13 @@ std::optional<ZenoPoint> TrueMotion::zeno(const Point& collision, double until) 
     return std::nullopt;
 }
 
-std::vector<Instant> TrueMotion::inside(const ZenoPoint& zeno, double tolerance) {
+template <class Number>
+std::vector<InstantOf<Number>> TrueMotionOf<Number>::inside(const ZenoPoint& zeno, double tolerance) {
     std::vector<Instant> result;
     for (std::size_t i = 0; i < zeno.flights.size(); ++i) {
-        const ZenoPoint::Flown& flown = zeno.flights[i];
+        const auto& flown = zeno.flights[i];
         const Point middle = flight_at(flown.start, {flown.duration / 2}, tolerance)[0];
-        Reals times;
+        Numbers times;
         for (std::size_t k = 1; k < instants_of_flight[i]; ++k)
             times.push_back(flown.duration * k / instants_of_flight[i]);
         times.push_back(flown.duration / 2 - contact(middle).hdot / normal_acceleration(middle));  // the top
@@ -310,14 +333,17 @@ std::vector<Instant> TrueMotion::inside(const ZenoPoint& zeno, double tolerance)
     return result;
 }
 
-Point TrueMotion::constrained(Point start, const Real& duration, double tolerance) {
+template <class Number>
+PointOf<Number> TrueMotionOf<Number>::constrained(Point start, const Number& duration, double tolerance) {
     return contact_at(start, {duration}, tolerance).back();
 }
 
 // One series serves all of the times within its reach.
-std::vector<Point> TrueMotion::follow(Evaluator<Series>& motion, Point point, const Reals& times, double tolerance) {
+template <class Number>
+std::vector<PointOf<Number>> TrueMotionOf<Number>::follow(Evaluator<Series<Number>>& motion, Point point,
+                                                          const Numbers& times, double tolerance) {
     std::vector<Point> result;
-    Real from = 0;
+    Number from = 0;
     while (result.size() < times.size()) {
         const double left = static_cast<double>(times.back() - from);
         if (!(left > 0.0)) {
@@ -327,7 +353,7 @@ std::vector<Point> TrueMotion::follow(Evaluator<Series>& motion, Point point, co
         const double reach = std::min(left, longest_step_);
         const Coefficients path = expand(motion, point, reach, tolerance);
         const double length = safe_step(path, reach, tolerance);
-        const Real end = length < left ? Real(from + length) : times.back();
+        const Number end = length < left ? Number(from + length) : times.back();
         for (; result.size() < times.size() && times[result.size()] <= end;)
             result.push_back(sum(path, times[result.size()] - from));
         point = sum(path, end - from);
@@ -336,12 +362,19 @@ std::vector<Point> TrueMotion::follow(Evaluator<Series>& motion, Point point, co
     return result;
 }
 
-std::vector<Point> TrueMotion::contact_at(const Point& start, const Reals& times, double tolerance) {
+template <class Number>
+std::vector<PointOf<Number>> TrueMotionOf<Number>::contact_at(const Point& start, const Numbers& times,
+                                                              double tolerance) {
     return follow(contact_motion_, start, times, tolerance);
 }
 
-std::vector<Point> TrueMotion::flight_at(const Point& start, const Reals& times, double tolerance) {
+template <class Number>
+std::vector<PointOf<Number>> TrueMotionOf<Number>::flight_at(const Point& start, const Numbers& times,
+                                                             double tolerance) {
     return follow(flight_, start, times, tolerance);
 }
+
+template class TrueMotionOf<Real>;
+template class TrueMotionOf<Dual>;
 
 }  // namespace achilles::test

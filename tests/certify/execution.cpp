@@ -16,34 +16,39 @@ Point point_of(const State& state) {
     return point;
 }
 
-TrueRuns::TrueRuns(const Model& model, const Run& run, std::size_t most_events, double longest_step)
+template <class Number>
+TrueRunsOf<Number>::TrueRunsOf(const Model& model, const List<Number>& parameters, std::size_t most_events,
+                               double longest_step)
     : dof_(static_cast<std::size_t>(model.dof())),
       most_events_(most_events),
-      motion_(model, run, longest_step),
-      e_(model.evaluator<Real>(model.restitution(), run.parameters).output(0)) {
+      motion_(model, parameters, longest_step),
+      e_(evaluator(model, model.restitution(), parameters).output(0)) {
     if (!(e_ >= 0 && e_ <= 1)) throw std::invalid_argument("true runs need 0 <= e <= 1");
 }
 
-TrueExecution TrueRuns::run(const Point& start, double end_time, double cut) {
+template <class Number>
+TrueExecutionOf<Number> TrueRunsOf<Number>::run(const Point& start, double end_time, double cut) {
     flight_ = {start, 0, 0};
     contact_ = false;
     return run(end_time, cut);
 }
 
-TrueExecution TrueRuns::run_from_contact(const Point& start, double end_time, double cut) {
+template <class Number>
+TrueExecutionOf<Number> TrueRunsOf<Number>::run_from_contact(const Point& start, double end_time, double cut) {
     Point point = start;
     for (int round = 0; round < 4; ++round) {
         const auto contact = motion_.contact(point);
         for (std::size_t i = 0; i < dof_; ++i) point.q[i] -= contact.h * contact.n[i];
     }
     point = motion_.restart(point, Reinitialization::kinetic);
-    const Real hddot = motion_.normal_acceleration(point);
+    const Number hddot = motion_.normal_acceleration(point);
     contact_ = hddot < 0 || (hddot == 0 && motion_.jerk(point) < 0);
     flight_ = {point, 0, hddot > 0 ? 2 : 3};
     return run(end_time, cut);
 }
 
-TrueExecution TrueRuns::run(double end_time, double cut) {
+template <class Number>
+TrueExecutionOf<Number> TrueRunsOf<Number>::run(double end_time, double cut) {
     end_time_ = end_time;
     cut_ = cut;
     result_ = {};
@@ -64,11 +69,13 @@ TrueExecution TrueRuns::run(double end_time, double cut) {
 }
 
 // The geometric series takes hddot as constant, which where it nears zero no speed is low enough for.
-bool TrueRuns::settles(const Point& slid, const Real& acceleration, const Real& rest) {
+template <class Number>
+bool TrueRunsOf<Number>::settles(const Point& slid, const Number& acceleration, const Number& rest) {
     return abs(motion_.normal_acceleration(motion_.drift(slid, rest)) + acceleration) < 1e-6 * acceleration;
 }
 
-void TrueRuns::fly() {
+template <class Number>
+void TrueRunsOf<Number>::fly() {
     // The lower a flight, the less it may err.
     const double rise = flight_.known == 1 ? static_cast<double>(motion_.contact(flight_.point).hdot) : 1.0;
     const double tolerance = precision * std::clamp(rise, 1e-12, 1.0);
@@ -77,11 +84,11 @@ void TrueRuns::fly() {
         return;
     }
     const auto contact = motion_.contact(flight_.point);
-    const Real w = -contact.hdot;
+    const Number w = -contact.hdot;
     Point& point = flight_.point;
     const Point slid = motion_.restart(point, Reinitialization::kinetic);
-    const Real a = -motion_.normal_acceleration(slid);
-    const Real rest = a > 0 && e_ < 1 ? Real(2 * e_ * w / (a * (1 - e_))) : Real(0);
+    const Number a = -motion_.normal_acceleration(slid);
+    const Number rest = a > 0 && e_ < 1 ? Number(2 * e_ * w / (a * (1 - e_))) : Number(0);
     if (a > 0 && e_ < 1 && (e_ == 0 || (w < cut_ && settles(slid, a, rest)))) {
         result_.events.push_back({Event::Kind::zeno, flight_.time + rest, w, point});
         point = slid;
@@ -95,7 +102,8 @@ void TrueRuns::fly() {
     expected_ = a > 0 && e_ > 0 ? std::min(left, 2.2 * static_cast<double>(e_ * w / a)) : left;
 }
 
-void TrueRuns::stay() {
+template <class Number>
+void TrueRunsOf<Number>::stay() {
     if (!motion_.stay(flight_, end_time_ - flight_.time, precision)) {
         flight_.time = end_time_;
         return;
@@ -106,10 +114,14 @@ void TrueRuns::stay() {
     expected_ = static_cast<double>(end_time_ - flight_.time);
 }
 
-std::optional<Dip> TrueRuns::first_dip(const Point& start, double within) {
-    Flight flight{start, 0, 0};
+template <class Number>
+std::optional<DipOf<Number>> TrueRunsOf<Number>::first_dip(const Point& start, double within) {
+    FlightOf<Number> flight{start, 0, 0};
     if (!motion_.fly_to_dip(flight, within, within, 1e-22)) return std::nullopt;
     return Dip{flight.time, motion_.contact(flight.point).h, motion_.normal_acceleration(flight.point)};
 }
+
+template class TrueRunsOf<Real>;
+template class TrueRunsOf<Dual>;
 
 }  // namespace achilles::test

@@ -8,32 +8,46 @@
 
 namespace achilles::test {
 
-struct TrueEvent {
+template <class Number>
+struct TrueEventOf {
     Event::Kind kind = Event::Kind::impact;
-    Real t;
-    Real speed;   // impact: |hdot| before
-    Point point;  // before it
+    Number t;
+    Number speed;           // impact: |hdot| before
+    PointOf<Number> point;  // before it
 };
+using TrueEvent = TrueEventOf<Real>;
 
-struct TrueExecution {
-    std::vector<TrueEvent> events;  // in time
-    Point end;
+template <class Number>
+struct TrueExecutionOf {
+    std::vector<TrueEventOf<Number>> events;  // in time
+    PointOf<Number> end;
     Phase::Kind start_phase = Phase::Kind::hybrid, end_phase = Phase::Kind::hybrid;
 };
+using TrueExecution = TrueExecutionOf<Real>;
 
 // A dip of the gap in free motion.
-struct Dip {
-    Real t, gap;
-    Real curvature;  // hddot there
+template <class Number>
+struct DipOf {
+    Number t, gap;
+    Number curvature;  // hddot there
 };
+using Dip = DipOf<Real>;
 
 Point point_of(const State& state);
 
 // Throws std::runtime_error where there are more events than that: bouncing that does not settle.
-class TrueRuns {
+template <class Number>
+class TrueRunsOf {
  public:
+    using Point = PointOf<Number>;
+    using TrueExecution = TrueExecutionOf<Number>;
+    using Dip = DipOf<Number>;
+
     // 0 <= e <= 1.
-    TrueRuns(const Model& model, const Run& run, std::size_t most_events = 5000, double longest_step = 1e300);
+    TrueRunsOf(const Model& model, const Run& run, std::size_t most_events = 5000, double longest_step = 1e300)
+        : TrueRunsOf(model, List<Number>(run.parameters.begin(), run.parameters.end()), most_events, longest_step) {}
+    TrueRunsOf(const Model& model, const List<Number>& parameters, std::size_t most_events = 5000,
+               double longest_step = 1e300);
 
     // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut` and hddot no longer changes in
     // what is left, which is a geometric series and the plastic restart and errs by O(cut^3).
@@ -47,18 +61,19 @@ class TrueRuns {
  private:
     static constexpr double precision = 1e-26;  // of a step
     TrueExecution run(double end_time, double cut);
-    bool settles(const Point& slid, const Real& acceleration, const Real& rest);
+    bool settles(const Point& slid, const Number& acceleration, const Number& rest);
     void fly();
     void stay();
 
     std::size_t dof_, most_events_;
-    TrueMotion motion_;
-    Real e_, end_time_;
-    Real cut_;
+    TrueMotionOf<Number> motion_;
+    Number e_, end_time_;
+    Number cut_;
     TrueExecution result_;
-    Flight flight_;
+    FlightOf<Number> flight_;
     bool contact_ = false;
     double expected_ = 0.0;
 };
+using TrueRuns = TrueRunsOf<Real>;
 
 }  // namespace achilles::test

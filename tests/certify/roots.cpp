@@ -2,14 +2,16 @@
 
 namespace achilles::test {
 
-Real value(const Reals& coefficients, const Real& t) {
-    Real sum = 0;
+template <class Number>
+Number value(const List<Number>& coefficients, const Number& t) {
+    Number sum = 0;
     for (std::size_t k = coefficients.size(); k-- > 0;) sum = sum * t + coefficients[k];
     return sum;
 }
 
-Reals derivative(const Reals& coefficients) {
-    Reals result;
+template <class Number>
+List<Number> derivative(const List<Number>& coefficients) {
+    List<Number> result;
     for (std::size_t k = 1; k < coefficients.size(); ++k) result.push_back(k * coefficients[k]);
     return result;
 }
@@ -17,9 +19,10 @@ Reals derivative(const Reals& coefficients) {
 namespace {
 
 // b_i = sum_k C(i,k)/C(n,k) a_k for the powers a_k of t/length.
-Reals bernstein(Reals b, const Real& length) {
+template <class Number>
+List<Number> bernstein(List<Number> b, const Number& length) {
     const std::size_t n = b.size() - 1;
-    Real factor = 1;  // length^k / C(n,k)
+    Number factor = 1;  // length^k / C(n,k)
     for (std::size_t k = 1; k <= n; ++k) {
         factor *= length * k / (n + 1 - k);
         b[k] *= factor;
@@ -29,9 +32,10 @@ Reals bernstein(Reals b, const Real& length) {
     return b;
 }
 
-int variations(const Reals& b) {
+template <class Number>
+int variations(const List<Number>& b) {
     int count = 0, last = 0;
-    for (const Real& x : b) {
+    for (const Number& x : b) {
         const int sign = x > 0 ? 1 : x < 0 ? -1 : 0;
         if (sign != 0 && last != 0 && sign != last) ++count;
         if (sign != 0) last = sign;
@@ -40,33 +44,38 @@ int variations(const Reals& b) {
 }
 
 // One root in (low, high), positive on its left: Newton's method, kept inside by bisection.
-Real locate(const Reals& coefficients, Real low, Real high) {
-    const Reals slope = derivative(coefficients);
-    Real t = (low + high) / 2;
+template <class Number>
+Number locate(const List<Number>& coefficients, Number low, Number high) {
+    const List<Number> slope = derivative(coefficients);
+    Number t = (low + high) / 2;
     for (int round = 0; round < 300; ++round) {
-        const Real f = value(coefficients, t);
+        const Number f = value(coefficients, t);
         (f > 0 ? low : high) = t;
-        Real next = t - f / value(slope, t);
+        Number next = t - f / value(slope, t);
         if (!(next > low && next < high)) next = (low + high) / 2;
         const bool close = abs(next - t) <= 1e-33 * abs(next);
         t = next;
         if (close) break;
     }
-    return t;
+    // What a dual rises by is a step behind its value.
+    const Number last = t - value(coefficients, t) / value(slope, t);
+    return abs(last - t) <= 1e-30 * abs(t) ? last : t;
 }
 
-std::optional<Real> search(const Reals& coefficients, Reals left, const Real& low, const Real& high, int depth) {
+template <class Number>
+std::optional<Number> search(const List<Number>& coefficients, List<Number> left, const Number& low, const Number& high,
+                             int depth) {
     const int count = variations(left);
     if (count == 0 || depth > 100) return std::nullopt;
     if (count == 1) {
-        for (const Real& x : left) {
+        for (const Number& x : left) {
             if (x > 0) return locate(coefficients, low, high);
             if (x < 0) return std::nullopt;
         }
     }
-    const Real middle = (low + high) / 2;
+    const Number middle = (low + high) / 2;
     const std::size_t n = left.size() - 1;
-    Reals right(left.size());
+    List<Number> right(left.size());
     right[n] = left[n];
     for (std::size_t step = 1; step <= n; ++step) {  // de Casteljau
         for (std::size_t i = n; i >= step; --i) left[i] = (left[i] + left[i - 1]) / 2;
@@ -78,8 +87,16 @@ std::optional<Real> search(const Reals& coefficients, Reals left, const Real& lo
 
 }  // namespace
 
-std::optional<Real> first_descent(const Reals& coefficients, const Real& length) {
-    return search(coefficients, bernstein(coefficients, length), 0, length, 0);
+template <class Number>
+std::optional<Number> first_descent(const List<Number>& coefficients, const std::type_identity_t<Number>& length) {
+    return search<Number>(coefficients, bernstein<Number>(coefficients, length), 0, length, 0);
 }
+
+template Real value(const Reals&, const Real&);
+template Dual value(const List<Dual>&, const Dual&);
+template Reals derivative(const Reals&);
+template List<Dual> derivative(const List<Dual>&);
+template std::optional<Real> first_descent<Real>(const Reals&, const Real&);
+template std::optional<Dual> first_descent<Dual>(const List<Dual>&, const Dual&);
 
 }  // namespace achilles::test

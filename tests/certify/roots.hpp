@@ -3,17 +3,21 @@
 #pragma once
 
 #include <optional>
+#include <type_traits>
 
 #include "certify/taylor.hpp"
 
 namespace achilles::test {
 
 // The value at t of the polynomial with these coefficients, in ascending powers.
-Real value(const Reals& coefficients, const Real& t);
-Reals derivative(const Reals& coefficients);
+template <class Number>
+Number value(const List<Number>& coefficients, const Number& t);
+template <class Number>
+List<Number> derivative(const List<Number>& coefficients);
 
 // The first t in (0, length) at which it goes from positive to negative. All roots are isolated by the sign variations
 // in the Bernstein basis, so that two close together are not one or none; a touch to working precision is no root.
-std::optional<Real> first_descent(const Reals& coefficients, const Real& length);
+template <class Number>
+std::optional<Number> first_descent(const List<Number>& coefficients, const std::type_identity_t<Number>& length);
 
 }  // namespace achilles::test

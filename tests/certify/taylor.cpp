@@ -4,37 +4,39 @@
 
 namespace achilles {
 
-using test::max_order, test::Real;
+using test::max_order, test::Series;
 
-using ExactSeries = Evaluator<test::Series>;
-
-ExactSeries::Evaluator(const Program& program, const Layout& layout, std::span<const double> parameters) {
+template <class Number>
+Evaluator<Series<Number>>::Evaluator(const Program& program, const Layout& layout, std::span<const Number> parameters) {
     for (std::size_t i = 0; i < program.slots_.count; ++i) fresh();
     for (std::size_t i = 0; i < parameters.size(); ++i) {
         at(layout.parameter(i), 0) = parameters[i];
         constant_[layout.parameter(i)] = true;
     }
-    for (const Constant& value : program.constants_) constant(scalar_from<Real>(value));
+    for (const Constant& value : program.constants_) constant(scalar_from<Number>(value));
     const std::size_t first = constant_.size();
     for (std::size_t i = 0; i < program.instructions_.size(); ++i) fresh();
     for (std::size_t i = 0; i < program.instructions_.size(); ++i) lower(program.instructions_[i], first + i);
     outputs_.assign(program.outputs_.begin(), program.outputs_.end());
 }
 
-std::size_t ExactSeries::fresh() {
+template <class Number>
+std::size_t Evaluator<Series<Number>>::fresh() {
     constant_.push_back(false);
     series_.resize(series_.size() + max_order + 1);
     return constant_.size() - 1;
 }
 
-std::size_t ExactSeries::constant(const Real& value) {
+template <class Number>
+std::size_t Evaluator<Series<Number>>::constant(const Number& value) {
     const std::size_t series = fresh();
     at(series, 0) = value;
     constant_[series] = true;
     return series;
 }
 
-void ExactSeries::lower(const Instruction& in, std::size_t result) {
+template <class Number>
+void Evaluator<Series<Number>>::lower(const Instruction& in, std::size_t result) {
     const auto add = [&](Kind kind) { steps_.push_back({kind, in.a, in.b, result}); };
     switch (in.operation) {
         case Operation::add:
@@ -64,7 +66,7 @@ void ExactSeries::lower(const Instruction& in, std::size_t result) {
         case Operation::power:
             return lower_power(in, result);
         case Operation::pi:
-            at(result, 0) = scalar_pi<Real>();
+            at(result, 0) = scalar_pi<Number>();
             constant_[result] = true;
             return;
         default:
@@ -73,7 +75,8 @@ void ExactSeries::lower(const Instruction& in, std::size_t result) {
 }
 
 // Repeated products: unlike the usual recurrence they do not divide by the base, which may vanish.
-void ExactSeries::lower_power(const Instruction& in, std::size_t result) {
+template <class Number>
+void Evaluator<Series<Number>>::lower_power(const Instruction& in, std::size_t result) {
     const int n = std::abs(in.exponent);
     std::size_t so_far = in.a;
     for (int factor = 2; factor <= n; ++factor) {
@@ -84,13 +87,15 @@ void ExactSeries::lower_power(const Instruction& in, std::size_t result) {
     if (in.exponent < 0) steps_.push_back({Kind::divide, constant(1), so_far, result});
 }
 
-bool ExactSeries::is_constant(const Step& step) const {
+template <class Number>
+bool Evaluator<Series<Number>>::is_constant(const Step& step) const {
     const bool binary = step.kind == Kind::add || step.kind == Kind::subtract || step.kind == Kind::multiply ||
                         step.kind == Kind::divide;
     return constant_[step.a] && (!binary || constant_[step.b]);
 }
 
-void ExactSeries::run(std::size_t order) {
+template <class Number>
+void Evaluator<Series<Number>>::run(std::size_t order) {
     for (const Step& step : steps_) {
         if (order == 0) {
             at(step.result, 0) = start(step);
@@ -100,15 +105,16 @@ void ExactSeries::run(std::size_t order) {
         } else if (!constant_[step.result]) {
             at(step.result, order) = next(step, order);
             if (step.kind != Kind::sin_cos) continue;
-            Real sum = 0;
+            Number sum = 0;
             for (std::size_t j = 1; j <= order; ++j) sum += j * at(step.a, j) * at(step.result, order - j);
             at(step.b, order) = -sum / order;
         }
     }
 }
 
-Real ExactSeries::start(const Step& step) {
-    const Real &a = at(step.a, 0), &b = at(step.b, 0);
+template <class Number>
+Number Evaluator<Series<Number>>::start(const Step& step) {
+    const Number &a = at(step.a, 0), &b = at(step.b, 0);
     switch (step.kind) {
         case Kind::add:
             return a + b;
@@ -132,18 +138,20 @@ Real ExactSeries::start(const Step& step) {
     return 0;
 }
 
-Real ExactSeries::product(std::size_t a, std::size_t b, std::size_t k) {
+template <class Number>
+Number Evaluator<Series<Number>>::product(std::size_t a, std::size_t b, std::size_t k) {
     if (constant_[a]) return at(a, 0) * at(b, k);
     if (constant_[b]) return at(a, k) * at(b, 0);
-    Real sum = 0;
+    Number sum = 0;
     for (std::size_t j = 0; j <= k; ++j) sum += at(a, j) * at(b, k - j);
     return sum;
 }
 
 // Coefficient k >= 1 from the earlier ones: the usual recurrences of automatic differentiation.
-Real ExactSeries::next(const Step& step, std::size_t k) {
+template <class Number>
+Number Evaluator<Series<Number>>::next(const Step& step, std::size_t k) {
     const std::size_t a = step.a, b = step.b, c = step.result;
-    Real sum = 0;
+    Number sum = 0;
     switch (step.kind) {
         case Kind::add:
             return at(a, k) + at(b, k);
@@ -172,5 +180,8 @@ Real ExactSeries::next(const Step& step, std::size_t k) {
     }
     return 0;
 }
+
+template class Evaluator<Series<test::Real>>;
+template class Evaluator<Series<test::Dual>>;
 
 }  // namespace achilles

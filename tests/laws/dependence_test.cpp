@@ -181,9 +181,48 @@ TEST_P(Dependence, KnowsTheUnitOfMass) {
     }
 }
 
-// The derivatives beside fourth-order differences of runs in 34 digits, which know nothing of them: of every event's time and of
-// the end, by one start and one parameter each.
-TEST_P(Dependence, IsWhatDifferencesInManyDigitsSay) {
+// What a quantity of the true run is differentiated by: what duals carry through it, and fourth-order differences of runs in 34
+// digits beside it, which know nothing of derivatives.
+class TrueSlopes {
+ public:
+    using Runs = TrueRunsOf<Dual>;
+
+    TrueSlopes(const Model& model, const achilles::Run& run, Index direction) {
+        const Index n = model.dof();
+        PointOf<Dual> start;
+        for (Index i = 0; i < n; ++i) start.q.emplace_back(Real(run.q[i]), i == direction ? 1 : 0);
+        for (Index i = 0; i < n; ++i) start.v.emplace_back(Real(run.v[i]), n + i == direction ? 1 : 0);
+        start.t = run.options.start_time;
+        List<Dual> parameters(run.parameters.begin(), run.parameters.end());
+        if (direction >= 2 * n) parameters[static_cast<std::size_t>(direction - 2 * n)].slope = 1;
+        by_duals_ = Runs(model, parameters).run(start, run.options.end_time);
+        for (const int steps : {-2, -1, 1, 2}) {
+            achilles::Run other = run;
+            double& varied = direction < n       ? other.q[direction]
+                             : direction < 2 * n ? other.v[direction - n]
+                                                 : other.parameters[static_cast<std::size_t>(direction - 2 * n)];
+            varied += steps * distance;
+            beside_.push_back(TrueRuns(model, other).run(point_of(other.start()), run.options.end_time));
+        }
+    }
+    // Of what is taken from an execution, whatever its numbers.
+    template <class Take>
+    Real of(const Take& take) const {
+        const Real slope = take(by_duals_).slope;
+        const Real difference =
+            (take(beside_[0]) - 8 * take(beside_[1]) + 8 * take(beside_[2]) - take(beside_[3])) / (12 * Real(distance));
+        EXPECT_LE(static_cast<double>(abs(slope - difference)), 1e-18 * (1.0 + std::abs(static_cast<double>(slope))));
+        return slope;
+    }
+
+ private:
+    static constexpr double distance = 0x1p-23;  // to the fourth power it is 2e-28
+    TrueExecutionOf<Dual> by_duals_;
+    std::vector<TrueExecution> beside_;
+};
+
+// The derivatives beside those of the truth: of the first Zeno point and release, and of the end, by one start and by e.
+TEST_P(Dependence, IsWhatManyDigitsSay) {
     static const std::vector<std::string> some{"ball_on_sine",           "double_pendulum",
                                                "driven_double_pendulum", "ball_on_vibrating_table",
                                                "ball_in_gusts",          "triple_pendulum"};
@@ -205,41 +244,30 @@ TEST_P(Dependence, IsWhatDifferencesInManyDigitsSay) {
             if (model_->description().parameters[k].name == "e") return 2 * n + static_cast<Index>(k);
         return 2 * n;
     }();
+    const auto expect_near = [](double found, const Real& true_slope, const std::string& where) {
+        const double expected = static_cast<double>(true_slope);
+        EXPECT_NEAR(found, expected, 1e-9 * (1.0 + std::abs(expected))) << where;
+    };
     for (const Index direction : {Index{0}, e}) {
-        constexpr double h = 0x1p-17;  // h^4 is 1e-21
-        const auto beside = [&](int steps) {
-            achilles::Run other = run;
-            if (direction < n)
-                other.q[direction] += steps * h;
-            else
-                other.parameters[static_cast<std::size_t>(direction - 2 * n)] += steps * h;
-            return TrueRuns(*model_, other).run(point_of(other.start()), run.options.end_time);
-        };
-        const TrueExecution a = beside(-2), b = beside(-1), c = beside(1), f = beside(2);
-        const auto difference = [&](const auto& of) {
-            const Real sum = of(a) - 8 * of(b) + 8 * of(c) - of(f);
-            return static_cast<double>(Real(sum / (12 * Real(h))));
-        };
-        // The first Zeno point and the first release, where the run has them: truth has more impacts.
-        for (const Event::Kind kind : {Event::Kind::zeno, Event::Kind::release}) {
+        const TrueSlopes truth(*model_, run, direction);
+        for (const Event::Kind kind : {Event::Kind::zeno, Event::Kind::release}) {  // the truth has more impacts
             for (std::size_t j = 0; j < trajectory.events.size(); ++j) {
                 if (trajectory.events[j].kind != kind) continue;
-                const double found = d.events[j].t[direction];
-                const double expected = difference([&](const TrueExecution& one) {
-                    for (const TrueEvent& event : one.events)
+                const Real slope = truth.of([&](const auto& execution) {
+                    for (const auto& event : execution.events)
                         if (event.kind == kind) return event.t;
                     throw std::runtime_error("no such event");
                 });
-                EXPECT_NEAR(found, expected, 1e-9 * (1.0 + std::abs(expected))) << to_text(kind) << " " << direction;
+                expect_near(d.events[j].t[direction], slope, fmt::format("{} {}", to_text(kind), direction));
                 break;
             }
         }
         for (Index i = 0; i < n; ++i) {
             const auto at = static_cast<std::size_t>(i);
-            const double q = difference([&](const TrueExecution& one) { return one.end.q[at]; });
-            const double v = difference([&](const TrueExecution& one) { return one.end.v[at]; });
-            EXPECT_NEAR(d.end->q(i, direction), q, 1e-9 * (1.0 + std::abs(q))) << "q " << i << " " << direction;
-            EXPECT_NEAR(d.end->v(i, direction), v, 1e-9 * (1.0 + std::abs(v))) << "v " << i << " " << direction;
+            expect_near(d.end->q(i, direction), truth.of([&](const auto& execution) { return execution.end.q[at]; }),
+                        fmt::format("q {} {}", i, direction));
+            expect_near(d.end->v(i, direction), truth.of([&](const auto& execution) { return execution.end.v[at]; }),
+                        fmt::format("v {} {}", i, direction));
         }
     }
 }
