@@ -73,7 +73,7 @@ class ContactGradient : public Gradient {
  public:
     ContactGradient(const Model& model, const ProgramOf<ContactTerms>& program, const Tangent& tangent,
                     std::span<const double> parameters)
-        : Gradient(model, program, tangent, parameters), places_({}, tangent.dof), dof_(tangent.dof) {}
+        : Gradient(model, program, tangent, parameters), places_({}, tangent.dof) {}
     double h() const { return value(places_.h()); }
     double hdot() const { return value(places_.hdot()); }
     double n(std::size_t i) const { return value(places_.impulse_direction(i)); }
@@ -87,7 +87,6 @@ class ContactGradient : public Gradient {
         std::size_t output(std::size_t index) const { return index; }
     };
     ContactTerms<Place> places_;
-    std::size_t dof_;
 };
 
 }  // namespace achilles
