@@ -162,18 +162,18 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
     for (const std::string& expression : expressions_)
         result.push_back({expression, nothing, Eigen::VectorXd::Constant(K, nothing), ""});
     for (Index first = 0; first < K; first += lanes) {
+        const Index end = std::min(first + static_cast<Index>(lanes), K);
         Evaluator<Number> evaluator(measures_.program);
         for (std::size_t slot = 0; slot < inputs.count(); ++slot) {
             Number input(inputs.value(slot));
-            for (Index k = first; k < std::min<Index>(first + lanes, K); ++k)
-                input.slope[static_cast<std::size_t>(k - first)] = inputs.row(slot, k);
+            for (Index k = first; k < end; ++k) input.slope[static_cast<std::size_t>(k - first)] = inputs.row(slot, k);
             evaluator.input(slot) = input;
         }
         evaluator.fix();
         evaluator.run();
         for (std::size_t i = 0; i < result.size(); ++i) {
             result[i].value = evaluator.output(i).value;
-            for (Index k = first; k < std::min<Index>(first + lanes, K); ++k)
+            for (Index k = first; k < end; ++k)
                 result[i].derivatives[k] = evaluator.output(i).slope[static_cast<std::size_t>(k - first)];
         }
     }

@@ -67,7 +67,7 @@ class SlopeOrderWriter {
  private:
     struct Term {
         std::uint32_t rising, rule, known;
-        auto operator<=>(const Term&) const = default;
+        auto operator<=>(const Term&) const = default;  // NOLINT(modernize-use-nullptr): its 0 is no pointer
     };
     using Rule = SlopePlan::Rule;
     using Rules = std::vector<Rule>::const_iterator;

@@ -19,7 +19,7 @@ struct SlopePlan {
     // What is multiplied: order 0 is a register's, order k > 0 is coefficient `scale` times that of a series.
     struct Factor {
         std::uint32_t series = 0, value = 0, scale = 0;
-        auto operator<=>(const Factor&) const = default;
+        auto operator<=>(const Factor&) const = default;  // NOLINT(modernize-use-nullptr): its 0 is no pointer
     };
     std::vector<Factor> factors;              // by series
     std::vector<std::uint32_t> first_factor;  // of each series, and behind the last
