@@ -6,7 +6,7 @@
 
 namespace achilles {
 
-using Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
+using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
@@ -35,11 +35,6 @@ void Link::apply(RowMatrix& Z) const {
     for (; first + 8 <= Z.cols(); first += 8) multiply<8>(J, Z, first, product);
     for (; first < Z.cols(); ++first) multiply<1>(J, Z, first, product);
     Z.topRows(changed) = product;
-}
-
-MatrixXd Link::matrix() const {
-    if (kind != Kind::crossing) return J;
-    return MatrixXd::Identity(F.size(), F.size()) - F * G / G.dot(F);
 }
 
 Chain::Chain(const Trajectory& trajectory, Options options)

@@ -2,14 +2,14 @@
 // (theory-derivatives.md 1). It is made from what the run has recorded, so that every decision is the run's.
 //
 //     Chain chain(trajectory);
-//     RowMatrix Z = ...;  chain.complete(Z);                  one column a change, its rows as Tangent says
+//     RowMatrix Z = ...;  chain.complete(Z);               one column a change, its rows as Tangent says
 //     while (const Link* link = chain.next()) link->apply(Z);
 //
 // Z after a link is the change following the event, (t', X'): that of the state where the run stands then, which each member of
 // the change reaches at its own time. At a fixed time it is  X' - F t', F = chain.rate().
 //
 // Who carries something else through the run, the error that steps have made and its covariance (theory-enclosure.md 9), takes
-// the same links: e := J e + what the link has left out, P := J P J' + ..., with J = link->matrix().
+// the same links: e := J e + what the link has left out, P := J P J' + ...
 #pragma once
 
 #include <algorithm>
@@ -57,7 +57,6 @@ struct Link {
     std::optional<Completion> completion;
 
     void apply(RowMatrix& Z) const;
-    Eigen::MatrixXd matrix() const;
 };
 
 inline void take_least(std::optional<double>& least, double x) { least = least ? std::min(*least, x) : x; }

@@ -18,10 +18,11 @@ using Index = std::ptrdiff_t;  // of doubles
 // The function's arguments, by the calling convention, what it takes from the tables, and the pointers of the loop.
 constexpr Reg64 tables = Xbyak::util::rdi, k = Xbyak::util::rsi, rise = Xbyak::util::rdx, knowns = Xbyak::util::rcx,
                 newest = Xbyak::util::r8, scales = Xbyak::util::r9, left = Xbyak::util::r10, right = Xbyak::util::r11,
-                first = Xbyak::util::rax, coefficients = left, now = right,  // outside the loop
-    row = k;                                                                 // at last
-constexpr unsigned scratch = 3;                                              // free vector registers
-constexpr unsigned first_sum = 16, inverse = first_sum;                      // and those of sums; 1/k before the loop
+                first = Xbyak::util::rax;
+// Outside the loop; and once k is known no more, where order k of the states stands.
+constexpr Reg64 coefficients = left, now = right, row = k;
+constexpr unsigned scratch = 3;                          // free vector registers
+constexpr unsigned first_sum = 16, inverse = first_sum;  // and those of sums; 1/k before the loop
 constexpr std::size_t most_sums = 16, most_rules = 2000;
 constexpr Index eight = static_cast<Index>(Eight::count);
 

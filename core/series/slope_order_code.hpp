@@ -9,7 +9,7 @@ namespace achilles {
 
 class MachineCode;
 
-// All products of lower orders are added up in one pass, each row of slopes loaded once; then come the states and the rules.
+// After q and v all products of lower orders are added up in one pass, each row of slopes loaded once; then come the rules.
 class SlopeOrderCode {
  public:
     // Nothing where that is not to be had.

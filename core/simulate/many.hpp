@@ -32,10 +32,10 @@ void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0,
                    Keep keep = Keep::everything);
 
-// The same with Keep::end, the sequences of events included, and eight runs at a time in one vector of the processor, as far as their motion is plain:
-// for ensembles and maps, of which the ends are wanted. Steps are of lower order than simulate() takes, so an end
-// agrees with that of simulate() within the tolerance, not to the last bit; but no more than there does it depend on
-// the other runs, the threads or the processor. What remains undecided so is simulated alone. Runs by dopri5, and
+// The same with Keep::end, the sequences of events included, and eight runs at a time in one vector of the processor, as far
+// as their motion is plain: for ensembles and maps, of which the ends are wanted. Steps are of lower order than simulate()
+// takes, so an end agrees with that of simulate() within the tolerance, not to the last bit; but no more than there does it
+// depend on the other runs, the threads or the processor. What remains undecided so is simulated alone. Runs by dopri5, and
 // systems with functions that are not defined everywhere, are simulated one by one. Statistics::seconds stays 0.
 void simulate_ends(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
