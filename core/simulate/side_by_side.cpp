@@ -12,18 +12,19 @@ namespace {
 
 constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter than the lanes
 
-// The parameters that stand in the motion or in the gap, of which all else that is asked of a run is made: by another, runs
-// differ in their restitution alone, or not at all.
+// The parameters that stand in what the motion and the gap are derived from, of which all else that is asked of a run is
+// made: by another, runs differ in their restitution alone, or not at all.
 std::vector<std::size_t> moving_parameters(const Model& model) {
-    const Program* const programs[] = {&model.motion({}).program, &model.motion(ContactSet::of(0)).program,
-                                       &model.contact_terms(), &model.energy()};
-    std::vector<std::vector<bool>> inputs;
-    for (const Program* program : programs) inputs.push_back(program->inputs_of(program->output_count()));
+    const Equations& from = model.equations();
+    std::vector<Expression> all{from.kinetic, from.potential};
+    for (const std::vector<Expression>* some : {&from.M, &from.Q, &from.gaps})
+        all.insert(all.end(), some->begin(), some->end());
     std::vector<std::size_t> moving;
-    for (std::size_t i = 0; i < model.default_run().parameters.size(); ++i)
-        if (std::any_of(inputs.begin(), inputs.end(),
-                        [&](const std::vector<bool>& of_one) -> bool { return of_one[model.layout().parameter(i)]; }))
+    for (std::size_t i = 0; i < model.default_run().parameters.size(); ++i) {
+        const std::uint32_t slot = model.layout().parameter(i);
+        if (std::any_of(all.begin(), all.end(), [&](Expression e) { return depends_on(e, {&slot, 1}); }))
             moving.push_back(i);
+    }
     return moving;
 }
 

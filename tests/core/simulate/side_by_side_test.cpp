@@ -391,6 +391,20 @@ TEST(RunsSideBySide, CountNoStepThatIsNotMade) {
     EXPECT_EQ(run.statistics.steps, alone.statistics.steps);
 }
 
+// The flight that a release begins is left to the run's own stepper until its gap is known to be open, and no longer: its
+// steps are of lower order then, and more.
+TEST(RunsSideBySide, FlyOnTogetherPastARelease) {
+    const auto model = test::load("double_pendulum");
+    auto begun = model->default_run(), long_after = begun;  // of one flight, from t = 5.6 to 9
+    begun.options.end_time = 6.5;
+    long_after.options.end_time = 8.9;
+    const auto attempts = together(model, {begun, long_after});
+    const auto steps = [&](std::size_t i) { return std::get<Trajectory>(attempts[i]).statistics.steps; };
+    const long alone = simulate(model, long_after).statistics.steps - simulate(model, begun).statistics.steps;
+    ASSERT_EQ(std::get<Trajectory>(attempts[1]).passages.back().kind, Event::Kind::release);
+    EXPECT_GT(static_cast<double>(steps(1) - steps(0)), 1.2 * static_cast<double>(alone)) << alone;
+}
+
 // Runs that differ in all that they can differ in.
 std::vector<Run> mixture(const Model& model) {
     auto runs = near_default(model, 60, 0.5, 5);
