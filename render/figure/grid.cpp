@@ -73,6 +73,7 @@ void Grid::add_margins(const std::vector<Panel>& panels, const Metrics& m) {
         in_last += last + 1 == rows ? 1 : 0;
     }
     if (!any_tall && in_last < across_.size()) short_row_ = in_last;
+    if (!panels.empty() && !panels.back().color_bar.colors.empty()) last_bar_ = needed_.back().right;
 }
 
 // The last row is higher where paths alone share it; no more than half as much again as the others.
@@ -132,6 +133,7 @@ float Grid::short_row_width() const {
     float whole = std::accumulate(widths_.begin(), widths_.end(), 0.0F);
     for (std::size_t i = 1; i < across_.size(); ++i) whole += across_[i - 1].right + between_ + across_[i].left;
     const auto shared = static_cast<float>(short_row_);
+    whole -= std::max(last_bar_ - across_.back().right, 0.0F);
     return (whole - (shared - 1.0F) * short_row_gap()) / shared;
 }
 
@@ -147,7 +149,10 @@ Margins Grid::room(std::size_t i) const {
     const Cell& cell = cells_[i];
     const std::size_t end = cell.row + cell.rows;
     const float bottom = is_tall(i) && end < down_.size() ? needed_[i].bottom : down_[end - 1].bottom;
-    return {across_[cell.column].left, across_[cell.column].right, down_[cell.row].top, bottom};
+    // The last panel of a short row ends where the last column does, whose room is not made for its bar.
+    const bool ends_in_bar = last_bar_ > 0.0F && is_in_short_row(i) && i + 1 == cells_.size();
+    const float right = ends_in_bar ? std::max(across_.back().right, last_bar_) : across_[cell.column].right;
+    return {across_[cell.column].left, right, down_[cell.row].top, bottom};
 }
 
 float Grid::least_side() const {

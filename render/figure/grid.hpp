@@ -49,6 +49,7 @@ class Grid {
     std::vector<Margins> across_, down_;  // of columns, left and right count; of rows, top and bottom
     std::vector<float> widths_, heights_, xs_, ys_;
     float between_;              // panels
+    float last_bar_ = 0.0F;      // what the last panel's colour bar needs at its right; 0: it has none
     std::size_t short_row_ = 0;  // panels in a last row that is not full; 0: it is full
 };
 

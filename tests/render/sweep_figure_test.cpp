@@ -276,6 +276,22 @@ TEST(SweepFigure, has_its_bar_inside_the_picture) {
     }
 }
 
+// Where it stands below a panel that has none, too.
+TEST(SweepFigure, has_its_bar_inside_the_picture_in_a_row_that_is_not_full) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
+    SweepLook look;
+    look.columns = {1, 1, 0};
+    const Rectangle area{0, 0, 1200, 800};
+    const auto width = [](const std::string&, float) { return 40.0F; };
+    for (const auto& item : layout(compose_sweep(data, look), width, area, 1.0)) {
+        const auto* text = std::get_if<TextRun>(&item);
+        EXPECT_LT(text != nullptr ? text->x : 0.0F, area.width - 14.0F);
+        const auto* tiles = std::get_if<Tiles>(&item);
+        const bool is_bar = tiles != nullptr && tiles->clip.width < 40.0F;
+        EXPECT_LT(is_bar ? tiles->clip.x + tiles->clip.width : 0.0F, area.width - 70.0F);
+    }
+}
+
 TEST(SweepFigure, says_once_what_several_panels_show) {
     SweepData data =
         grid({{"e", 0.0, 1.0, 3, false}, {"g", 0.0, 2.0, 3, false}},
