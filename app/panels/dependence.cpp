@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
-#include "number/angle.hpp"
+#include "figure/shown_unit.hpp"
 #include "panels/print.hpp"
 #include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
@@ -20,20 +20,9 @@ namespace achilles {
 
 namespace {
 
-// A unit as it is shown, and what a number in the file's is multiplied by.
-struct ShownUnit {
-    std::string unit;
-    double factor = 1.0;
-};
-ShownUnit shown_unit(const std::string& unit) {
-    if (unit == "rad") return {"\u00b0", degrees(1.0)};
-    if (unit == "rad/s") return {"\u00b0/s", degrees(1.0)};
-    return {typeset_unit(unit), 1.0};
-}
-
 std::string of_quantity(const Influences& known, double value, const char* format = "{:.4g}") {
     const ShownUnit unit = shown_unit(known.unit);
-    return number_with_unit(number(value * unit.factor, format), unit.unit);
+    return number_with_unit(number(value * unit.factor, format), unit.text);
 }
 
 double share_of(const Influences& known, const Influences::Of& by) {
@@ -231,7 +220,7 @@ std::string derivative_text(const SystemDescription& system, const Influences& k
     if (!by.reason.empty()) return "none";
     const ShownUnit unit = shown_unit(std::string(unit_of(system, by.name)));
     const std::string text = of_quantity(known, by.derivative / unit.factor);
-    return unit.unit.empty() ? text : text + " per " + unit.unit;
+    return unit.text.empty() ? text : text + " per " + unit.text;
 }
 
 command::ShowSweep sweep_over(const Session& session, const std::string& name, const std::string& quantity) {

@@ -21,7 +21,7 @@ namespace achilles {
 
 namespace {
 
-// What the session has along an axis.
+// What the session has along an axis, in the unit of the file.
 std::optional<double> present(const Session& session, const SweepAxis& axis) {
     if (const auto value = session.value(axis.name)) return value;
     const std::vector<const Option*> options = options_of_axis(axis.name);
@@ -53,7 +53,7 @@ const Panel& composed(const Session& session, SweepState& state) {
     return *state.panel;
 }
 
-// The number that the present run has for what a curve shows; nothing while it is under way, or where it has none.
+// The number that the present run has for what a curve shows, as it is shown; nothing while it is under way, or where it has none.
 std::optional<double> present_number(const Session& session, SweepState& state) {
     if (session.under_way() != nullptr || session.shows_start()) return std::nullopt;
     const Sweep sweep = session.sweep();
@@ -65,16 +65,19 @@ std::optional<double> present_number(const Session& session, SweepState& state) 
     if (measures.columns().front().kind != RunMeasures::Column::Kind::number) return std::nullopt;
     std::vector<double> numbers;
     Measuring(measures).at_end(session.trajectory(), numbers);
-    if (std::isfinite(numbers.front())) state.measure = numbers.front();
+    if (std::isfinite(numbers.front()))
+        state.measure = shown_unit(measures.columns().front().unit).factor * numbers.front();
     return state.measure;
 }
 
 // At the cross hair the line that touches the curve: straight, as the picture's axes go as the line does.
-void show_tangent(const Session& session, const Rectangle& area, const PanelMap& map, ImDrawList* list) {
+void show_tangent(const Session& session, const SweepData& data, const Rectangle& area, const PanelMap& map,
+                  ImDrawList* list) {
     const std::optional<TangentLine> tangent = session.sweep_tangent();
     if (!tangent) return;
-    const double x = map.x(tangent->x), y = map.y(tangent->y), step = x > area.x + 1.0 ? -1.0 : 1.0;
-    const double rise = (map.y(tangent->at(map.x.value(x + step))) - y) / step;
+    const double along = shown_unit_of_axis(data, 0).factor, up = shown_unit(data.columns.front().unit).factor;
+    const double x = map.x(along * tangent->x), y = map.y(up * tangent->y), step = x > area.x + 1.0 ? -1.0 : 1.0;
+    const double rise = (map.y(up * tangent->at(map.x.value(x + step) / along)) - y) / step;
     const double reach = std::min<double>(0.3 * area.width, 2.0 * area.height / std::max(std::abs(rise), 1e-9));
     const auto point = [&](double side) {
         return ImVec2{static_cast<float>(x + side * reach), static_cast<float>(y + side * reach * rise)};
@@ -91,19 +94,24 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
         list->AddLine(from, to, packed(session.theme().background, 0.75F), units(3.0F));
         list->AddLine(from, to, packed(text_color(), 0.8F), units(1.0F));
     };
-    const std::optional<double> x = present(session, data.sweep.axes[0]);
+    const auto present_on = [&](std::size_t axis) {
+        std::optional<double> value = present(session, data.sweep.axes[axis]);
+        if (value) *value *= shown_unit_of_axis(data, axis).factor;
+        return value;
+    };
+    const std::optional<double> x = present_on(0);
     const float across = x ? std::floor(static_cast<float>(map.x(*x))) + 0.5F : -1.0F;
     if (x) line({across, area.y}, {across, area.y + area.height});
     std::optional<double> y;
     if (data.sweep.axes.size() > 1) {
-        y = present(session, data.sweep.axes[1]);
+        y = present_on(1);
         if (y) {
             const float down = std::floor(static_cast<float>(map.y(*y))) + 0.5F;
             line({area.x, down}, {area.x + area.width, down});
         }
     } else if (!data.is_section() && session.sweep_job().is_current()) {
         y = present_number(session, state);
-        show_tangent(session, area, map, list);
+        show_tangent(session, data, area, map, list);
     }
     if (x && y) {
         const ImVec2 center{across, static_cast<float>(map.y(*y))};
@@ -185,6 +193,10 @@ std::optional<std::size_t> row_at(const SweepData& data, const std::vector<doubl
     return static_cast<std::size_t>(found - points.begin());
 }
 
+std::string told_number(double value, const ShownUnit& unit) {
+    return number_with_unit(number(unit.factor * value), unit.text);
+}
+
 std::string told_of(const SweepData& data, std::size_t row) {
     std::size_t number_place = 0;
     std::string text;
@@ -192,8 +204,7 @@ std::string told_of(const SweepData& data, std::size_t row) {
         std::string value;
         if (column.kind == RunMeasures::Column::Kind::number) {
             const double x = data.number(row, number_place++);
-            value = std::isfinite(x) ? number(x) + (column.unit.empty() ? "" : " " + typeset_unit(column.unit))
-                                     : "no value";
+            value = std::isfinite(x) ? told_number(x, shown_unit(column.unit)) : "no value";
         } else if (column.kind == RunMeasures::Column::Kind::outcome) {
             value = data.rows.ends[row].text();
         } else {
@@ -216,7 +227,8 @@ void tell(const Session& session, const SweepData& data, const std::vector<doubl
         Sweep sweep = data.sweep;
         state.told.clear();
         for (std::size_t i = 0; i < sweep.axes.size(); ++i)
-            state.told += fmt::format("{} = {}\n", sweep.axes[i].name, number(sweep.value(i, point)));
+            state.told += fmt::format("{} = {}\n", data.names[i],
+                                      told_number(sweep.value(i, point), shown_unit_of_axis(data, i)));
         if (!data.is_section()) {
             if (const std::string measured = told_of(data, *row); !measured.empty()) state.told += measured + "\n";
         }
@@ -258,6 +270,7 @@ void use_mouse(const Session& session, const SweepData& data, const Rectangle& a
     std::vector<double> values{map.x.value(std::clamp<double>(mouse.x, area.x, area.x + area.width))};
     if (data.sweep.axes.size() > 1)
         values.push_back(map.y.value(std::clamp<double>(mouse.y, area.y, area.y + area.height)));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] /= shown_unit_of_axis(data, i).factor;
     const bool has_moved = ImGui::GetIO().MouseDelta.x != 0.0F || ImGui::GetIO().MouseDelta.y != 0.0F;
     if (ImGui::IsItemActive() && (has_moved || ImGui::IsItemActivated())) go_to(data, values, commands);
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) tell(session, data, values, state.sweep);

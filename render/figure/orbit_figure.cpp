@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "figure/label.hpp"
+#include "figure/shown_unit.hpp"
 #include "figure/ticks.hpp"
-#include "number/angle.hpp"
 
 namespace achilles {
 
@@ -139,10 +139,9 @@ class BranchPanels {
         const std::string where = orbit_.is_at_release ? " at the release"
                                   : orbit_.has_flow    ? " on the section"
                                                        : fmt::format(" at t = {:.4g} s", orbit_.state.t);
-        const double factor = is_of_angles(first.unit) ? degrees(1.0) : 1.0;
-        return of(
-            with_unit(typeset(first.name) + where, is_of_angles(first.unit) ? "\u00B0" : typeset_unit(first.unit)),
-            [factor](const OrbitPoint& point) { return factor * point.state.q[0]; });
+        const ShownUnit unit = shown_unit(first.unit);
+        return of(with_unit(typeset(first.name) + where, unit.text),
+                  [factor = unit.factor](const OrbitPoint& point) { return factor * point.state.q[0]; });
     }
     // Sizes, of all but the flow's and the zeros.
     BranchPanel of_multipliers() const {

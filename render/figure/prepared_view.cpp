@@ -3,7 +3,7 @@
 
 #include "figure/compose.hpp"
 #include "figure/label.hpp"
-#include "number/angle.hpp"
+#include "figure/shown_unit.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -50,11 +50,9 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
         if (unit.empty() && (text == c.name || text == c.name + "'")) result.unit = unit_of(description, text);
     }
     if (result.unit.empty()) result.unit = unit_of_expression(description, text);
-    if (result.unit == "rad" || result.unit.starts_with("rad/")) {
-        result.factor = degrees(1.0);
-        result.unit.replace(0, 3, "\u00B0");
-    }
-    result.unit = typeset_unit(result.unit);
+    const ShownUnit shown = shown_unit(result.unit);
+    result.unit = shown.text;
+    result.factor = shown.factor;
     return result;
 }
 

@@ -27,6 +27,7 @@ struct Traced {
 };
 
 Traced trace(const SweepData& data, const SweepColumn& column, const std::vector<std::uint32_t>& rows) {
+    const ShownUnit x = shown_unit_of_axis(data, 0);
     Traced traced;
     traced.alone.shape = Markers::Shape::circle;
     std::vector<Point>& points = traced.curve.points;
@@ -45,7 +46,7 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
             continue;
         }
         if (before != no_row && !is_same(data, before, row)) end_piece();
-        points.push_back({data.value(0, row), column.number(row)});
+        points.push_back({x.factor * data.value(0, row), column.number(row)});
         ++length;
         before = row;
     }
@@ -64,10 +65,11 @@ Markers changes(const SweepData& data, std::span<const SweepColumn> columns, con
     const auto has_value = [&](std::uint32_t row) {
         return std::any_of(columns.begin(), columns.end(), [&](const SweepColumn& one) { return one.has_value(row); });
     };
+    const SweepAxis axis = shown_axis(data, 0);
     for (std::size_t i = 1; i < rows.size(); ++i)
         if (has_room(data, rows[i - 1]) && has_room(data, rows[i]) && !is_same(data, rows[i - 1], rows[i]) &&
             (has_value(rows[i - 1]) || has_value(rows[i])))
-            bars.points.push_back({edge_of(data.sweep.axes[0], static_cast<double>(i)), 0.0});
+            bars.points.push_back({edge_of(axis, static_cast<double>(i)), 0.0});
     if (bars.points.size() > most) bars.points.clear();
     return bars;
 }
@@ -98,7 +100,7 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
         panel.curves.push_back(std::move(traced.curve));
         panel.y.label += (i > 0 ? ", " : "") + (several ? columns[i].name() : columns[i].label());
     }
-    if (several) panel.y.label = with_unit(panel.y.label, typeset_unit(columns[0].unit()));
+    if (several) panel.y.label = with_unit(panel.y.label, columns[0].unit().text);
     const bool is_given = look.range.has_value();
     if (is_given) range = *look.range;
     set_ticks(panel.y, range[0], range[1], is_given ? 0.0 : 0.05);
@@ -113,6 +115,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
     const SweepClasses classes(column, theme);
     const std::size_t lines = classes.named + (classes.named < classes.all.size() ? 1 : 0);
     const std::vector<Markers> keys = classes.keys();
+    const SweepAxis axis = shown_axis(data, 0);
     // The first class stands at the top.
     const auto height = [&](std::size_t place) { return static_cast<double>(lines - 1 - place); };
     panel.y.label = column.label();
@@ -130,8 +133,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
         if (!code) continue;
         const std::size_t place = classes.place(*code);
         std::vector<Point>& points = panel.curves[place].points;
-        const double from = edge_of(data.sweep.axes[0], static_cast<double>(i)),
-                     to = edge_of(data.sweep.axes[0], static_cast<double>(i + 1));
+        const double from = edge_of(axis, static_cast<double>(i)), to = edge_of(axis, static_cast<double>(i + 1));
         if (!points.empty() && points.back().x == from)
             points.back().x = to;
         else {

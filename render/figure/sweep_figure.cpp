@@ -69,8 +69,8 @@ std::vector<Panel> curve_panels(const SweepData& data, const std::vector<std::si
         const SweepColumn one(data, column);
         const auto fits = [&](const std::vector<SweepColumn>& group) {
             constexpr std::size_t most = 8;  // hues
-            return one.is_number() && group.front().is_number() && group.front().unit() == one.unit() &&
-                   !one.unit().empty() && group.size() < most;
+            return one.is_number() && group.front().is_number() && group.front().unit().text == one.unit().text &&
+                   !one.unit().text.empty() && group.size() < most;
         };
         const auto group = std::find_if(groups.begin(), groups.end(), fits);
         if (group != groups.end())

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "figure/figure.hpp"
+#include "figure/shown_unit.hpp"
 #include "study/sweep_data.hpp"
 
 namespace achilles {
@@ -22,6 +23,9 @@ struct SweepLook {
     // Of the numbers: the limits of their axis, or of their colours. Without them what is there fits.
     std::optional<std::array<double, 2>> range;
 };
+
+// Of an axis. A parameter is in degrees as it has its slider: an angle is, a drive's frequency is no angle's rate.
+ShownUnit shown_unit_of_axis(const SweepData& data, std::size_t axis);
 
 // Throws InputError where such a sweep has no figure, and says what would have. Rows do not matter.
 void check_drawn(const SweepData& data, const SweepLook& look);

@@ -17,7 +17,7 @@ namespace {
 class Grid2 {
  public:
     explicit Grid2(const SweepData& data)
-        : x(data.sweep.axes[0]), y(data.sweep.axes[1]), rows_(rows_of_points(data)), count_(data.count()) {
+        : x(shown_axis(data, 0)), y(shown_axis(data, 1)), rows_(rows_of_points(data)), count_(data.count()) {
         x_turned_ = x.low > x.high, y_turned_ = y.low > y.high;
         if (x_turned_) std::swap(x.low, x.high);
         if (y_turned_) std::swap(y.low, y.high);

@@ -22,16 +22,14 @@ SweepColumn::SweepColumn(const SweepData& data, std::size_t column) : data_(&dat
     const RunMeasures::Column& one = data.columns[column];
     kind_ = one.kind == Of::number ? Kind::number : one.kind == Of::held ? Kind::held : Kind::outcome;
     name_ = one.name;
-    unit_ = one.unit;
+    unit_ = shown_unit(one.unit);
     if (kind_ != Kind::number) return;
     const auto before = data.columns.begin() + static_cast<std::ptrdiff_t>(column);
     number_ = static_cast<std::size_t>(
         std::count_if(data.columns.begin(), before, [](const auto& other) { return other.kind == Of::number; }));
 }
 
-std::string SweepColumn::label() const {
-    return kind_ == Kind::number ? with_unit(name(), typeset_unit(unit_)) : name();
-}
+std::string SweepColumn::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
 
 namespace {
 
@@ -158,10 +156,27 @@ std::vector<Markers> SweepClasses::keys() const {
     return keys;
 }
 
+ShownUnit shown_unit_of_axis(const SweepData& data, std::size_t index) {
+    const std::string& unit = data.units[index];
+    const bool is_of_start = data.names[index] != data.sweep.axes[index].name;
+    return is_of_start || unit == "rad" ? shown_unit(unit) : ShownUnit{typeset_unit(unit)};
+}
+
+SweepAxis shown_axis(const SweepData& data, std::size_t index) {
+    SweepAxis axis = data.sweep.axes[index];
+    const double factor = shown_unit_of_axis(data, index).factor;
+    axis.low *= factor, axis.high *= factor;
+    return axis;
+}
+
+double shown_value(const SweepData& data, std::size_t axis, std::size_t row) {
+    return shown_unit_of_axis(data, axis).factor * data.value(axis, row);
+}
+
 Axis axis_of(const SweepData& data, std::size_t index) {
-    const SweepAxis& one = data.sweep.axes[index];
+    const SweepAxis one = shown_axis(data, index);
     Axis axis;
-    axis.label = with_unit(typeset(data.names[index]), typeset_unit(data.units[index]));
+    axis.label = with_unit(typeset(data.names[index]), shown_unit_of_axis(data, index).text);
     axis.logarithmic = one.logarithmic;
     const double low = std::min(one.low, one.high), high = std::max(one.low, one.high);
     set_ticks(axis, low, high, 0.0);

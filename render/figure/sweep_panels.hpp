@@ -22,8 +22,9 @@ class SweepColumn {
     // As it is read in a label, and with its unit.
     std::string name() const;
     std::string label() const;
-    const std::string& unit() const { return unit_; }
-    double number(std::size_t row) const { return data_->number(row, *number_); }
+    const ShownUnit& unit() const { return unit_; }
+    // In that unit.
+    double number(std::size_t row) const { return unit_.factor * data_->number(row, *number_); }
     // All that there are, in no order.
     std::vector<double> numbers() const;
     // The least and the greatest number; [nan, nan] without any.
@@ -40,7 +41,8 @@ class SweepColumn {
     std::string class_name(std::uint64_t code, std::size_t place, double share) const;
     const SweepData* data_;
     Kind kind_;
-    std::string name_, unit_;
+    std::string name_;
+    ShownUnit unit_;
     std::optional<std::size_t> number_;
 };
 
@@ -80,7 +82,10 @@ struct ColumnColors {
     const SweepColumn* column_;
 };
 
-// An axis of the sweep along one of a panel, with its limits.
+// An axis of the sweep in the unit that is shown, and what it is there in a row.
+SweepAxis shown_axis(const SweepData& data, std::size_t axis);
+double shown_value(const SweepData& data, std::size_t axis, std::size_t row);
+// The same along one of a panel, with its limits.
 Axis axis_of(const SweepData& data, std::size_t axis);
 // The row of every point of a grid; no_row where it is not there yet.
 inline constexpr std::uint32_t no_row = ~std::uint32_t{0};

@@ -58,9 +58,10 @@ Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Them
     set_limits(panel.y, column, look.range);
     std::vector<Point> points;
     points.reserve(data.count());
-    for (std::size_t row = 0; row < data.count(); ++row) points.push_back({data.value(0, row), column.number(row)});
+    for (std::size_t row = 0; row < data.count(); ++row)
+        points.push_back({shown_value(data, 0, row), column.number(row)});
     add_points(std::move(points), theme.ink, panel, "at every " + word_of(*data.sweep.at));
-    const SweepAxis& axis = data.sweep.axes[0];
+    const SweepAxis axis = shown_axis(data, 0);
     if (axis.count > 0) {
         panel.dots.columns = static_cast<int>(std::min<std::uint64_t>(axis.count, most_map_side));
         const double first = edge_of(axis, 0.0), last = edge_of(axis, static_cast<double>(axis.count));
@@ -118,7 +119,8 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
     if (!is_plane && column.is_number()) {
         set_limits(panel.y, column, look.range);
         std::vector<Point> points;
-        for (std::size_t row = 0; row < data.count(); ++row) points.push_back({data.value(0, row), column.number(row)});
+        for (std::size_t row = 0; row < data.count(); ++row)
+            points.push_back({shown_value(data, 0, row), column.number(row)});
         add_points(std::move(points), phase_color(theme, Phase::Kind::hybrid), panel, "");
         return panel;
     }
@@ -139,8 +141,8 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         const bool has_value = column.has_value(row);
         if (!has_value && !is_plane) continue;
         lacks = lacks || !has_value;
-        const double y = is_plane ? data.value(1, row) : static_cast<double>(classes->place(*column.code(row)));
-        painted.points.push_back({data.value(0, row), y});
+        const double y = is_plane ? shown_value(data, 1, row) : static_cast<double>(classes->place(*column.code(row)));
+        painted.points.push_back({shown_value(data, 0, row), y});
         painted.colors.push_back(has_value ? color(row) : theme.border);
     }
     painted.add_to(panel);

@@ -7,6 +7,8 @@
 
 #include "app/hands.hpp"
 #include "journal/journal.hpp"
+#include "number/angle.hpp"
+#include "panels/widgets.hpp"
 #include "pictures/take_away.hpp"
 #include "session/recipe.hpp"
 
@@ -128,6 +130,24 @@ TEST(SweepPanel, takes_the_hand_to_another_run) {
     hands.click("sweep picture", 0.25);
     EXPECT_NEAR(*hands.session.value("e"), 0.3, 0.005);  // a quarter of the way along x; in the middle along y
     EXPECT_NEAR(*hands.session.value("x'"), 1.0, 0.02);
+}
+
+// They are shown in degrees and told so; what a slider takes is in the file's unit.
+TEST(SweepPanel, takes_the_hand_to_an_angle) {
+    Hands hands("double_pendulum");
+    hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
+    hands.session.settle();
+    hands.rest(3);
+    hands.point("sweep picture", 0.25);
+    EXPECT_TRUE(hands.says("theta1(0) = \u221214.3239\u00B0"));
+    const double angle = degrees(hands.session.sweep_job().data()->number(2, 0));
+    EXPECT_TRUE(hands.says("theta2 = " + number(angle) + "\u00B0"));
+    hands.click("sweep picture", 0.25);
+    EXPECT_NEAR(*hands.session.value("theta1"), -0.25, 0.005);
+    hands.session.settle();
+    hands.rest(2);
+    ASSERT_TRUE(hands.state.sweep.measure);
+    EXPECT_NEAR(*hands.state.sweep.measure, degrees(hands.session.samples().back().state.q[1]), 1e-6);
 }
 
 TEST(SweepPanel, shows_the_present_run_on_its_curve) {

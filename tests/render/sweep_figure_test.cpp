@@ -225,6 +225,28 @@ TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
     EXPECT_EQ(panel.markers[0].points[1].y, data.number(1, 1));
 }
 
+// As in the figure of a run; a drive's frequency is no angle's rate.
+TEST(SweepFigure, shows_angles_in_degrees) {
+    const SweepData data =
+        data_of("driven_double_pendulum",
+                "--over theta1=0.1:0.3:3 --over om=1:2:2 --print theta1 --print \"theta1'\" --end 0.5");
+    const Figure figure = compose_sweep(data);
+    const Panel& panel = figure.panels[0];
+    EXPECT_EQ(panel.x.label, "\U0001D703\u2081(0) (\u00B0)");
+    EXPECT_NEAR(panel.x.low, degrees(0.1), 1e-12);
+    EXPECT_NEAR(panel.raster.right, degrees(0.35), 1e-12);
+    EXPECT_TRUE(panel.y.label.ends_with(" (rad/s)")) << panel.y.label;
+    EXPECT_EQ(panel.y.high, 2.0);
+    EXPECT_TRUE(panel.color_bar.axis.label.ends_with(" (\u00B0)")) << panel.color_bar.axis.label;
+    EXPECT_NEAR(SweepColumn(data, 0).number(3), degrees(data.number(3, 0)), 1e-9);
+    EXPECT_TRUE(figure.panels[1].color_bar.axis.label.ends_with(" (\u00B0/s)"));
+    const SweepData rates = data_of("double_pendulum", "--over theta1'=1:2:3 --print theta2 --end 0.5");
+    const Panel curve = compose_sweep(rates).panels[0];
+    EXPECT_NEAR(curve.curves[0].points[0].x, degrees(1.0), 1e-12);
+    EXPECT_NEAR(curve.curves[0].points[0].y, degrees(rates.number(0, 0)), 1e-12);
+    EXPECT_TRUE(curve.x.label.ends_with(" (\u00B0/s)")) << curve.x.label;
+}
+
 TEST(SweepSamples, stand_where_they_are) {
     const SweepData data =
         data_of("ball_on_sine", "--over x=-3:3 --over y=-1:2 --random 40 --print x --print held --end 3");
