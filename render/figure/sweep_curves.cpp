@@ -6,7 +6,6 @@
 #include "figure/compose.hpp"
 #include "figure/label.hpp"
 #include "figure/sweep_panels.hpp"
-#include "figure/ticks.hpp"
 
 namespace achilles {
 
@@ -103,8 +102,10 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     if (several) panel.y.label = with_unit(panel.y.label, columns[0].unit().text);
     const bool is_given = look.range.has_value();
     if (is_given) range = *look.range;
-    set_ticks(panel.y, range[0], range[1], is_given ? 0.0 : 0.05);
+    set_limits(panel.y, range, is_given ? 0.0 : 0.05);
     panel.legend = panel.legend_above = several || !panel.markers.empty();
+    const auto is_empty = [](const SweepColumn& column) { return column.numbers().empty(); };
+    if (data.count() > 0 && std::all_of(columns.begin(), columns.end(), is_empty)) show_nothing(panel, theme);
     return panel;
 }
 
@@ -142,6 +143,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
             points.push_back({to, height(place)});
         }
     }
+    if (data.count() > 0 && lines == 0) show_nothing(panel, theme);
     return panel;
 }
 

@@ -7,7 +7,6 @@
 
 #include "figure/color_table.hpp"
 #include "figure/sweep_panels.hpp"
-#include "figure/ticks.hpp"
 
 namespace achilles {
 
@@ -118,8 +117,8 @@ std::array<double, 2> limits_of_colors(const SweepColumn& column) {
 NumberColors::NumberColors(const SweepColumn& column, const SweepLook& look) : table(number_colors(256)) {
     const std::array<double, 2> range = look.range ? *look.range : limits_of_colors(column);
     bar.axis.label = column.label();
-    set_ticks(bar.axis, range[0], range[1], 0.0);
-    bar.colors = table;
+    set_limits(bar.axis, range, 0.0);
+    if (!bar.axis.ticks.empty()) bar.colors = table;
     const std::array<double, 2> all = column.range();
     if (all[0] < bar.axis.low) bar.axis.label += fmt::format(", least {:.4g}", all[0]);
     if (all[1] > bar.axis.high) bar.axis.label += fmt::format(", greatest {:.4g}", all[1]);
@@ -139,6 +138,13 @@ ColumnColors::ColumnColors(const SweepColumn& column, const Theme& theme, const 
 
 Color ColumnColors::operator()(std::size_t row) const {
     return numbers ? (*numbers)(column_->number(row)) : classes->color(*column_->code(row));
+}
+
+void ColumnColors::explain(Panel& panel) const {
+    if (numbers) panel.color_bar = numbers->bar;
+    if (panel.color_bar.colors.empty()) panel.title = column_->label();
+    if (!classes) return;
+    for (Markers& key : classes->keys()) panel.markers.push_back(std::move(key));
 }
 
 Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
@@ -166,10 +172,7 @@ Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& t
     panel.raster = {std::move(cells), edge_of(grid.x, 0.0), last(grid.x), edge_of(grid.y, 0.0), last(grid.y)};
     if (lacks) panel.hatch = nothing(theme);
     if (look.contours) add_contours(data, grid, theme, panel);
-    if (color.numbers)
-        panel.color_bar = color.numbers->bar;
-    else
-        panel.title = column.label(), panel.markers = color.classes->keys();
+    color.explain(panel);
     panel.legend = panel.legend_above = lacks || color.classes || !panel.curves.empty();
     return panel;
 }

@@ -62,7 +62,7 @@ struct SweepClasses {
     std::size_t named = 0;  // the others share a key
 };
 
-// The colours of a column's numbers, and the bar that tells what they mean.
+// The colours of a column's numbers, and the bar that tells what they mean; without numbers there is no bar.
 struct NumberColors {
     NumberColors(const SweepColumn& column, const SweepLook& look);
     Color operator()(double value) const;
@@ -74,6 +74,7 @@ struct NumberColors {
 struct ColumnColors {
     ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look);
     Color operator()(std::size_t row) const;  // of one that has a value
+    void explain(Panel& panel) const;
     // One of them.
     std::optional<NumberColors> numbers;
     std::optional<SweepClasses> classes;
@@ -95,6 +96,10 @@ double edge_of(const SweepAxis& axis, double i);
 
 // "no value": where it occurs.
 Hatch nothing(const Theme& theme);
+// The same of a whole panel.
+void show_nothing(Panel& panel, const Theme& theme);
+// Without any numbers it has none along it: they would be invented.
+void set_limits(Axis& axis, const std::array<double, 2>& range, double margin);
 
 Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, const Theme& theme,
                    const SweepLook& look);

@@ -5,7 +5,6 @@
 
 #include "figure/label.hpp"
 #include "figure/sweep_panels.hpp"
-#include "figure/ticks.hpp"
 
 namespace achilles {
 
@@ -22,13 +21,16 @@ std::string word_of(const Section& section) {
         case Section::Kind::release:
             return "release";
         default:
-            return typeset(section.expression) + " = 0";
+            return "upward zero of " + typeset(section.expression);
     }
 }
 
 // Points of one kind: markers where they are few.
-void add_points(std::vector<Point> points, const Color& color, Panel& panel, const std::string& what) {
+void add_points(std::vector<Point> points, const Color& color, const Theme& theme, Panel& panel,
+                const std::string& what) {
+    const bool has_rows = !points.empty();
     std::erase_if(points, [](const Point& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
+    if (has_rows && points.empty()) return show_nothing(panel, theme);
     Markers markers;
     markers.shape = Markers::Shape::circle;
     markers.fill = color;
@@ -44,10 +46,9 @@ void add_points(std::vector<Point> points, const Color& color, Panel& panel, con
     panel.markers.push_back(std::move(markers));
 }
 
-void set_limits(Axis& axis, const SweepColumn& column, const std::optional<std::array<double, 2>>& given) {
-    const std::array<double, 2> range = given ? *given : column.range();
+void fit(Axis& axis, const SweepColumn& column, const std::optional<std::array<double, 2>>& given) {
     axis.label = column.label();
-    set_ticks(axis, range[0], range[1], given ? 0.0 : 0.04);
+    set_limits(axis, given ? *given : column.range(), given ? 0.0 : 0.04);
 }
 
 }  // namespace
@@ -55,12 +56,12 @@ void set_limits(Axis& axis, const SweepColumn& column, const std::optional<std::
 Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
     Panel panel;
     panel.x = axis_of(data, 0);
-    set_limits(panel.y, column, look.range);
+    fit(panel.y, column, look.range);
     std::vector<Point> points;
     points.reserve(data.count());
     for (std::size_t row = 0; row < data.count(); ++row)
         points.push_back({shown_value(data, 0, row), column.number(row)});
-    add_points(std::move(points), theme.ink, panel, "at every " + word_of(*data.sweep.at));
+    add_points(std::move(points), theme.ink, theme, panel, "at every " + word_of(*data.sweep.at));
     const SweepAxis axis = shown_axis(data, 0);
     if (axis.count > 0) {
         panel.dots.columns = static_cast<int>(std::min<std::uint64_t>(axis.count, most_map_side));
@@ -73,12 +74,12 @@ Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Them
 
 Panel section_panel(const SweepData& data, const SweepColumn& x, const SweepColumn& y, const Theme& theme) {
     Panel panel;
-    set_limits(panel.x, x, std::nullopt);
-    set_limits(panel.y, y, std::nullopt);
+    fit(panel.x, x, std::nullopt);
+    fit(panel.y, y, std::nullopt);
     std::vector<Point> points;
     points.reserve(data.count());
     for (std::size_t row = 0; row < data.count(); ++row) points.push_back({x.number(row), y.number(row)});
-    add_points(std::move(points), theme.ink, panel, "at every " + word_of(*data.sweep.at));
+    add_points(std::move(points), theme.ink, theme, panel, "at every " + word_of(*data.sweep.at));
     return panel;
 }
 
@@ -117,11 +118,11 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
     panel.x = axis_of(data, 0);
     const bool is_plane = data.sweep.axes.size() > 1;
     if (!is_plane && column.is_number()) {
-        set_limits(panel.y, column, look.range);
+        fit(panel.y, column, look.range);
         std::vector<Point> points;
         for (std::size_t row = 0; row < data.count(); ++row)
             points.push_back({shown_value(data, 0, row), column.number(row)});
-        add_points(std::move(points), phase_color(theme, Phase::Kind::hybrid), panel, "");
+        add_points(std::move(points), phase_color(theme, Phase::Kind::hybrid), theme, panel, "");
         return panel;
     }
     const ColumnColors color(column, theme, look);
@@ -146,11 +147,7 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         painted.colors.push_back(has_value ? color(row) : theme.border);
     }
     painted.add_to(panel);
-    if (color.numbers) panel.color_bar = color.numbers->bar;
-    if (classes && is_plane) {
-        panel.title = column.label();
-        for (Markers& key : classes->keys()) panel.markers.push_back(std::move(key));
-    }
+    if (is_plane) color.explain(panel);
     if (lacks) {
         Markers none;
         none.label = no_value;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "figure/color_table.hpp"
+#include "figure/label.hpp"
 #include "figure/layout.hpp"
 #include "figure/palette.hpp"
 #include "figure/sweep_panels.hpp"
@@ -223,6 +224,37 @@ TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
     ASSERT_EQ(panel.markers.size(), 1u);
     EXPECT_EQ(panel.markers[0].points.size(), data.count());
     EXPECT_EQ(panel.markers[0].points[1].y, data.number(1, 1));
+}
+
+// Nor are there numbers along an axis without any.
+TEST(SweepFigure, says_that_there_is_no_value) {
+    const std::vector<double> none(4, nothing_there);
+    const std::vector<std::uint64_t> same(4, 1);
+    const auto is_empty = [](const Panel& panel) { return panel.hatch.label == no_value && panel.legend_above; };
+    const Panel curve = compose_sweep(grid({{"e", 0.0, 1.0, 4, false}}, none, same), only(0)).panels[0];
+    EXPECT_TRUE(is_empty(curve));
+    EXPECT_TRUE(curve.y.ticks.empty());
+    EXPECT_FALSE(curve.x.ticks.empty());
+    const Panel bars = compose_sweep(grid({{"e", 0.0, 1.0, 4, false}}, none, same), only(1)).panels[0];
+    EXPECT_TRUE(is_empty(bars));
+    const Panel map =
+        compose_sweep(grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 1.0, 2, false}}, none, same), only(0)).panels[0];
+    EXPECT_TRUE(is_empty(map));
+    EXPECT_TRUE(map.color_bar.colors.empty());
+    EXPECT_EQ(map.title, "Zeno time 2 (s)");
+    const Panel diagram = compose_sweep(data_of("ball_on_floor", "--over e=0:0.5:3 --at release --print y")).panels[0];
+    EXPECT_TRUE(is_empty(diagram));
+    EXPECT_TRUE(diagram.y.ticks.empty());
+    const Panel section = compose_sweep(data_of("ball_on_floor", "--at release --print y --print gap")).panels[0];
+    EXPECT_TRUE(is_empty(section));
+    EXPECT_TRUE(section.x.ticks.empty());
+    EXPECT_FALSE(is_empty(compose_sweep(grid({{"e", 0.0, 1.0, 4, false}}, {}, {}), only(0)).panels[0]))
+        << "it is not there yet";
+}
+
+TEST(SweepSection, of_zeros_says_which_way_they_are_passed) {
+    const SweepData data = data_of("ball_on_sine", "--over e=0:0.5:3 --at \"x - 1\" --print y --end 3");
+    EXPECT_EQ(compose_sweep(data).panels[0].markers[0].label, "at every upward zero of " + typeset("x - 1"));
 }
 
 // As in the figure of a run; a drive's frequency is no angle's rate.
