@@ -29,7 +29,10 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
         if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
     }
     check(asked_.page, "--width-mm");
-    check_drawn(SweepData(table), asked_.look);
+    const SweepData data(table);
+    check_drawn(data, asked_.look);
+    for (const std::string& word : left_out(data, asked_.look))
+        print_clean(stderr, "achilles: warning: --print {}: words are not drawn in a section\n", word);
 }
 
 Figure SweepPictures::figure(const EachRows& each_rows) const {

@@ -59,6 +59,14 @@ void check_drawn(const SweepData& data, const SweepLook& look) {
                    fmt::format("at most {} are drawn", most_map_side));
 }
 
+std::vector<std::string> left_out(const SweepData& data, const SweepLook& look) {
+    std::vector<std::string> names;
+    if (form_of(data) != Form::diagram) return names;
+    for (const std::size_t column : columns_of(data, look))
+        if (const SweepColumn one(data, column); !one.is_number()) names.push_back(one.name());
+    return names;
+}
+
 namespace {
 
 // Of a grid over one axis: numbers of one unit share a panel.

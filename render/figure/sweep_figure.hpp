@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "figure/figure.hpp"
@@ -29,6 +30,9 @@ ShownUnit shown_unit_of_axis(const SweepData& data, std::size_t axis);
 
 // Throws InputError where such a sweep has no figure, and says what would have. Rows do not matter.
 void check_drawn(const SweepData& data, const SweepLook& look);
+
+// The columns that are left out of the figure: the words of a section have no place in it.
+std::vector<std::string> left_out(const SweepData& data, const SweepLook& look);
 
 // Of a grid over one axis, columns with one unit are curves of a panel: without a value they have a gap, and where the
 // sequence of events changes a break, as what is plotted may jump there. Over two axes every column is a map: numbers in

@@ -83,6 +83,15 @@ TEST(SweepPicture, GoesOnWhereItWasInterrupted) {
     EXPECT_EQ(content(folder.path() / "a.png"), content(folder.path() / "whole.png"));
 }
 
+TEST(SweepPicture, SaysWhatItLeavesOut) {
+    const Folder folder;
+    const std::string sweep = "sweep ball_in_sloped_box --over e_floor=0.3:0.9:4 --at impact --print x --print held ";
+    const Answer answer = folder.run(sweep + "--end 2 --csv a.csv --out a.svg");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.err, "achilles: warning: --print held: words are not drawn in a section\n");
+    EXPECT_EQ(folder.run(sweep + "--end 2 --csv a.csv").err, "") << "the table has it";
+}
+
 TEST(SweepPicture, IsRefusedBeforeTheWork) {
     const Folder folder;
     const auto refused = [&](const std::string& more) {
