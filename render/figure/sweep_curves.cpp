@@ -44,7 +44,8 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
             before = no_row;
             continue;
         }
-        if (before != no_row && !is_same(data, before, row)) end_piece();
+        const bool is_step = before != no_row && column.is_count() && column.number(before) != column.number(row);
+        if (is_step || (before != no_row && !is_same(data, before, row))) end_piece();
         points.push_back({x.factor * data.value(0, row), column.number(row)});
         ++length;
         before = row;

@@ -29,6 +29,8 @@ SweepColumn::SweepColumn(const SweepData& data, std::size_t column) : data_(&dat
         std::count_if(data.columns.begin(), before, [](const auto& other) { return other.kind == Of::number; }));
 }
 
+bool SweepColumn::is_count() const { return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases"; }
+
 std::string SweepColumn::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
 
 namespace {

@@ -19,6 +19,8 @@ class SweepColumn {
     SweepColumn(const SweepData& data, std::size_t column);
 
     bool is_number() const { return number_.has_value(); }
+    // Of whole numbers, between which there is nothing.
+    bool is_count() const;
     // As it is read in a label, and with its unit.
     std::string name() const;
     std::string label() const;

@@ -1,4 +1,4 @@
-// Figures of sweeps, in numbers and text: gaps, breaks, cells, contours, classes, dots, and what has no figure.
+// Figures of sweeps, in numbers and text: cells, contours, classes, dots, and what has no figure.
 #include "figure/sweep_figure.hpp"
 
 #include <gtest/gtest.h>
@@ -12,101 +12,13 @@
 #include "figure/layout.hpp"
 #include "figure/palette.hpp"
 #include "figure/sweep_panels.hpp"
-#include "model/read_system.hpp"
-#include "render/support.hpp"
+#include "render/sweep_tables.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
 namespace {
 
-constexpr double nothing_there = std::numeric_limits<double>::quiet_NaN();
-
-// Data of a table that nobody computed: one number and held, over a grid.
-SweepData grid(std::vector<SweepAxis> axes, const std::vector<double>& numbers,
-               const std::vector<std::uint64_t>& signatures) {
-    SweepData data;
-    for (const SweepAxis& axis : axes)
-        data.names.push_back(axis.name), data.units.push_back(axis.name == "e" ? "" : "m/s^2");
-    data.sweep.axes = std::move(axes);
-    data.columns = {{RunMeasures::Column::Kind::number, "zeno_time(2)", "s"},
-                    {RunMeasures::Column::Kind::held, "held", ""}};
-    data.numbers = 1;
-    data.contacts = {"floor", "wall"};
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        data.rows.points.push_back(i);
-        data.rows.numbers.push_back(numbers[i]);
-        data.rows.held.push_back(numbers[i] > 2.0 ? ContactSet::of(0) : ContactSet());
-        data.rows.ends.push_back(std::isnan(numbers[i]) ? RunEnd() : RunEnd(Outcome::Kind::end_time));
-        data.rows.signatures.push_back(signatures[i]);
-    }
-    return data;
-}
-
-SweepLook only(std::size_t column) {
-    SweepLook look;
-    look.columns = {column};
-    return look;
-}
-
-// Its pieces, as the x of their points.
-std::vector<std::vector<double>> pieces(const Curve& curve) {
-    std::vector<std::vector<double>> all(1);
-    for (const Point& p : curve.points) {
-        if (std::isnan(p.x))
-            all.emplace_back();
-        else
-            all.back().push_back(p.x);
-    }
-    std::erase_if(all, [](const auto& piece) { return piece.empty(); });
-    return all;
-}
-
-TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
-    const SweepData data =
-        grid({{"e", 0.0, 0.7, 8, false}}, {1, 2, 3, nothing_there, 5, 6, 9, 10}, {1, 1, 1, 1, 1, 1, 2, 2});
-    const Figure figure = compose_sweep(data, only(0));
-    ASSERT_EQ(figure.panels.size(), 1u);
-    const Panel& panel = figure.panels[0];
-    ASSERT_EQ(panel.curves.size(), 1u);
-    const auto found = pieces(panel.curves[0]);
-    ASSERT_EQ(found.size(), 3u);
-    EXPECT_EQ(found[0].size(), 3u);
-    EXPECT_EQ(found[1].size(), 2u);
-    EXPECT_EQ(found[2].size(), 2u);
-    EXPECT_DOUBLE_EQ(found[2][0], 0.6);
-    EXPECT_EQ(panel.x.label, "\U0001D452");
-    EXPECT_EQ(panel.y.label, "Zeno time 2 (s)");
-    EXPECT_EQ(panel.x.low, 0.0);
-    EXPECT_EQ(panel.x.high, 0.7);
-    // One bar, in the middle between the two.
-    ASSERT_EQ(panel.markers.size(), 1u);
-    EXPECT_EQ(panel.markers[0].label, sequence_changes);
-    ASSERT_EQ(panel.markers[0].points.size(), 1u);
-    EXPECT_NEAR(panel.markers[0].points[0].x, 0.55, 1e-12);
-}
-
-TEST(SweepCurve, shows_a_point_that_stands_alone) {
-    const SweepData data = grid({{"e", 0.0, 0.4, 5, false}}, {1, nothing_there, 3, nothing_there, 5}, {1, 1, 1, 1, 1});
-    const Panel panel = compose_sweep(data, only(0)).panels[0];
-    ASSERT_EQ(panel.markers.size(), 1u);
-    EXPECT_EQ(panel.markers[0].points.size(), 3u);
-}
-
-TEST(SweepCurve, has_a_logarithmic_axis_where_the_sweep_has) {
-    const Panel panel = compose_sweep(grid({{"g", 1e-3, 1.0, 4, true}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(0)).panels[0];
-    EXPECT_TRUE(panel.x.logarithmic);
-    EXPECT_EQ(panel.x.label, "\U0001D454 (m/s\u00B2)");
-    EXPECT_NEAR(panel.curves[0].points[1].x, 1e-2, 1e-12);
-}
-
-TEST(SweepCurve, of_a_class_is_a_bar_for_each) {
-    const Panel panel = compose_sweep(grid({{"e", 0.0, 0.3, 4, false}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(1)).panels[0];
-    ASSERT_EQ(panel.curves.size(), 2u);
-    EXPECT_EQ(panel.y.ticks[0].label, "no contact");
-    EXPECT_EQ(panel.y.ticks[1].label, "floor");
-    EXPECT_NEAR(panel.curves[0].points[1].x, 0.15, 1e-12);
-    EXPECT_NEAR(panel.curves[1].points[0].x, 0.15, 1e-12);
-}
+using sweeps::data_of, sweeps::grid, sweeps::nothing_there, sweeps::only;
 
 // The first axis goes to the right, the second upwards; half of an outer cell is outside.
 TEST(SweepMap, has_a_cell_for_every_point) {
@@ -193,18 +105,6 @@ TEST(SweepMap, of_sequences_counts_them) {
     const Panel panel = compose_sweep(data, only(sequence_column)).panels[0];
     EXPECT_EQ(panel.markers[0].label, "1. (75 %)");
     EXPECT_EQ(panel.markers[1].label, "2. (25 %)");
-}
-
-std::shared_ptr<const Model> model_of(const std::string& system) {
-    return std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + system + ".toml"));
-}
-
-SweepData data_of(const std::string& system, const std::string& text, bool with_rows = true) {
-    const auto model = model_of(system);
-    const SweepTable table(model, read_sweep(text, model->description()));
-    SweepData data(table);
-    if (with_rows) data.add(table.rows(0, table.sweep().count()));
-    return data;
 }
 
 TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {

@@ -1,0 +1,87 @@
+// Sweeps over one axis, in numbers: gaps, breaks, steps and classes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "figure/sweep_panels.hpp"
+#include "render/sweep_tables.hpp"
+
+namespace achilles {
+namespace {
+
+using sweeps::grid, sweeps::nothing_there, sweeps::only;
+
+// Its pieces, as the x of their points.
+std::vector<std::vector<double>> pieces(const Curve& curve) {
+    std::vector<std::vector<double>> all(1);
+    for (const Point& p : curve.points) {
+        if (std::isnan(p.x))
+            all.emplace_back();
+        else
+            all.back().push_back(p.x);
+    }
+    std::erase_if(all, [](const auto& piece) { return piece.empty(); });
+    return all;
+}
+
+TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
+    const SweepData data =
+        grid({{"e", 0.0, 0.7, 8, false}}, {1, 2, 3, nothing_there, 5, 6, 9, 10}, {1, 1, 1, 1, 1, 1, 2, 2});
+    const Figure figure = compose_sweep(data, only(0));
+    ASSERT_EQ(figure.panels.size(), 1u);
+    const Panel& panel = figure.panels[0];
+    ASSERT_EQ(panel.curves.size(), 1u);
+    const auto found = pieces(panel.curves[0]);
+    ASSERT_EQ(found.size(), 3u);
+    EXPECT_EQ(found[0].size(), 3u);
+    EXPECT_EQ(found[1].size(), 2u);
+    EXPECT_EQ(found[2].size(), 2u);
+    EXPECT_DOUBLE_EQ(found[2][0], 0.6);
+    EXPECT_EQ(panel.x.label, "\U0001D452");
+    EXPECT_EQ(panel.y.label, "Zeno time 2 (s)");
+    EXPECT_EQ(panel.x.low, 0.0);
+    EXPECT_EQ(panel.x.high, 0.7);
+    // One bar, in the middle between the two.
+    ASSERT_EQ(panel.markers.size(), 1u);
+    EXPECT_EQ(panel.markers[0].label, sequence_changes);
+    ASSERT_EQ(panel.markers[0].points.size(), 1u);
+    EXPECT_NEAR(panel.markers[0].points[0].x, 0.55, 1e-12);
+}
+
+// There is no run with 2.5 of them.
+TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
+    SweepData data = grid({{"e", 0.0, 0.5, 6, false}}, {1, 1, 2, 2, 2, 4}, {1, 1, 1, 1, 1, 1});
+    EXPECT_EQ(pieces(compose_sweep(data, only(0)).panels[0].curves[0]).size(), 1u);
+    for (const char* count : {"impacts", "zeno_points", "releases"}) {
+        data.columns[0] = {RunMeasures::Column::Kind::number, count, ""};
+        const Panel panel = compose_sweep(data, only(0)).panels[0];
+        EXPECT_EQ(pieces(panel.curves[0]).size(), 3u) << count;
+        EXPECT_EQ(panel.markers.at(0).points.size(), 1u) << "the last stands alone";
+    }
+}
+
+TEST(SweepCurve, shows_a_point_that_stands_alone) {
+    const SweepData data = grid({{"e", 0.0, 0.4, 5, false}}, {1, nothing_there, 3, nothing_there, 5}, {1, 1, 1, 1, 1});
+    const Panel panel = compose_sweep(data, only(0)).panels[0];
+    ASSERT_EQ(panel.markers.size(), 1u);
+    EXPECT_EQ(panel.markers[0].points.size(), 3u);
+}
+
+TEST(SweepCurve, has_a_logarithmic_axis_where_the_sweep_has) {
+    const Panel panel = compose_sweep(grid({{"g", 1e-3, 1.0, 4, true}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(0)).panels[0];
+    EXPECT_TRUE(panel.x.logarithmic);
+    EXPECT_EQ(panel.x.label, "\U0001D454 (m/s\u00B2)");
+    EXPECT_NEAR(panel.curves[0].points[1].x, 1e-2, 1e-12);
+}
+
+TEST(SweepCurve, of_a_class_is_a_bar_for_each) {
+    const Panel panel = compose_sweep(grid({{"e", 0.0, 0.3, 4, false}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(1)).panels[0];
+    ASSERT_EQ(panel.curves.size(), 2u);
+    EXPECT_EQ(panel.y.ticks[0].label, "no contact");
+    EXPECT_EQ(panel.y.ticks[1].label, "floor");
+    EXPECT_NEAR(panel.curves[0].points[1].x, 0.15, 1e-12);
+    EXPECT_NEAR(panel.curves[1].points[0].x, 0.15, 1e-12);
+}
+
+}  // namespace
+}  // namespace achilles
