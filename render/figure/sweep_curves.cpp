@@ -54,14 +54,13 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
     return traced;
 }
 
-// Between neighbours of different sequences that have a value, where they are few enough to be told apart.
+// Between neighbours of different sequences that have a value.
 Markers changes(const SweepData& data, std::span<const SweepColumn> columns, const std::vector<std::uint32_t>& rows,
                 const Theme& theme) {
     Markers bars;
     bars.label = sequence_changes;
     bars.shape = Markers::Shape::bar;
     bars.fill = theme.surface;
-    constexpr std::size_t most = 30;
     const auto has_value = [&](std::uint32_t row) {
         return std::any_of(columns.begin(), columns.end(), [&](const SweepColumn& one) { return one.has_value(row); });
     };
@@ -70,8 +69,21 @@ Markers changes(const SweepData& data, std::span<const SweepColumn> columns, con
         if (has_room(data, rows[i - 1]) && has_room(data, rows[i]) && !is_same(data, rows[i - 1], rows[i]) &&
             (has_value(rows[i - 1]) || has_value(rows[i])))
             bars.points.push_back({edge_of(axis, static_cast<double>(i)), 0.0});
-    if (bars.points.size() > most) bars.points.clear();
     return bars;
+}
+
+// More bars could not be told apart: then the curve says why it is broken.
+void show_changes(Markers bars, const Color& color, Panel& panel) {
+    constexpr std::size_t most = 30;
+    if (bars.points.empty()) return;
+    if (bars.points.size() <= most) {
+        panel.markers.insert(panel.markers.begin(), std::move(bars));
+        return;
+    }
+    Curve broken;
+    broken.label = broken_at_changes;
+    broken.stroke = {color, 1.6, {11.0, 9.0}};
+    panel.curves.push_back(std::move(broken));
 }
 
 }  // namespace
@@ -81,8 +93,6 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     Panel panel;
     panel.x = axis_of(data, 0);
     const std::vector<std::uint32_t> rows = rows_of_points(data);
-    if (Markers bars = changes(data, columns, rows, theme); !bars.points.empty())
-        panel.markers.push_back(std::move(bars));
     std::array<double, 2> range{nan, nan};
     const bool several = columns.size() > 1;
     for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -103,8 +113,9 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     if (several) panel.y.label = with_unit(panel.y.label, columns[0].unit().text);
     const bool is_given = look.range.has_value();
     if (is_given) range = *look.range;
+    show_changes(changes(data, columns, rows, theme), several ? theme.ink : panel.curves.front().stroke.color, panel);
     set_limits(panel.y, range, is_given ? 0.0 : 0.05);
-    panel.legend = panel.legend_above = several || !panel.markers.empty();
+    panel.legend = panel.legend_above = several || panel.curves.size() > 1 || !panel.markers.empty();
     const auto is_empty = [](const SweepColumn& column) { return column.numbers().empty(); };
     if (data.count() > 0 && std::all_of(columns.begin(), columns.end(), is_empty)) show_nothing(panel, theme);
     return panel;

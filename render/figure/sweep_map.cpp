@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "figure/color_table.hpp"
 #include "figure/sweep_panels.hpp"
@@ -38,8 +39,9 @@ class Grid2 {
     bool x_turned_ = false, y_turned_ = false;
 };
 
-// Where neighbours have different sequences: lines between their cells, as long as they go straight on.
-std::vector<Point> changes(const SweepData& data, const Grid2& grid) {
+// Where neighbours have different sequences: lines between their cells, as long as they go straight on. Nothing where every
+// fifth neighbour is another.
+std::optional<std::vector<Point>> changes(const SweepData& data, const Grid2& grid) {
     std::vector<Point> lines;
     std::size_t changed = 0;
     const auto differ = [&](std::uint32_t a, std::uint32_t b) {
@@ -73,21 +75,26 @@ std::vector<Point> changes(const SweepData& data, const Grid2& grid) {
                 add({edge_of(grid.x, from), y}, {edge_of(grid.x, to), y});
             });
     }
-    // Where every fifth neighbour is another, lines would hide what they divide.
     constexpr double most = 0.2;
     const double neighbours = 2.0 * static_cast<double>(grid.columns() * grid.lines());
-    if (static_cast<double>(changed) > most * neighbours) lines.clear();
+    if (static_cast<double>(changed) > most * neighbours) return std::nullopt;
     return lines;
 }
 
 void add_contours(const SweepData& data, const Grid2& grid, const Theme& theme, Panel& panel) {
     Curve line;
-    line.points = changes(data, grid);
-    if (line.points.empty()) return;
+    line.stroke = {theme.ink, 0.8, {}};
+    const auto points = changes(data, grid);
+    if (!points) {
+        line.label = changes_too_often;
+        panel.curves.push_back(std::move(line));
+        return;
+    }
+    if (points->empty()) return;
+    line.points = *points;
     // Seen on dark cells and on bright ones.
     Curve rim = line;
     rim.stroke = {{theme.background.r, theme.background.g, theme.background.b, 150}, 2.0, {}};
-    line.stroke = {theme.ink, 0.8, {}};
     line.label = sequence_changes;
     panel.curves.push_back(std::move(rim));
     panel.curves.push_back(std::move(line));

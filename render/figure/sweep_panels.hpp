@@ -12,6 +12,9 @@ namespace achilles {
 
 // What a legend says.
 inline constexpr const char *sequence_changes = "the sequence of events changes", *no_value = "no value";
+// In place of lines at each change, where there are so many that they would hide what they divide.
+inline constexpr const char *broken_at_changes = "broken where the sequence of events changes",
+                            *changes_too_often = "the sequence of events changes too often to draw";
 
 // One column of the data, whatever it holds.
 class SweepColumn {

@@ -48,6 +48,24 @@ TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
     EXPECT_NEAR(panel.markers[0].points[0].x, 0.55, 1e-12);
 }
 
+TEST(SweepCurve, says_why_it_is_broken_where_lines_would_be_too_many) {
+    std::vector<double> numbers(64, 1.0);
+    std::vector<std::uint64_t> sequences;
+    for (std::uint64_t i = 0; i < 64; ++i) sequences.push_back(i / 2);
+    const auto panel = [&] {
+        return compose_sweep(grid({{"e", 0.0, 1.0, 64, false}}, numbers, sequences), only(0)).panels[0];
+    };
+    const Panel too_many = panel();
+    EXPECT_EQ(pieces(too_many.curves[0]).size(), 32u);
+    EXPECT_TRUE(too_many.markers.empty());
+    ASSERT_EQ(too_many.curves.size(), 2u);
+    EXPECT_EQ(too_many.curves[1].label, broken_at_changes);
+    EXPECT_TRUE(too_many.legend_above);
+    for (std::uint64_t& one : sequences) one = std::min<std::uint64_t>(one, 30);
+    EXPECT_EQ(panel().markers.at(0).label, sequence_changes);
+    EXPECT_EQ(panel().curves.size(), 1u);
+}
+
 // There is no run with 2.5 of them.
 TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
     SweepData data = grid({{"e", 0.0, 0.5, 6, false}}, {1, 1, 2, 2, 2, 4}, {1, 1, 1, 1, 1, 1});

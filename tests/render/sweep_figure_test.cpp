@@ -57,6 +57,15 @@ TEST(SweepMap, has_a_cell_for_every_point) {
     EXPECT_EQ(line[4].x, 1.5);
 }
 
+TEST(SweepMap, says_where_lines_would_be_too_many) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 2, 3, 4});
+    const Panel panel = compose_sweep(data, only(0)).panels[0];
+    ASSERT_EQ(panel.curves.size(), 1u);
+    EXPECT_TRUE(panel.curves[0].points.empty());
+    EXPECT_EQ(panel.curves[0].label, changes_too_often);
+    EXPECT_TRUE(panel.legend_above);
+}
+
 // Two of many that are far from the rest do not take the colours from them, and are told.
 TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
     std::vector<double> numbers;
