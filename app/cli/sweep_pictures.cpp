@@ -29,6 +29,9 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
         if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
     }
     check(asked_.page, "--width-mm");
+    const PictureSize size = size_of(page_for(asked_.page, "svg"), asked_.size, Figure(), "svg");
+    asked_.look.width = size.width / size.scale;
+    if (has_height()) asked_.look.height = size.height / size.scale;
     const SweepData data(table);
     check_drawn(data, asked_.look);
     for (const std::string& word : left_out(data, asked_.look))
@@ -52,9 +55,15 @@ Figure SweepPictures::figure(const EachRows& each_rows) const {
     return compose_sweep(data, asked_.look);
 }
 
+PictureSize SweepPictures::size_for(const Figure& figure, const std::string& format) const {
+    PictureSize size = size_of(page_for(asked_.page, format), asked_.size, figure, format);
+    if (!has_height()) size.height = readable_height(figure, size.width, size.height, size.scale);
+    return size;
+}
+
 std::string SweepPictures::bytes(const Figure& figure, const std::string& file) const {
     const std::string format = format_for(file, "");
-    const PictureSize size = size_of(page_for(asked_.page, format), asked_.size, figure, format);
+    const PictureSize size = size_for(figure, format);
     job_.check_size(size.width, size.height);
     const SystemDescription& description = table_.model().description();
     Notes notes = job_.notes_of("", {});

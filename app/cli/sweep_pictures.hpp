@@ -14,6 +14,7 @@ struct SweepPicturesAsked {
     std::vector<std::string> files;  // .png, .svg or .pdf
     SweepLook look;
     PictureSize size;
+    bool has_size = false;  // that of pixels is given
     PaperSize page;
 };
 
@@ -26,10 +27,12 @@ class SweepPictures {
     // Drawn from all rows at the end, of which it holds most_drawn_rows at most: of more, every second, third, ... one. Throws
     // std::runtime_error where it cannot be drawn.
     Figure figure(const EachRows& each_rows) const;
-    // As the name of such a file says.
+    // As the name of such a file says. A height that is not asked for is no less than what its panels need.
     std::string bytes(const Figure& figure, const std::string& file) const;
 
  private:
+    bool has_height() const { return asked_.page.width > 0.0 ? asked_.page.height > 0.0 : asked_.has_size; }
+    PictureSize size_for(const Figure& figure, const std::string& format) const;
     const SweepTable& table_;
     SweepPicturesAsked asked_;
     const PictureJob& job_;

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "figure/grid.hpp"
+#include "figure/label.hpp"
+#include "figure/layout.hpp"
 #include "figure/publication.hpp"
 #include "figure/sweep_panels.hpp"
 #include "system/input_error.hpp"
@@ -141,7 +145,53 @@ void share_keys(Figure& figure) {
     }
 }
 
+// Of a picture 1200 pixels wide, as wide as a page, these are so many.
+constexpr double least_map_width = 300.0 / publication_scale, least_panel_height = 110.0 / publication_scale;
+
+// The width and the height that every panel has at least.
+std::array<double, 2> least_sides(const Figure& figure, double width, double height, double scale) {
+    const auto measure = [](const std::string& label, float size) {
+        return 0.5F * size * static_cast<float>(letters(label).size());
+    };
+    std::array<double, 2> least{width, height};
+    const Rectangle page{0.0F, 0.0F, static_cast<float>(width), static_cast<float>(height)};
+    for (const PlotArea& at : plot_areas(figure, measure, page, scale))
+        least = {std::min(least[0], double{at.place.width}), std::min(least[1], double{at.place.height})};
+    return least;
+}
+
+void set_columns(Figure& figure, int columns) {
+    figure.columns = columns;
+    share_axes(figure);
+}
+
+// Below one another where they would be narrow side by side; in a height that is given, only if they are larger so.
+void fit_columns(Figure& figure, const SweepLook& look) {
+    if (figure.columns < 2 || look.width <= 0.0) return;
+    const bool is_free = look.height <= 0.0;
+    const double height = is_free ? look.width * static_cast<double>(figure.panels.size()) : look.height;
+    const auto beside = least_sides(figure, look.width, height, 1.0);
+    if (beside[0] >= least_map_width) return;
+    set_columns(figure, 1);
+    if (is_free) return;
+    const auto below = least_sides(figure, look.width, height, 1.0);
+    if (std::min(below[0], below[1]) < std::min(beside[0], beside[1])) set_columns(figure, 2);
+}
+
 }  // namespace
+
+int readable_height(const Figure& figure, int width, int height, double scale) {
+    constexpr int most = 16384;
+    std::size_t rows = 1;
+    for (const Cell& cell : cells_of(figure)) rows = std::max(rows, cell.row + cell.rows);
+    // What is too low for anything tells only roughly what it lacks.
+    for (int i = 0; i < 4 && height < most; ++i) {
+        const double lack = least_panel_height * scale - least_sides(figure, width, height, scale)[1];
+        if (lack < 0.5) break;
+        height = std::min(height + static_cast<int>(std::ceil(lack * static_cast<double>(rows))), most);
+    }
+    return height;
+}
 
 Figure compose_sweep(const SweepData& data, const SweepLook& look) {
     check_drawn(data, look);
@@ -155,11 +205,11 @@ Figure compose_sweep(const SweepData& data, const SweepLook& look) {
     figure.panels = panels_of(data, theme, look);
     const bool one_column =
         figure.panels.size() == 1 || form_of(data) == Form::curves || form_of(data) == Form::diagram;
-    figure.columns = one_column ? 1 : 2;
-    share_axes(figure);
+    set_columns(figure, one_column ? 1 : 2);
     if (figure.panels.size() > 1) share_keys(figure);
     for (std::size_t i = 0; i < figure.panels.size() && figure.panels.size() > 1; ++i)
         figure.panels[i].title = lettered(i, figure.panels[i].title);
+    fit_columns(figure, look);
     return figure;
 }
 

@@ -23,6 +23,9 @@ struct SweepLook {
     bool contours = true;  // of a map: between cells of different sequences
     // Of the numbers: the limits of their axis, or of their colours. Without them what is there fits.
     std::optional<std::array<double, 2>> range;
+    // Of the picture, in points of the layout. Maps that had too little of the width side by side stand below one another. A
+    // height of 0 follows from the panels; without a width they are side by side.
+    double width = 0.0, height = 0.0;
 };
 
 // Of an axis. A parameter is in degrees as it has its slider: an angle is, a drive's frequency is no angle's rate.
@@ -41,5 +44,8 @@ std::vector<std::string> left_out(const SweepData& data, const SweepLook& look);
 // points stand where they are. What has no value is hatched, and named. Rows that are not there yet are left free. Throws
 // InputError as check_drawn().
 Figure compose_sweep(const SweepData& data, const SweepLook& look = {});
+
+// The height in pixels of such a picture in which every panel can be read, no less than that given.
+int readable_height(const Figure& figure, int width, int height, double scale);
 
 }  // namespace achilles

@@ -83,6 +83,20 @@ TEST(SweepPicture, GoesOnWhereItWasInterrupted) {
     EXPECT_EQ(content(folder.path() / "a.png"), content(folder.path() / "whole.png"));
 }
 
+TEST(SweepPicture, IsAsHighAsItsPanelsNeedUnlessASizeIsGiven) {
+    const Folder folder;
+    std::string many = "sweep ball_on_floor --over e=0:0.5:3 --out a.svg";
+    for (int i = 1; i <= 12; ++i) many += " --print " + std::to_string(i) + "*e";
+    const auto is_as_ever = [&](const std::string& command) {
+        EXPECT_EQ(folder.run(command).status, 0);
+        return content(folder.path() / "a.svg").find("viewBox=\"0 0 1200 800\"") != std::string::npos;
+    };
+    EXPECT_FALSE(is_as_ever(many));
+    EXPECT_EQ(folder.run("reproduce a.svg").status, 0);
+    EXPECT_TRUE(is_as_ever(many + " --size 1200x800"));
+    EXPECT_TRUE(is_as_ever("sweep ball_on_floor --over e=0:0.5:3 --out a.svg --print e"));
+}
+
 TEST(SweepPicture, SaysWhatItLeavesOut) {
     const Folder folder;
     const std::string sweep = "sweep ball_in_sloped_box --over e_floor=0.3:0.9:4 --at impact --print x --print held ";

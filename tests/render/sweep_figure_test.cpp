@@ -11,7 +11,9 @@
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
 #include "figure/palette.hpp"
+#include "figure/publication.hpp"
 #include "figure/sweep_panels.hpp"
+#include "render/samples.hpp"
 #include "render/sweep_tables.hpp"
 #include "system/input_error.hpp"
 
@@ -273,6 +275,39 @@ TEST(SweepFigure, says_once_what_several_panels_show) {
     EXPECT_EQ(figure.panels[2].markers[1].label, "cannot start");
     EXPECT_EQ(figure.panels[2].title, "(c)\u00A0\u00A0outcome");
     EXPECT_EQ(figure.columns, 2);
+}
+
+// By widths in points: 1200 pixels, or 170 mm, and half of it. In a height that is given they stay where they are larger.
+TEST(SweepFigure, has_narrow_maps_below_one_another) {
+    const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
+    const auto columns = [&](double width, double height) {
+        SweepLook look;
+        look.columns = {0, 0};
+        look.width = width, look.height = height;
+        return compose_sweep(data, look).columns;
+    };
+    EXPECT_EQ(columns(0.0, 0.0), 2);
+    EXPECT_EQ(columns(1200.0 / publication_scale, 0.0), 2);
+    EXPECT_EQ(columns(600.0 / publication_scale, 0.0), 1);
+    EXPECT_EQ(columns(600.0 / publication_scale, 800.0 / publication_scale), 1);
+    EXPECT_EQ(columns(600.0 / publication_scale, 200.0 / publication_scale), 2);
+}
+
+TEST(SweepFigure, is_as_high_as_its_panels_need) {
+    SweepData data = grid({{"e", 0.0, 1.0, 2, false}}, {1, 2}, {1, 1});
+    data.columns[0].unit = "";
+    SweepLook look;
+    for (const std::size_t count : {1u, 3u, 12u}) {
+        look.columns.assign(count, 0);
+        const Figure figure = compose_sweep(data, look);
+        const int height = readable_height(figure, 1200, 800, publication_scale);
+        EXPECT_EQ(height > 800, count == 12) << height;
+        const Rectangle page{0, 0, 1200, static_cast<float>(height)};
+        for (const PlotArea& at : plot_areas(figure, samples::half, page, publication_scale)) {
+            EXPECT_GE(at.plot.height, 109.0F) << count;
+            EXPECT_LT(at.plot.height, height > 800 ? 125.0F : 800.0F) << count;
+        }
+    }
 }
 
 TEST(SweepFigure, says_what_has_none) {

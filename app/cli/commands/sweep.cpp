@@ -172,7 +172,10 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     add_page_options(*command, pictures.page);
     add_size_options(*command, pictures.size.width, pictures.size.height, pictures.size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
-    command->callback([arguments, &status, &job, ranks] { status = run(*arguments, job, ranks); });
+    command->callback([arguments, command, &status, &job, ranks] {
+        arguments->pictures.has_size = command->count("--size") > 0;
+        status = run(*arguments, job, ranks);
+    });
 }
 
 }  // namespace achilles
