@@ -160,7 +160,7 @@ std::vector<Key> keys_of(const Panel& panel) {
         if (!curve.label.empty()) keys.push_back({curve.label, curve.stroke});
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
-    if (!panel.hatch.label.empty()) keys.push_back({panel.hatch.label, panel.hatch});
+    if (!panel.hatch.label.empty() && !is_bare(panel)) keys.push_back({panel.hatch.label, panel.hatch});
     for (const Tube& tube : panel.tubes)
         if (!tube.label.empty()) keys.push_back({tube.label, Tube{{}, tube.fill, tube.edge, {}}});
     return keys;
@@ -311,6 +311,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     lay_bands(panel, sheet, inner);
     lay_grid(panel, style, sheet, inner, m);
     lay_data(panel, sheet, inner, m);
+    lay_word(panel, style, sheet, inner, m);
     float lift = 0.0F;
     if (panel.legend && panel.legend_above) {
         const KeyLines keys(keys_of(panel), inner.width, m);

@@ -102,7 +102,7 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
         traced.curve.stroke.color = phase_stroke(theme, Phase::Kind::constrained, i, columns.size()).color;
         if (!several) traced.curve.stroke.color = phase_color(theme, Phase::Kind::hybrid);
         traced.curve.stroke.width = 1.6;
-        if (several) traced.curve.label = columns[i].name();
+        if (several) traced.curve.label = columns[i].name() + (std::isnan(own[0]) ? std::string(": ") + no_value : "");
         traced.alone.fill = traced.curve.stroke.color;
         traced.alone.edge.a = 0;
         traced.alone.size = 3.0;
@@ -117,7 +117,7 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     set_limits(panel.y, range, is_given ? 0.0 : 0.05);
     panel.legend = panel.legend_above = several || panel.curves.size() > 1 || !panel.markers.empty();
     const auto is_empty = [](const SweepColumn& column) { return column.numbers().empty(); };
-    if (data.count() > 0 && std::all_of(columns.begin(), columns.end(), is_empty)) show_nothing(panel, theme);
+    if (data.count() > 0 && std::all_of(columns.begin(), columns.end(), is_empty)) panel.hatch = nothing(theme);
     return panel;
 }
 
@@ -155,7 +155,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
             points.push_back({to, height(place)});
         }
     }
-    if (data.count() > 0 && lines == 0) show_nothing(panel, theme);
+    if (data.count() > 0 && lines == 0) panel.hatch = nothing(theme);
     return panel;
 }
 

@@ -10,6 +10,7 @@
 #include "figure/layout.hpp"
 #include "figure/publication.hpp"
 #include "figure/sweep_panels.hpp"
+#include "figure/tiles.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -118,7 +119,8 @@ void share_keys(Figure& figure) {
     const auto is_said_twice = [&](const std::string& label) {
         const auto says = [&](const Panel& panel) {
             const auto has = [&](const auto& one) { return one.label == label; };
-            return panel.hatch.label == label || std::any_of(panel.curves.begin(), panel.curves.end(), has) ||
+            return (panel.hatch.label == label && !is_bare(panel)) ||
+                   std::any_of(panel.curves.begin(), panel.curves.end(), has) ||
                    std::any_of(panel.markers.begin(), panel.markers.end(), has);
         };
         return !label.empty() && std::count_if(figure.panels.begin(), figure.panels.end(), says) > 1;
@@ -133,7 +135,7 @@ void share_keys(Figure& figure) {
         for (const Curve& curve : panel.curves) add(curve.label, curve.stroke);
         for (const Markers& markers : panel.markers)
             if (!markers.points.empty() || panel.raster.cells == nullptr) add(markers.label, markers);
-        add(panel.hatch.label, panel.hatch);
+        if (!is_bare(panel)) add(panel.hatch.label, panel.hatch);
     }
     const auto clear = [&](auto& one) {
         if (std::find(shared.begin(), shared.end(), one.label) != shared.end()) one.label.clear();
@@ -141,7 +143,7 @@ void share_keys(Figure& figure) {
     for (Panel& panel : figure.panels) {
         for (Curve& curve : panel.curves) clear(curve);
         for (Markers& markers : panel.markers) clear(markers);
-        clear(panel.hatch);
+        if (!is_bare(panel)) clear(panel.hatch);
     }
 }
 

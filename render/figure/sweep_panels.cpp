@@ -201,11 +201,6 @@ double edge_of(const SweepAxis& axis, double i) {
 
 Hatch nothing(const Theme& theme) { return {no_value, theme.border}; }
 
-void show_nothing(Panel& panel, const Theme& theme) {
-    panel.hatch = nothing(theme);
-    panel.legend = panel.legend_above = true;
-}
-
 void set_limits(Axis& axis, const std::array<double, 2>& range, double margin) {
     set_ticks(axis, range[0], range[1], margin);
     if (!(range[0] <= range[1])) axis.ticks.clear();

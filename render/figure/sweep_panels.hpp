@@ -101,8 +101,6 @@ double edge_of(const SweepAxis& axis, double i);
 
 // "no value": where it occurs.
 Hatch nothing(const Theme& theme);
-// The same of a whole panel.
-void show_nothing(Panel& panel, const Theme& theme);
 // Without any numbers it has none along it: they would be invented.
 void set_limits(Axis& axis, const std::array<double, 2>& range, double margin);
 

@@ -30,7 +30,10 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
                 const std::string& what) {
     const bool has_rows = !points.empty();
     std::erase_if(points, [](const Point& p) { return !std::isfinite(p.x) || !std::isfinite(p.y); });
-    if (has_rows && points.empty()) return show_nothing(panel, theme);
+    if (has_rows && points.empty()) {
+        panel.hatch = nothing(theme);
+        return;
+    }
     Markers markers;
     markers.shape = Markers::Shape::circle;
     markers.fill = color;

@@ -31,6 +31,23 @@ void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& 
     if (hatch.color.a > 0) sheet.emplace_back(hatching_of(hatch, plot, m));
 }
 
+bool is_bare(const Panel& panel) {
+    const auto has_points = [](const auto& one) { return !one.points.empty(); };
+    return !panel.hatch.label.empty() && !panel.raster.cells && panel.dots.points.empty() &&
+           std::none_of(panel.curves.begin(), panel.curves.end(), has_points) &&
+           std::none_of(panel.markers.begin(), panel.markers.end(), has_points);
+}
+
+void lay_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    if (!is_bare(panel)) return;
+    const float x = plot.x + 0.5F * plot.width, y = plot.y + 0.5F * plot.height;
+    const float wide = m.width(panel.hatch.label, m.text) + 1.6F * m.text, high = 1.8F * m.text;
+    if (style.background.a > 0)
+        sheet.emplace_back(
+            Fill{{std::round(x - 0.5F * wide), std::round(y - 0.5F * high), wide, high}, style.background});
+    sheet.emplace_back(TextRun{x, y - 0.6F * m.text, 0.5F, panel.hatch.label, style.ink, m.text});
+}
+
 void lay_hatched_field(const Hatch& hatch, Sheet& sheet, Rectangle field, const Metrics& m) {
     Hatch dense = hatch;
     sheet.emplace_back(hatching_of(dense, field, m));

@@ -8,6 +8,9 @@ namespace achilles {
 void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& metrics);
 // Its sign in a legend.
 void lay_hatched_field(const Hatch& hatch, Sheet& sheet, Rectangle field, const Metrics& metrics);
+// Whether there is nothing else in a panel: then its middle says why, and no legend.
+bool is_bare(const Panel& panel);
+void lay_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m);
 void lay_raster(const Raster& raster, Sheet& sheet, Rectangle plot, const PanelMap& map);
 // As cells of about a point of the layout.
 void lay_dots(const Dots& dots, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& metrics);

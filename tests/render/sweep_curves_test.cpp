@@ -78,6 +78,15 @@ TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
     }
 }
 
+TEST(SweepCurve, without_a_value_is_named_beside_others) {
+    const Figure figure = compose_sweep(
+        sweeps::data_of("ball_on_floor", "--over e=0:0.5:3 --print \"zeno_time(1)\" --print \"zeno_time(2)\""));
+    ASSERT_EQ(figure.panels.size(), 1u);
+    EXPECT_EQ(figure.panels[0].curves[0].label, "Zeno time 1");
+    EXPECT_EQ(figure.panels[0].curves[1].label, "Zeno time 2: no value");
+    EXPECT_TRUE(figure.panels[0].hatch.label.empty());
+}
+
 TEST(SweepCurve, shows_a_point_that_stands_alone) {
     const SweepData data = grid({{"e", 0.0, 0.4, 5, false}}, {1, nothing_there, 3, nothing_there, 5}, {1, 1, 1, 1, 1});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
