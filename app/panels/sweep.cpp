@@ -53,7 +53,8 @@ const Panel& composed(const Session& session, SweepState& state) {
     return *state.panel;
 }
 
-// The number that the present run has for what a curve shows, as it is shown; nothing while it is under way, or where it has none.
+// The number, as it is shown, that the present run has for what a curve shows; nothing while it is under way, or where it has
+// none.
 std::optional<double> present_number(const Session& session, SweepState& state) {
     if (session.under_way() != nullptr || session.shows_start()) return std::nullopt;
     const Sweep sweep = session.sweep();
