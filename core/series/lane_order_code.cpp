@@ -83,7 +83,7 @@ class LaneOrderWriter {
         for (std::size_t i = 0; i < plan_.events; ++i)
             code_.vmovupd(part(motion, lane(2 * plan_.coordinates() + i)), code_.held_or(vector(0), plan_.event(i)));
         keep();
-        if (!many_registers_) code_.forget_all();
+        if (!all_held_) code_.forget_all();
         add_up(k);
     }
 
@@ -131,15 +131,18 @@ class LaneOrderWriter {
         if (k >= 2) add_products(sums, row, 0, now, first);
         for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], vector(first_sum_ + i));
     }
-    // The right factors are fetched once too where there are registers for them.
+    // The right factors are fetched once too, as many as there are idle registers.
     void add_products(std::span<const std::uint32_t> sums, const Xbyak::Reg64& left, Index to_left,
                       const Xbyak::Reg64& right, Index to_right) {
         const Xmm x = vector(0), product = vector(1);
         std::map<std::uint32_t, unsigned> fetched;
-        unsigned next = first_sum_ + static_cast<unsigned>(sums.size());
-        for (const std::uint32_t i : sums)
-            if (next < end_of_registers_ && fetched.emplace(sum(i).right, next).second)
-                code_.vmovupd(vector(next++), part(right, to_right + lane(sum(i).right)));
+        const unsigned end_of_sums = first_sum_ + static_cast<unsigned>(sums.size());
+        unsigned idle = all_held_ ? end_of_sums : scratch;
+        for (const std::uint32_t i : sums) {
+            if (idle == first_sum_) idle = end_of_sums;
+            if (idle < end_of_registers_ && fetched.emplace(sum(i).right, idle).second)
+                code_.vmovupd(vector(idle++), part(right, to_right + lane(sum(i).right)));
+        }
         for (unsigned i = 0; i < sums.size(); ++i) {
             const auto [x_place, y_place] = sum(sums[i]);
             if (i == 0 || sum(sums[i - 1]).left != x_place) code_.vmovupd(x, part(left, to_left + lane(x_place)));

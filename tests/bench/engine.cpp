@@ -70,6 +70,8 @@
 //   flights of 1.2 times the order that a step alone would have, brief ones, as
 //   the bounce before tells them, of half of that                               -12 percent
 //   a flight after a release goes back to the lanes once its gap is open        -12 percent
+//   right factors of inner sums in the registers that results leave idle         -6 percent
+//   roots of eight at once                                                       -2 percent
 // What gave nothing: rows summed in another order, no vzeroupper between orders, more or fewer runs under way (12 to
 // 48), 256-bit vectors instead of 128 without machine code, or for what is left to the compiler beside machine code.
 #include "bench/engine.hpp"
