@@ -94,9 +94,11 @@ std::vector<Found> find_commands(const std::string& typed, const std::vector<Com
     for (const Completions& some : completions) {
         if (some.command != name) continue;
         for (const auto& [word, about] : some.values) {
-            const std::string line = name + " " + quoted_where_needed(word);
-            best.offer(value.empty() ? 0 : misfit(value, word, about),
-                       {about.empty() ? line : line + "    " + about, some.is_last ? line : line + " ", some.is_last});
+            std::string line = name + " " + quoted_where_needed(word);
+            std::string shown = line;
+            if (!about.empty()) shown.append("    ").append(about);
+            if (!some.is_last) line += ' ';
+            best.offer(value.empty() ? 0 : misfit(value, word, about), {shown, line, some.is_last});
         }
     }
     return best.take();

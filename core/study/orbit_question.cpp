@@ -167,7 +167,8 @@ OrbitQuestion make_orbit_question(const AskedOrbit& asked, const Run& run, const
     read_closing(asked, *model, whole.closing);
     if (!asked.along.empty()) question.along = read_along(asked.along, description, whole.run);
     Chain::check(whole.run);
-    ReturnMap(model, whole.run, whole.closing);  // what is wrong with the question is told before the work
+    // What is wrong with the question is told before the work.
+    [[maybe_unused]] const ReturnMap possible(model, whole.run, whole.closing);
     return question;
 }
 
