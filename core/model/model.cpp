@@ -147,6 +147,16 @@ Program Model::compile_view(std::span<const Text> texts) const {
     return Program(outputs, layout_.slots());
 }
 
+Program Model::compile_section(const Text& text) const {
+    Graph graph(*graph_);
+    const Expression value = read(text, view_scope(description_, layout_, graph, equations_), graph);
+    std::vector<std::uint32_t> along{layout_.t()};
+    for (std::uint32_t i = 0; i < 2 * layout_.dof; ++i) along.push_back(i);
+    std::vector<Expression> outputs{value};
+    for (const Expression& slope : gradient(value, along)) outputs.push_back(slope);
+    return Program(outputs, layout_.slots());
+}
+
 Model::MeasureProgram Model::compile_measures(std::span<const Text> texts) const {
     Graph graph(*graph_);
     MeasureProgram result;

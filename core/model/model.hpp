@@ -130,6 +130,8 @@ class Model {
     // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
     // energy (view) or over coordinates, t and parameters, plus a curve's own parameter (drawing). Throw InputError.
     Program compile_view(std::span<const Text> texts) const;
+    // What a view says and, behind it, its derivatives by t, q and v.
+    Program compile_section(const Text& text) const;
     // A program over the same and quantities of the run, input i behind the layout's being quantities[i].
     struct MeasureProgram {
         Program program;

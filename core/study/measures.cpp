@@ -8,6 +8,7 @@
 
 #include "expression/parse.hpp"
 #include "model/behind.hpp"
+#include "number/ground.hpp"
 #include "simulate/least_gap.hpp"
 #include "system/units.hpp"
 
@@ -57,6 +58,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
     if (sweep.at && sweep.at->kind == Section::Kind::zero) {
         const std::string& zero = sweep.at->expression;
         zero_ = behind("--at", zero, [&](std::span<const Text> one) { return model_->compile_view(one); });
+        zero_along_ = model_->compile_section({zero, {}});
         const std::vector<std::string> asked = names_in(zero);
         zero_has_work_ = std::find(asked.begin(), asked.end(), "work") != asked.end();
     }
@@ -85,6 +87,10 @@ void Measuring::begin(const Trajectory& trajectory) {
             for (std::size_t i = 0; i < parameters_.size(); ++i)
                 evaluator->input(measures_->model_->layout().parameter(i)) = parameters_[i];
             evaluator->fix();
+        }
+        if (measures_->zero_along_) {
+            const Ground ground;
+            zero_bounds_ = BoundsAlong::of(*measures_->model_, *measures_->zero_along_, parameters_);
         }
     }
     if (measures_->needs_least_gap_) least_gap_ = least_gap(trajectory);
@@ -145,7 +151,7 @@ std::vector<Moment> Measuring::moments(const Trajectory& trajectory, const Secti
         forces_->run_view(*zero_, sample);
         return zero_->output(0);
     };
-    return zeros_of(trajectory, section, value, measures_->zero_has_work_);
+    return zeros_of(trajectory, section, {value, measures_->zero_has_work_, zero_bounds_ ? &*zero_bounds_ : nullptr});
 }
 
 void Measuring::at(const Trajectory&, const Moment& moment, std::vector<double>& numbers) {

@@ -40,7 +40,7 @@ class RunMeasures {
     std::shared_ptr<const Model> model_;
     std::vector<Column> columns_;
     Model::MeasureProgram measures_;
-    std::optional<Program> zero_;  // the expression of a section
+    std::optional<Program> zero_, zero_along_;  // the expression of a section; with its derivatives
     bool needs_everything_ = false, needs_least_gap_ = false, zero_has_work_ = false;
 };
 
@@ -61,6 +61,7 @@ class Measuring {
     const RunMeasures* measures_;
     Evaluator<double> numbers_;
     std::optional<Evaluator<double>> zero_;
+    std::optional<BoundsAlong> zero_bounds_;
     std::optional<ContactForces> forces_;
     std::vector<double> parameters_;  // of both
     std::vector<Passage> sequence_;   // of the run at whose moments it is asked

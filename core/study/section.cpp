@@ -4,6 +4,8 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 
+#include "number/ground.hpp"
+
 namespace achilles {
 
 namespace {
@@ -19,9 +21,11 @@ bool is_asked(const Section& section, double t) { return !section.after || t >= 
 // The function along a run, looked at often enough.
 class Along {
  public:
-    Along(const Trajectory& trajectory, const std::function<double(const Sample&)>& value, bool asks_for_work,
-          double from)
-        : trajectory_(trajectory), sampler_(trajectory), value_(value), asks_for_work_(asks_for_work), from_(from) {}
+    Along(const Trajectory& trajectory, const SectionFunction& function, double from)
+        : trajectory_(trajectory), sampler_(trajectory), function_(function) {
+        for (std::size_t i = 0; i < trajectory.pieces.size(); ++i)
+            if (trajectory.pieces[i].end > std::max(trajectory.pieces[i].start, from)) pieces_.push_back(i);
+    }
 
     struct Point {
         double t, value;
@@ -29,50 +33,90 @@ class Along {
     };
 
     std::vector<Point> points() {
-        constexpr int parts = 8;
-        for (std::size_t i = 0; i < trajectory_.pieces.size(); ++i) {
-            const Piece& piece = trajectory_.pieces[i];
-            if (!(piece.end > piece.start) || piece.end < from_) continue;
-            Point before = add(i, piece.start);
-            for (int part = 1; part <= parts; ++part) {
-                const double t = part == parts ? piece.end : piece.start + (piece.end - piece.start) * part / parts;
-                const Point after = at(i, t);
-                look_between(before, after, deepest);
-                points_.push_back(before = after);
-            }
+        std::vector<Point> ends;
+        for (const std::size_t i : pieces_)
+            for (const double t : {trajectory_.pieces[i].start, trajectory_.pieces[i].end}) ends.push_back(at(i, t));
+        for (const Point& end : ends)
+            if (std::isfinite(end.value)) rounding_ = std::max(rounding_, relative_rounding * std::abs(end.value));
+        if (is_nothing(ends)) return {};
+        left_ = most_looks + looks_per_piece * pieces_.size();
+        for (std::size_t i = 0; i < ends.size(); i += 2) {
+            points_.push_back(ends[i]);
+            look_between(ends[i], ends[i + 1]);
+            points_.push_back(ends[i + 1]);
         }
         return std::move(points_);
     }
+    // What rounding makes of a value that is zero.
+    double rounding() const { return rounding_; }
 
     Point at(std::size_t piece, double t) {
-        return {t, value_(sampler_.in(trajectory_.pieces[piece], t, asks_for_work_)), piece};
+        return {t, function_.value(sampler_.in(trajectory_.pieces[piece], t, function_.asks_for_work)), piece};
     }
     Sample sample(std::size_t piece, double t) { return sampler_.in(trajectory_.pieces[piece], t); }
 
  private:
-    static constexpr int deepest = 6;
+    static constexpr double relative_rounding = 1e-13;
+    static constexpr int deepest = 40, deepest_by_bend = 6;
+    static constexpr std::size_t most_looks = std::size_t{1} << 18, looks_per_piece = 32;
 
-    Point add(std::size_t piece, double t) { return points_.emplace_back(at(piece, t)); }
+    // Whether the values are no more than what rounding makes of them.
+    bool is_nothing(const std::vector<Point>& ends) {
+        if (function_.bounds == nullptr) return false;
+        const auto rounds_to = [&](const Point& end) {
+            const Interval at_once = function_.bounds->value(trajectory_, trajectory_.pieces[end.piece], end.t, end.t);
+            return std::abs(end.value) <= 4.0 * rad(at_once);
+        };
+        return std::all_of(ends.begin(), ends.end(), rounds_to);
+    }
+
+    void look_between(const Point& a, const Point& b) {
+        if (function_.bounds != nullptr) return divide(a, b, deepest);
+        constexpr int parts = 8;
+        Point before = a;
+        for (int part = 1; part <= parts; ++part) {
+            const Point after = part == parts ? b : at(a.piece, a.t + (b.t - a.t) * part / parts);
+            divide_where_it_bends(before, after, deepest_by_bend);
+            if (part < parts) points_.push_back(after);
+            before = after;
+        }
+    }
+
+    // Until the bounds say that there is no zero between two points, or one at most, which the points tell then.
+    void divide(const Point& a, const Point& b, int depth) {
+        if (left_ == 0) return divide_where_it_bends(a, b, std::min(depth, deepest_by_bend));
+        --left_;
+        const double t = 0.5 * (a.t + b.t);
+        if (depth == 0 || !(t > a.t && t < b.t)) return;
+        const Interval value = function_.bounds->value(trajectory_, trajectory_.pieces[a.piece], a.t, b.t);
+        if (mig(value) > 0.0 || mag(value) <= rounding_) return;
+        if (value.is_defined() && mig(function_.bounds->rate()) > 0.0) return;
+        const Point middle = at(a.piece, t);
+        divide(a, middle, depth - 1);
+        points_.push_back(middle);
+        divide(middle, b, depth - 1);
+    }
 
     // Two of one sign, between which the function may have come to zero: what it bends by is no less than what is left.
-    void look_between(const Point& a, const Point& b, int depth) {
+    void divide_where_it_bends(const Point& a, const Point& b, int depth) {
         if (depth == 0 || !((a.value < 0.0) == (b.value < 0.0))) return;
         const double t = 0.5 * (a.t + b.t);
         if (!(t > a.t && t < b.t)) return;
         const Point middle = at(a.piece, t);
         const double bend = std::abs(middle.value - 0.5 * (a.value + b.value));
         if (!(2.0 * bend >= std::min(std::abs(a.value), std::abs(b.value)))) return;
-        look_between(a, middle, depth - 1);
+        divide_where_it_bends(a, middle, depth - 1);
         points_.push_back(middle);
-        look_between(middle, b, depth - 1);
+        divide_where_it_bends(middle, b, depth - 1);
     }
 
     const Trajectory& trajectory_;
     Sampler sampler_;
-    const std::function<double(const Sample&)>& value_;
-    bool asks_for_work_;
-    double from_;  // s: steps that end before it are not looked at
+    const SectionFunction& function_;
+    std::vector<std::size_t> pieces_;  // that are looked at
     std::vector<Point> points_;
+    double rounding_ = 0.0;
+    std::size_t left_ = 0;  // looks at bounds, until what stays about zero is left alone
 };
 
 std::size_t events_until(const Trajectory& trajectory, double t) {
@@ -81,13 +125,16 @@ std::size_t events_until(const Trajectory& trajectory, double t) {
                                     trajectory.events.begin());
 }
 
-// Between a value below zero and one above it, inside one piece.
-double zero_between(Along& along, const Along::Point& below, const Along::Point& above) {
+// Between a value below zero and one above it, inside one piece. Nothing where it jumps from one to the other, or runs through
+// a pole: then it is as large as ever just beside.
+std::optional<double> zero_between(Along& along, const Along::Point& below, const Along::Point& above) {
     const auto near = [](double a, double b) { return std::abs(b - a) <= 1e-13 * (1.0 + std::abs(a)); };
     std::uintmax_t most = 100;
     const auto value = [&](double t) { return along.at(above.piece, t).value; };
     const auto [low, high] =
         boost::math::tools::toms748_solve(value, below.t, above.t, below.value, above.value, near, most);
+    const double beside = std::max(std::abs(value(low)), std::abs(value(high)));
+    if (!(beside <= 0.5 * std::max(-below.value, above.value))) return std::nullopt;
     return 0.5 * (low + high);
 }
 
@@ -116,14 +163,11 @@ std::vector<Moment> events_of(const Trajectory& trajectory, const Section& secti
     return moments;
 }
 
-std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section,
-                             const std::function<double(const Sample&)>& value, bool asks_for_work) {
-    Along along(trajectory, value, asks_for_work, section.after.value_or(trajectory.run.options.start_time));
+std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section, const SectionFunction& function) {
+    const Ground ground;  // of the bounds
+    Along along(trajectory, function, section.after.value_or(trajectory.run.options.start_time));
     const std::vector<Along::Point> points = along.points();
-    double largest = 0.0;
-    for (const Along::Point& point : points)
-        if (std::isfinite(point.value)) largest = std::max(largest, std::abs(point.value));
-    const double rounding = 1e-13 * largest;
+    const double rounding = along.rounding();
     std::vector<Moment> moments;
     const Along::Point* below = nullptr;  // the last one below zero, where none was above since
     for (const Along::Point& point : points) {
@@ -133,13 +177,13 @@ std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& sectio
         if (point.value < -rounding) below = &point;
         if (!(point.value > rounding) || below == nullptr) continue;
         // Where they are of two pieces, the piece of the latter begins with zero to rounding.
-        const double t =
+        const std::optional<double> t =
             below->piece == point.piece ? zero_between(along, *below, point) : trajectory.pieces[point.piece].start;
         below = nullptr;
-        if (!is_asked(section, t)) continue;
+        if (!t || !is_asked(section, *t)) continue;
         Moment moment;
-        moment.sample = along.sample(point.piece, t);
-        moment.events = events_until(trajectory, t);
+        moment.sample = along.sample(point.piece, *t);
+        moment.events = events_until(trajectory, *t);
         moments.push_back(std::move(moment));
     }
     return moments;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "simulate/sampler.hpp"
+#include "study/bounds_along.hpp"
 #include "study/sweep.hpp"
 
 namespace achilles {
@@ -20,10 +21,16 @@ struct Moment {
 std::vector<Moment> events_of(const Trajectory& trajectory, const Section& section);
 
 // The times at which a function of a moment of the run passes zero upwards, found on the dense output to 1e-12 of them. A
-// jump at an event over zero is no passage, nor is a touch, nor what rounding makes of a value that stays zero. Between the
-// instants that are looked at, eight a step and more where the function bends towards zero, two passages may hide. The work
-// that forces have done takes long to find: the function is told it where it asks for it.
-std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section,
-                             const std::function<double(const Sample&)>& value, bool asks_for_work);
+// jump or a pole over zero is no passage, nor is a touch, nor what rounding makes of a value that stays zero.
+//
+// By its bounds none is missed, but where it stays so close to zero for so long that they cannot tell it from zero. Without
+// them two passages may hide between the instants that are looked at, eight a step and more where the function bends towards
+// zero. The work that forces have done takes long to find: the function is told it where it asks for it.
+struct SectionFunction {
+    std::function<double(const Sample&)> value;
+    bool asks_for_work = false;
+    BoundsAlong* bounds = nullptr;
+};
+std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section, const SectionFunction& function);
 
 }  // namespace achilles

@@ -213,6 +213,30 @@ TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
         EXPECT_TRUE(is_nan(none[0])) << never;
     }
     EXPECT_EQ(times("-y'").size(), 4u) << "at the top of flights, and nowhere else";
+    for (const char* pole : {"-tan(10*t)", "1/(y - 0.3)", "tanh(1e15*(y - 0.3))"}) {
+        const std::vector<double> none = times(pole);
+        ASSERT_EQ(none.size(), 1u) << pole;
+        EXPECT_TRUE(is_nan(none[0])) << pole;
+    }
+}
+
+// A step may take seconds: a ball in flight or at rest has nothing that would end it.
+TEST(SweepSections, MissNoZeroOfLongSteps) {
+    const auto count = [](const std::string& system, const std::string& zero, double end,
+                          const std::string& more = "") {
+        const SweepTable table =
+            table_of(system, "--over e=0.3:0.5:2 --print t --at \"" + zero + "\" --end " + std::to_string(end) + more);
+        return table.rows(0, 1).times.size();
+    };
+    EXPECT_EQ(count("ball_on_incline", "sin(x)", 8.0), 16u);  // it slides by 100.7
+    EXPECT_EQ(count("ball_on_floor", "sin(t)", 100.0, " --after 50"), 8u);
+    EXPECT_EQ(count("ball_on_floor", "sin(30*t)", 3.2), 15u);
+    EXPECT_EQ(count("ball_on_sine", "sin(50*t)", 200.0), 1591u);
+    EXPECT_EQ(count("impact_oscillator", "sin(200*t)", 20.0), 636u);
+    // What only touches zero, or stays there to rounding, ends the search.
+    EXPECT_EQ(count("ball_on_floor", "sin(t)^2 + cos(t)^2 - 1 + gap", 20.0), 1u);
+    EXPECT_EQ(count("ball_on_floor", "sin(5*t) - 1", 20.0), 1u);
+    EXPECT_EQ(count("double_pendulum", "sin(theta1)^2 + cos(theta1)^2 - 1", 20.0), 1u);
 }
 
 // ---- chunks ----
