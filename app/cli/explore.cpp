@@ -130,8 +130,8 @@ class Explorer {
     void take(const Command& command) {
         const auto* replay = std::get_if<command::Replay>(&command);
         if (replay == nullptr) {
-            keep(command);
-            session_.apply(command);
+            keep(command);  // first, for the case that it crashes
+            if (!session_.apply(command) && record_) record_->take_back();
             return;
         }
         try {

@@ -156,8 +156,15 @@ JournalFile::JournalFile(const fs::path& file) : path_(file) {
 }
 
 void JournalFile::append(const Command& command) {
+    before_ = stream_.tellp();
     stream_ << to_text(command) << '\n' << std::flush;
     if (!stream_) throw InputError(path_.string(), {}, "the journal cannot be written", "is the disk full?");
+}
+
+void JournalFile::take_back() {
+    if (before_ < 0 || fs::is_character_file(path_)) return;
+    fs::resize_file(path_, static_cast<std::uintmax_t>(before_));
+    stream_.seekp(before_);
 }
 
 }  // namespace achilles

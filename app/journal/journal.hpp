@@ -65,10 +65,13 @@ class JournalFile {
     // Begins a file. Throws InputError if it cannot be written, or there is one.
     explicit JournalFile(const std::filesystem::path& file);
     void append(const Command& command);
+    // The last command was refused: nothing has been done.
+    void take_back();
 
  private:
     std::filesystem::path path_;
     std::ofstream stream_;
+    std::streamoff before_ = 0;  // the last command
 };
 
 }  // namespace achilles

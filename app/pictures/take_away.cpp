@@ -19,6 +19,7 @@
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
+#include "study/flags.hpp"
 
 namespace achilles {
 
@@ -297,11 +298,13 @@ std::string command_for(const Session& session, const std::string& what) {
     }
     Words words{what == "run" ? "simulate" : "explore", name};
     const Words options = run_options(session);
-    if (what == "sweep") {  // its text is a shell's already
-        Words rest = options;
-        rest.insert(rest.end(), {"--out", stem + "-sweep.svg"});
-        return shell_line({"sweep", name}) + " " + session.sweep_text() +
-               shell_line(rest).substr(std::string_view("achilles").size());
+    if (what == "sweep") {
+        words = {"sweep", name};
+        for (const Flag& flag : read_flags(session.sweep_text(), "sweep"))
+            words.insert(words.end(), {flag.name, flag.value});
+        words.insert(words.end(), options.begin(), options.end());
+        words.insert(words.end(), {"--out", stem + "-sweep.svg"});
+        return shell_line(words);
     }
     words.insert(words.end(), options.begin(), options.end());
     if (what == "run")

@@ -61,7 +61,7 @@ Session::Session(const std::string& name, const SystemDescription& first, const 
     change_system(system_, plots_, run);
 }
 
-void Session::apply(const Command& command) {
+bool Session::apply(const Command& command) {
     if (!patience_) {
         receive_pins(patience_);
         receive(patience_);
@@ -80,10 +80,12 @@ void Session::apply(const Command& command) {
         follow_proof(0.0);
         // Who waits for runs as long as they take waits for this, too: no clock may tell what a journal leads to.
         follow_dependence(patience_ ? Patience(0.0) : patience_);
+        return true;
     } catch (const Forbidden&) {
         throw;
     } catch (const InputError& problem) {
         error_ = problem.what();
+        return false;
     }
 }
 

@@ -66,8 +66,8 @@ class Session {
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
-    // text is no system. Throws Forbidden: a journal wants what it may not.
-    void apply(const Command& command);
+    // text is no system; false then, but for a text. Throws Forbidden: a journal wants what it may not.
+    bool apply(const Command& command);
 
     // A mistake that is no command's: error() tells it until the next command.
     void refuse(const InputError& problem) { error_ = problem.what(); }
@@ -288,6 +288,7 @@ class Session {
     void begin_document(Document document);
     void read_document();
     void keep_plane();
+    void check_sweep(const std::string& text) const;
     void keep_sweep();
     void follow_sweep();
     void keep_dependence();

@@ -53,9 +53,16 @@ Sweep Session::sweep() const {
     return sweep;
 }
 
+// Throws InputError where it could not be made of runs that end as the present one does.
+void Session::check_sweep(const std::string& text) const {
+    Sweep sweep = sweep_of(text, description());
+    sweep.base.options = asked_.options;
+    const RunMeasures measures(system_->model, sweep);
+}
+
 void Session::perform(const command::ShowSweep& command) {
     try {
-        const RunMeasures measures(system_->model, sweep_of(command.text, description()));
+        check_sweep(command.text);
     } catch (const InputError& problem) {
         throw refusal(problem.what(), std::string(command::ShowSweep::said.usage));
     }
@@ -66,7 +73,7 @@ void Session::perform(const command::ShowSweep& command) {
 void Session::keep_sweep() {
     if (!scene_.sweep()) return;
     try {
-        const RunMeasures measures(system_->model, sweep_of(*scene_.sweep(), description()));
+        check_sweep(*scene_.sweep());
     } catch (const InputError&) {
         scene_.forget_sweep();
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "expression/parse.hpp"
@@ -35,9 +36,19 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     return unit_of_expression(description, print);
 }
 
+// Whether all runs end before anything is asked.
+void refuse_late(const Sweep& sweep) {
+    const bool varies = std::any_of(sweep.axes.begin(), sweep.axes.end(),
+                                    [](const SweepAxis& axis) { return !options_of_axis(axis.name).empty(); });
+    const double end = sweep.base.options.end_time;
+    if (!varies && sweep.at && sweep.at->after && !(*sweep.at->after < end))
+        throw InputError(fmt::format("--after {}", *sweep.at->after), {}, fmt::format("the runs end at {}", end));
+}
+
 }  // namespace
 
 RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep) : model_(std::move(model)) {
+    refuse_late(sweep);
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
     std::vector<std::string> names;
@@ -124,7 +135,8 @@ void Measuring::measure(const Sample& sample, std::span<const Passage> passed, s
         if (quantities[i].kind == Kind::least_gap) input = least_gap_;
     }
     forces_->run_view(numbers_, sample);
-    for (std::size_t i = 0; i < numbers_.output_count(); ++i) numbers.push_back(numbers_.output(i));
+    for (std::size_t i = 0; i < numbers_.output_count(); ++i)
+        numbers.push_back(std::isfinite(numbers_.output(i)) ? numbers_.output(i) : nothing);
 }
 
 void Measuring::at_end(const Trajectory& trajectory, std::vector<double>& numbers) {

@@ -67,7 +67,8 @@ struct AskedSweep {
     std::vector<std::string> over{}, prints{};
     std::optional<std::string> at{}, after{}, random{}, seed{};
 };
-// Throws InputError where it cannot be. Whether the expressions mean something is for RunMeasures to say.
+// Throws InputError where it cannot be. Whether the expressions mean something, and a section comes before the end, is for
+// RunMeasures to say.
 Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescription& description);
 
 // "--over e=0:0.95:200 --print "zeno_time(2)"", with --set and the options where the base is not what the description says:

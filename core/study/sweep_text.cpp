@@ -64,7 +64,15 @@ void check_name(const SweepAxis& axis, std::string_view text, const SystemDescri
     Run run = default_run(description);
     if (find_value(description, run, axis.name) != nullptr) return;
     const std::vector<const Option*> options = options_of_axis(axis.name);
-    if (options.empty()) throw refusal("--over", text, why_not_settable(description, axis.name));
+    if (options.empty()) {
+        std::vector<std::string> others;
+        for (const Option& option : all_options())
+            if (const std::string name(option.flag.substr(2)); !options_of_axis(name).empty()) others.push_back(name);
+        const std::string meant = did_you_mean(axis.name, others);
+        throw refusal("--over", text,
+                      meant.empty() ? why_not_settable(description, axis.name)
+                                    : fmt::format("there is no '{}'{}", shown(axis.name), meant));
+    }
     for (const double end : {axis.low, axis.high})
         if (!allows(*options.front(), end))
             throw refusal("--over", text, fmt::format("{} must be positive, and {} is not", axis.name, end));
@@ -138,7 +146,7 @@ std::string read_print(const std::string& text) {
     return print;
 }
 
-std::optional<Section> read_section(const AskedSweep& asked, const Sweep& sweep) {
+std::optional<Section> read_section(const AskedSweep& asked) {
     if (!asked.at) {
         if (asked.after) throw refusal("--after", *asked.after, "this needs --at");
         return std::nullopt;
@@ -153,10 +161,6 @@ std::optional<Section> read_section(const AskedSweep& asked, const Sweep& sweep)
     if (at.empty()) throw InputError("--at", {}, "it is impact, zeno, release or an expression");
     if (!asked.after) return section;
     section.after = number("--after", *asked.after, *asked.after);
-    const bool varies = std::any_of(sweep.axes.begin(), sweep.axes.end(),
-                                    [](const SweepAxis& axis) { return !options_of_axis(axis.name).empty(); });
-    if (!varies && !(*section.after < sweep.base.options.end_time))
-        throw refusal("--after", *asked.after, fmt::format("the runs end at {}", sweep.base.options.end_time));
     return section;
 }
 
@@ -184,7 +188,7 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
     if (sweep.prints.empty())
         throw InputError("--print", {}, "nothing is asked of the runs",
                          "write --print WHAT, as in --print \"zeno_time(2)\" or --print outcome");
-    sweep.at = read_section(asked, sweep);
+    sweep.at = read_section(asked);
     return sweep;
 }
 

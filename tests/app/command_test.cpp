@@ -226,6 +226,13 @@ TEST(Journal, is_a_file_that_grows_line_by_line) {
             so_far.push_back(command);
             EXPECT_EQ(read_journal(file), so_far);
         }
+        journal.append(command::Set{"e", 3.0});  // which is refused
+        journal.take_back();
+        EXPECT_EQ(read_journal(file), so_far);
+        journal.append(one_of_each.front());
+        so_far.push_back(one_of_each.front());
+        EXPECT_EQ(read_journal(file), so_far);
+        journal.take_back();
     }
     EXPECT_THROW(JournalFile{file}, InputError);  // what was recorded is not lost
     EXPECT_EQ(read_journal(file), one_of_each);

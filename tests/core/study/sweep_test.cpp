@@ -143,7 +143,7 @@ TEST(Sweep, SaysWhatCannotBe) {
         {{.over = over, .prints = {"zeno_time(2"}}, "this '(' is never closed"},
         {{.over = over, .prints = {"held + 1"}}, "'held' is a text: it stands alone"},
         {{.over = over, .prints = t, .after = "3"}, "--after 3: this needs --at"},
-        {{.over = over, .prints = t, .at = "impact", .after = "20"}, "--after 20: the runs end at 20"},
+        {{.over = {"tolerence=1e-9:1e-6:3"}, .prints = t}, "there is no 'tolerence'; did you mean 'tolerance'?"},
         {{.over = over, .prints = t, .at = "impact", .after = "soon"}, "'soon' is not a finite number"},
         {{.over = over, .prints = t, .at = ""}, "it is impact, zeno, release or an expression"},
         {{.over = over, .prints = t, .at = "impakt"}, "unknown name 'impakt'"},

@@ -191,6 +191,28 @@ TEST(SweepSections, AreTheEventsOfARun) {
     EXPECT_GT(row, 10u);
 }
 
+TEST(SweepTable, HasNoInfinities) {
+    const SweepTable table = table_of("ball_on_floor", "--over e=0:0.5:2 --print log(e) --print 1/e --end 1");
+    const Rows rows = table.rows(0, 2);
+    EXPECT_TRUE(is_nan(rows.numbers[0]) && is_nan(rows.numbers[1]));
+    EXPECT_NEAR(rows.numbers[2], std::log(0.5), 1e-15);
+    EXPECT_EQ(rows.numbers[3], 2.0);
+}
+
+TEST(SweepSections, AreNotAllBehindTheEnd) {
+    const auto refused = [](const std::string& more) -> std::string {
+        try {
+            table_of("ball_on_sine", "--over e=0.3:0.5:2 --print t --at impact " + more);
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refused("--after 20"), "--after 20: the runs end at 20");
+    EXPECT_EQ(refused("--after 20 --end 21"), "");
+    EXPECT_EQ(refused("--after 20 --over end=10:30:2"), "");
+}
+
 TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
     // x = x'(0) t in flight: it passes pi/7 once, by a known time; sin(4*t) so often; a gap never, as it only touches zero; and y'
     // jumps at impacts, which is no passage.
