@@ -13,6 +13,9 @@
 namespace achilles {
 
 Model::Model(SystemDescription description) : description_(std::move(description)), graph_(std::make_unique<Graph>()) {
+    if (description_.coordinates.empty() || description_.constraints.empty())
+        throw InputError(description_.file.empty() ? "the system" : description_.file, {},
+                         "it needs a coordinate and a constraint");
     layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
     const Ground ground;  // constants become intervals, too

@@ -15,6 +15,13 @@
 namespace achilles {
 
 void Model::check(const Run& run) const {
+    const auto n = static_cast<Eigen::Index>(dof());
+    const std::size_t p = description_.parameters.size();
+    if (run.q.size() != n || run.v.size() != n || run.parameters.size() != p)
+        throw InputError("the run", {},
+                         fmt::format("it has {} coordinates, {} rates and {} parameters; the system has {} and {}",
+                                     run.q.size(), run.v.size(), run.parameters.size(), n, p),
+                         "begin with default_run() of this system");
     const Ground ground;
     Mistakes mistakes;
     const auto refuse = [&](Location at, const std::string& message, const std::string& hint = {}) {

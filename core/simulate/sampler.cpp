@@ -1,6 +1,7 @@
 #include "simulate/sampler.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "model/model.hpp"
 #include "simulate/surfaces.hpp"
@@ -47,6 +48,7 @@ double Sampler::work(const Piece& piece, double t) const {
 }
 
 Sample Sampler::at(double t) {
+    if (std::isnan(t)) throw InputError("the time", {}, "it is no number");
     t = std::clamp(t, trajectory_.run.options.start_time, trajectory_.end_time);
     const auto later = [](double time, const auto& x) { return time < x.start; };
     const auto event = std::upper_bound(trajectory_.events.begin(), trajectory_.events.end(), t,

@@ -25,10 +25,12 @@ ContactSet held_before(const Trajectory& trajectory, std::size_t event);
 // Of what is held at a time, the carriers (Phase).
 ContactSet carriers_of(const Trajectory& trajectory, ContactSet held, double t);
 
-// The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread.
+// The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread. Throws
+// InputError where t is no number.
 class Sampler {
  public:
     explicit Sampler(const Trajectory& trajectory);
+    explicit Sampler(const Trajectory&&) = delete;  // it would be gone at once
     ~Sampler();
     Sample at(double t);
     // The state inside one of its pieces, which j does not tell of, without the work where that is not wanted.

@@ -7,6 +7,7 @@
 #include "core/systems.hpp"
 #include "model/read_system.hpp"
 #include "number/subnormal.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {
@@ -92,6 +93,20 @@ TEST(StartsWithoutAValue, NeedAGap) {
     EXPECT_EQ(message.substr(0, 57), "f.toml:12:8: a derivative of the gap is not defined at th") << message;
     const std::string infinite = told(text_with("1", "x'^2/2", "x", "exp(1000*x)"));
     EXPECT_EQ(infinite.substr(0, 50), "f.toml:12:8: the gap is not finite at the start\n  ") << infinite;
+}
+
+TEST(Start, IsOfTheSameSystem) {
+    const auto of_five = test::load("ball_down_a_wave"), of_three = test::load("ball_on_sine");
+    EXPECT_THROW(simulate(of_five, of_three->default_run()), InputError);
+    EXPECT_THROW(simulate(of_three, achilles::Run{}), InputError);
+    EXPECT_THROW(Model(SystemDescription{}), InputError);
+}
+
+TEST(Start, IsFollowedByTimesThatAreNumbers) {
+    const auto model = test::load("ball_on_sine");
+    const Trajectory run = simulate(model, model->default_run());
+    EXPECT_THROW(run(std::numeric_limits<double>::quiet_NaN()), InputError);
+    EXPECT_EQ(run(1e9).t, run.end_time);
 }
 
 }  // namespace
