@@ -138,7 +138,7 @@ void choice(const OptionRow& row, const Options& now, const Options& file, Panel
         chosen.set(changed, value);
         commands.emplace_back(command::UseOption(chosen, changed));
     };
-    label(row.title, units(label_width));
+    label(row.title, units(row_name_width));
     tooltip(row.about);
     if (chosen.get(now) != chosen.get(file)) {
         mark_changed();

@@ -218,7 +218,7 @@ void show_bars(const Session& session, PanelState& state, Commands& commands) {
 
 std::string derivative_text(const SystemDescription& system, const Influences& known, const Influences::Of& by) {
     if (!by.reason.empty()) return "none";
-    const ShownUnit unit = shown_unit(std::string(unit_of(system, by.name)));
+    const ShownUnit unit = shown_unit_of_setting(system, by.name);
     const std::string text = of_quantity(known, by.derivative / unit.factor);
     return unit.text.empty() ? text : text + " per " + unit.text;
 }

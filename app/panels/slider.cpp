@@ -236,13 +236,10 @@ bool clicked(Slider& slider, PanelState& state) {
     return slider.value != now;
 }
 
-// Where degrees are shown a bare number is in degrees; what says its unit, or has pi in it, says what it is. Throws
-// ParseError.
 double meant(const Slider& slider, const std::string& text) {
     const bool is_angle = slider.factor != 1.0;
     const bool is_rate = is_angle && slider.unit.ends_with("/s");
-    const GivenNumber given = read_number(text, is_rate ? "rad/s" : is_angle ? "rad" : slider.unit);
-    return given.has_unit || given.has_pi ? given.value : given.value / slider.factor;
+    return typed_number(text, is_rate ? "rad/s" : is_angle ? "rad" : slider.unit, slider.factor);
 }
 
 // The field in place of the slider; red where the last text was none to take.
@@ -299,6 +296,11 @@ void point_at(const Slider& slider, PanelState& state) {
 
 }  // namespace
 
+double typed_number(const std::string& text, const std::string& unit, double factor) {
+    const GivenNumber given = read_number(text, unit);
+    return given.has_unit || given.has_pi ? given.value : given.value / factor;
+}
+
 double roundest(double low, double high) {
     if (low > high) std::swap(low, high);
     if (low <= 0.0 && high >= 0.0) return 0.0;
@@ -325,7 +327,7 @@ bool moved(Slider& slider, PanelState& state) {
     const std::string about = explanation(slider);
     const bool is_changed = slider.value != slider.original;
     point_at(slider, state);
-    label(slider.label, units(label_width));
+    label(slider.label, units(row_name_width));
     if (!slider.varies.empty() && ImGui::BeginDragDropSource(ImGuiDragDropFlags_SourceAllowNullID)) {
         ImGui::SetDragDropPayload(dragged_name, slider.varies.data(), slider.varies.size());
         ImGui::TextUnformatted(("over " + slider.label).c_str());

@@ -27,7 +27,11 @@ struct Slider {
 double roundest(double low, double high);
 
 // Widths of a row's columns at scale 1: what it is, its value. The slider has the rest.
-constexpr float label_width = 78.0F, value_width = 84.0F;
+constexpr float row_name_width = 78.0F, value_width = 84.0F;
+
+// The number that is typed where this factor shows what is in the file's unit: one with neither unit nor pi is as it is shown,
+// 30 for 30 degrees. Throws ParseError.
+double typed_number(const std::string& text, const std::string& unit, double factor);
 
 // The sign beside the name of a row whose value is not the file's.
 void mark_changed();

@@ -173,7 +173,9 @@ std::string events_of(const Session& session, const Run& run) {
     }
     if (told.empty()) return "no event";
     std::string text;
-    for (std::size_t i = 0; i < told.size() && i < most_told; ++i) text += (i == 0 ? "" : ", ") + told[i];
+    // Two a line: a line that ImGui had to break could end in the middle of a number.
+    for (std::size_t i = 0; i < told.size() && i < most_told; ++i)
+        text += (i == 0 ? "" : i % 2 == 0 ? ",\n" : ", ") + told[i];
     return told.size() > most_told ? text + ", \u2026" : text;
 }
 
@@ -317,7 +319,12 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     if (!job.data()) return;
     const Panel& panel = composed(session, state.sweep);
     if (!state.sweep.problem.empty()) return message(state.sweep.problem);
-    const Rectangle area = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), inner, units(1.0F));
+    Rectangle below = inner;
+    if (panel.legend && panel.legend_above) {  // it ends at the right, where the cross is, and the menus may be as long
+        const float clear = std::min(units(12.0F), inner.height);
+        below.y += clear, below.height -= clear;
+    }
+    const Rectangle area = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), below, units(1.0F));
     if (area.width < 2.0F || area.height < 2.0F) return;
     const PanelMap map(panel, area);
     if (!job.data()->sweep.axes.empty()) show_cross_hair(session, *job.data(), area, map, state.sweep);

@@ -6,9 +6,11 @@
 #include <array>
 #include <utility>
 
-#include "expression/read_number.hpp"
+#include "expression/parse.hpp"
 #include "figure/label.hpp"
+#include "figure/shown_unit.hpp"
 #include "paint/label.hpp"
+#include "panels/slider.hpp"
 #include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "system/units.hpp"
@@ -33,23 +35,33 @@ std::vector<std::string> usual_prints(const SystemDescription& description, bool
     return prints;
 }
 
-// The limits of one axis, as they are typed; true when they are entered.
-bool limits_entered(const std::string& unit, SweepAxis& axis, SweepMenu& menu, std::size_t place, PanelState& state) {
+// The limits of one axis, as they are typed, in the unit of its slider; true when they are entered.
+bool limits_entered(const SystemDescription& description, SweepAxis& axis, SweepMenu& menu, std::size_t place,
+                    PanelState& state) {
+    const std::string unit = unit_of_axis(description, axis.name);
+    const ShownUnit shown = shown_unit_of_setting(description, axis.name);
+    const auto text_of = [&](double limit) { return fmt::format("{:.12g}", shown.factor * limit); };
     if (menu.of != axis) {
         menu.of = axis;
-        menu.low = fmt::format("{}", axis.low), menu.high = fmt::format("{}", axis.high);
+        menu.low = text_of(axis.low), menu.high = text_of(axis.high);
         menu.wrong.clear();
     }
     const std::string which = place == 0 ? "x" : "y";
-    bool entered = text_row("from", "sweep " + which + " from", menu.low, 120.0F, state);
-    entered = text_row("to", "sweep " + which + " to", menu.high, 120.0F, state) || entered;
+    bool entered = false;
+    for (const auto& [name, text] : {std::pair("from", &menu.low), std::pair("to", &menu.high)}) {
+        entered = text_row(name, "sweep " + which + " " + name, *text, 120.0F, state) || entered;
+        if (shown.text.empty()) continue;
+        ImGui::SameLine();
+        ImGui::TextUnformatted(shown.text.c_str());
+    }
     bool logarithmic = axis.logarithmic;
     if (ImGui::Checkbox("logarithmic", &logarithmic)) entered = true;
     remember(state, "sweep " + which + " logarithmic");
     if (!menu.wrong.empty()) show_message(menu.wrong, units(240.0F));
     if (!entered) return false;
     try {
-        axis.low = read_number(menu.low, unit).value, axis.high = read_number(menu.high, unit).value;
+        for (const auto& [text, limit] : {std::pair(&menu.low, &axis.low), std::pair(&menu.high, &axis.high)})
+            if (*text != text_of(*limit)) *limit = typed_number(*text, unit, shown.factor);
         axis.logarithmic = logarithmic;
         menu.wrong.clear();
         return true;
@@ -97,7 +109,7 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
     if (has_axis && place < sweep.axes.size()) {
         ImGui::Separator();
         SweepAxis& axis = sweep.axes[place];
-        if (limits_entered(unit_of_axis(description, axis.name), axis, state.sweep.menus[place], place, state))
+        if (limits_entered(description, axis, state.sweep.menus[place], place, state))
             commands.emplace_back(showing(sweep, description));
         if (!session.error().empty()) show_message(session.error(), units(240.0F));
     }
@@ -115,6 +127,7 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
         // What is known of a whole run is nothing of a moment.
         if (changed.at && !sweep.at) changed.prints = {session.description().coordinates.front().name};
         if (!changed.at && sweep.at) changed.prints = {"zeno_time(1)"};
+        if (changed.at && changed.axes.size() > 1) changed.axes.resize(1);  // sections of a map have no picture
         commands.emplace_back(showing(changed, session.description()));
     };
     if (ImGui::RadioButton("at the end of the run", !sweep.at)) ask({});

@@ -10,6 +10,7 @@
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
 #include "figure/label.hpp"
+#include "figure/shown_unit.hpp"
 #include "model/model.hpp"
 #include "number/angle.hpp"
 
@@ -50,13 +51,10 @@ std::vector<Command> steps_between(const SystemDescription& description, const R
 }
 
 // "30°", "2 m".
-std::string with_unit_of(const std::string& unit_in_file, double value) {
-    const bool is_angle = is_of_angles(unit_in_file);
-    std::string unit = typeset_unit(unit_in_file);
-    if (is_angle) unit.replace(0, 3, "\u00b0");
-    std::string text = fmt::format("{:.6g}", is_angle ? degrees(value) : value);
+std::string with_unit_of(const ShownUnit& unit, double value) {
+    std::string text = fmt::format("{:.6g}", unit.factor * value);
     if (text[0] == '-') text.replace(0, 1, "\u2212");
-    return text + (is_angle || unit.empty() ? unit : "\u00a0" + unit);
+    return text + (unit.text.empty() || unit.text.starts_with("\u00b0") ? unit.text : "\u00a0" + unit.text);
 }
 
 void append(std::vector<Command>& steps, const std::vector<Command>& more) {
@@ -201,7 +199,7 @@ std::vector<Difference> differences(const SystemDescription& description, const 
         const std::string& name = now[i].first;
         const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
                                            [&](const ParameterDescription& p) { return p.name == name; });
-        const std::string unit(unit_of(description, name));
+        const ShownUnit unit = shown_unit_of_setting(description, name);
         all.push_back({typeset(name) + (is_start ? "(0)" : ""), with_unit_of(unit, now[i].second.value),
                        with_unit_of(unit, before[i].second.value), false, command::Set{name, before[i].second}});
     }

@@ -159,9 +159,7 @@ std::vector<Markers> SweepClasses::keys() const {
 }
 
 ShownUnit shown_unit_of_axis(const SweepData& data, std::size_t index) {
-    const std::string& unit = data.units[index];
-    const bool is_of_start = data.names[index] != data.sweep.axes[index].name;
-    return is_of_start || unit == "rad" ? shown_unit(unit) : ShownUnit{typeset_unit(unit)};
+    return shown_unit_of_setting(data.units[index], data.names[index] != data.sweep.axes[index].name);
 }
 
 SweepAxis shown_axis(const SweepData& data, std::size_t index) {

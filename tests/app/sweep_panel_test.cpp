@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numbers>
 
 #include "app/hands.hpp"
 #include "journal/journal.hpp"
@@ -116,8 +117,27 @@ TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
     for (const Command& command : recipe(session)) again.apply(command);
     EXPECT_EQ(to_text(again), to_text(session));
     EXPECT_EQ(command_for(session, "sweep"),
-              "achilles sweep ball_on_sine --over e=0:0.9:8 --print \"zeno_time(1)\" --set g=5 --out "
+              "achilles sweep ball_on_sine --over e=0:0.9:8 --print 'zeno_time(1)' --set g=5 --out "
               "ball_on_sine-sweep.svg");
+    // As it may be typed here, which a shell would not read.
+    session.apply(command::ShowSweep{"--over x'=0:3:8 --print zeno_time(1)"});
+    EXPECT_EQ(command_for(session, "sweep"),
+              "achilles sweep ball_on_sine --over 'x'\\''=0:3:8' --print 'zeno_time(1)' --set g=5 --out "
+              "ball_on_sine-sweep.svg");
+}
+
+TEST(SweepPanel, asks_for_sections_of_runs_that_are_longer_than_the_file_says) {
+    Session session = test::session("ball_on_vibrating_table");  // 10 s
+    const std::string late = "--over om=5:15:8 --at impact --after 50 --print y'";
+    EXPECT_NE(refused(session, late).find("--after 50: the runs end at 10"), std::string::npos);
+    session.apply(command::End{60.0});
+    EXPECT_EQ(refused(session, late), "");
+    session.settle();
+    EXPECT_EQ(session.sweep_job().problem(), "");
+    session.apply(command::End{40.0});
+    session.settle();
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.sweep_job().problem(), "--after 50: the runs end at 40");
 }
 
 TEST(SweepPanel, takes_the_hand_to_another_run) {
@@ -175,8 +195,37 @@ TEST(SweepPanel, is_chosen_from_menus) {
     hands.click("sweep print");
     hands.click("sweep print outcome");
     EXPECT_EQ(hands.session.sweep().prints, std::vector<std::string>{"outcome"});
+    // A section of it is over x alone: it would have no picture over both.
+    hands.click("sweep print");
+    hands.click("sweep at every impact");
+    EXPECT_EQ(hands.session.error(), "");
+    EXPECT_EQ(hands.session.sweep().axes.size(), 1U);
+    EXPECT_TRUE(hands.session.sweep().at);
+    hands.press(key::escape);
     hands.click("hide sweep");
     EXPECT_FALSE(hands.session.scene().shows("sweep"));
+}
+
+// As on the slider: in degrees, unless it is said otherwise.
+TEST(SweepPanel, takes_limits_in_degrees) {
+    Hands hands("double_pendulum");
+    hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
+    hands.session.settle();
+    hands.rest(3);
+    hands.click("sweep x");
+    EXPECT_EQ(hands.state.sweep.menus[0].low, "-28.6478897565");
+    const auto limited_to = [&](const std::string& typed) {
+        hands.click("sweep x from");
+        hands.press_with_control('A');
+        hands.type(typed);
+        hands.press(key::enter);
+        hands.rest(2);
+        return hands.session.sweep().axes[0].low;
+    };
+    EXPECT_NEAR(limited_to("-45"), -std::numbers::pi / 4.0, 1e-12);
+    EXPECT_EQ(hands.session.sweep().axes[0].high, 0.5);
+    EXPECT_NEAR(limited_to("-1 rad"), -1.0, 1e-12);
+    EXPECT_NEAR(limited_to("-pi/3"), -std::numbers::pi / 3.0, 1e-12);
 }
 
 // For sweep_window_test.sh.
