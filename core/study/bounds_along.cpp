@@ -26,8 +26,9 @@ Interval BoundsAlong::value(const Trajectory& trajectory, const Piece& piece, do
     for (std::size_t i = 0; i < variables_; ++i) {
         Interval sum(0.0), slope(0.0);  // by theta
         for (std::size_t k = piece.degree + 1; k-- > 0;) {
-            if (k > 0) slope = slope * theta + Interval(static_cast<double>(k) * coefficients[variables_ * k + i]);
-            sum = sum * theta + Interval(coefficients[variables_ * k + i]);
+            const Interval c(coefficients[variables_ * k + i]);
+            if (k > 0) slope = slope * theta + Interval(static_cast<double>(k)) * c;
+            sum = sum * theta + c;
         }
         section_.input(i) = sum;
         rates_[i] = slope / length;
