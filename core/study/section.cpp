@@ -60,14 +60,20 @@ class Along {
     static constexpr int deepest = 40, deepest_by_bend = 6;
     static constexpr std::size_t most_looks = std::size_t{1} << 18, looks_per_piece = 32;
 
-    // Whether the values are no more than what rounding makes of them.
+    // Whether the values are no more than what rounding makes of them, also inside the pieces, which may all end at zeros.
     bool is_nothing(const std::vector<Point>& ends) {
         if (function_.bounds == nullptr) return false;
-        const auto rounds_to = [&](const Point& end) {
-            const Interval at_once = function_.bounds->value(trajectory_, trajectory_.pieces[end.piece], end.t, end.t);
-            return std::abs(end.value) <= 4.0 * rad(at_once);
+        constexpr double share = 0.382;
+        const auto rounds_to = [&](const Point& point) {
+            const Piece& piece = trajectory_.pieces[point.piece];
+            return std::abs(point.value) <= 4.0 * rad(function_.bounds->value(trajectory_, piece, point.t, point.t));
         };
-        return std::all_of(ends.begin(), ends.end(), rounds_to);
+        const auto is_zero_in = [&](std::size_t i) {
+            const Piece& piece = trajectory_.pieces[i];
+            return rounds_to(at(i, piece.start + share * (piece.end - piece.start)));
+        };
+        return std::all_of(ends.begin(), ends.end(), rounds_to) &&
+               std::all_of(pieces_.begin(), pieces_.end(), is_zero_in);
     }
 
     void look_between(const Point& a, const Point& b) {
