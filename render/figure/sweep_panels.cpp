@@ -169,10 +169,6 @@ SweepAxis shown_axis(const SweepData& data, std::size_t index) {
     return axis;
 }
 
-double shown_value(const SweepData& data, std::size_t axis, std::size_t row) {
-    return shown_unit_of_axis(data, axis).factor * data.value(axis, row);
-}
-
 Axis axis_of(const SweepData& data, std::size_t index) {
     const SweepAxis one = shown_axis(data, index);
     Axis axis;

@@ -88,9 +88,8 @@ struct ColumnColors {
     const SweepColumn* column_;
 };
 
-// An axis of the sweep in the unit that is shown, and what it is there in a row.
+// An axis of the sweep in the unit that is shown.
 SweepAxis shown_axis(const SweepData& data, std::size_t axis);
-double shown_value(const SweepData& data, std::size_t axis, std::size_t row);
 // The same along one of a panel, with its limits.
 Axis axis_of(const SweepData& data, std::size_t axis);
 // The row of every point of a grid; no_row where it is not there yet.

@@ -62,8 +62,9 @@ Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Them
     fit(panel.y, column, look.range);
     std::vector<Point> points;
     points.reserve(data.count());
+    const double along = shown_unit_of_axis(data, 0).factor;
     for (std::size_t row = 0; row < data.count(); ++row)
-        points.push_back({shown_value(data, 0, row), column.number(row)});
+        points.push_back({along * data.value(0, row), column.number(row)});
     add_points(std::move(points), theme.ink, theme, panel, "at every " + word_of(*data.sweep.at));
     const SweepAxis axis = shown_axis(data, 0);
     if (axis.count > 0) {
@@ -120,11 +121,12 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
     Panel panel;
     panel.x = axis_of(data, 0);
     const bool is_plane = data.sweep.axes.size() > 1;
+    const double along = shown_unit_of_axis(data, 0).factor, up = is_plane ? shown_unit_of_axis(data, 1).factor : 1.0;
     if (!is_plane && column.is_number()) {
         fit(panel.y, column, look.range);
         std::vector<Point> points;
         for (std::size_t row = 0; row < data.count(); ++row)
-            points.push_back({shown_value(data, 0, row), column.number(row)});
+            points.push_back({along * data.value(0, row), column.number(row)});
         add_points(std::move(points), phase_color(theme, Phase::Kind::hybrid), theme, panel, "");
         return panel;
     }
@@ -145,8 +147,8 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         const bool has_value = column.has_value(row);
         if (!has_value && !is_plane) continue;
         lacks = lacks || !has_value;
-        const double y = is_plane ? shown_value(data, 1, row) : static_cast<double>(classes->place(*column.code(row)));
-        painted.points.push_back({shown_value(data, 0, row), y});
+        const double y = is_plane ? up * data.value(1, row) : static_cast<double>(classes->place(*column.code(row)));
+        painted.points.push_back({along * data.value(0, row), y});
         painted.colors.push_back(has_value ? color(row) : theme.border);
     }
     painted.add_to(panel);
