@@ -68,11 +68,19 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
     return std::nullopt;
 }
 
-// From a cut to its Zeno point the motion holds contacts that the phase does not hold yet.
+// From a cut to its Zeno point the motion holds contacts that the phase does not hold yet. A phase without pieces has no
+// motion: the last piece is of the phase before it.
 std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
-    if (trajectory.pieces.empty() || trajectory.events.empty() || trajectory.end_time < trajectory.pieces.back().end ||
-        trajectory.pieces.back().held.without(trajectory.phases.back().held).empty())
+    if (trajectory.phases.empty() || trajectory.events.empty()) return std::nullopt;
+    const Phase& phase = trajectory.phases.back();
+    if (phase.first_piece == phase.last_piece || trajectory.end_time < trajectory.pieces.back().end)
         return std::nullopt;
+    const ContactSet to_hold = trajectory.pieces.back().held.without(phase.held);
+    bool has_bounces = false;  // that are left out
+    for (std::size_t i = 0; i < trajectory.model->contacts(); ++i)
+        if (to_hold.contains(i) && trajectory.model->restitution(trajectory.run.parameters, i) > 0.0)
+            has_bounces = true;
+    if (!has_bounces) return std::nullopt;
     const Event& cut = trajectory.events.back();
     return Remark{
         "ends before a Zeno point",

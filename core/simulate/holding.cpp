@@ -122,12 +122,16 @@ void Execution::check_touching() {
     if (next_.touching.empty()) return;
     constexpr double closed = 1e-9;
     const double size = 1.0 + next_.state.q.cwiseAbs().maxCoeff();
+    const std::string while_held = next_.held.empty()
+                                       ? "no contact was held"
+                                       : names_of(next_.held) + (next_.held.count() == 1 ? " was held" : " were held");
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (next_.touching.contains(i) && !(std::abs(surfaces_->of(i).at(next_.state).h) <= closed * size))
             return stop(
                 Outcome::Kind::redundant_contacts,
-                fmt::format("{} was closed with {}, and is so no more: which of them carry cannot be decided, at {}",
-                            names_of(ContactSet::of(i)), names_of(next_.held), where(next_.state)));
+                fmt::format(
+                    "{} was closed while {}, and is closed no more: which contacts carry cannot be decided, at {}",
+                    names_of(ContactSet::of(i)), while_held, where(next_.state)));
 }
 
 // Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.

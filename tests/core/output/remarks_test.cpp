@@ -100,6 +100,34 @@ TEST(Remarks, AnEndBeforeTheZenoPoint) {
     EXPECT_TRUE(remarks(simulate(floor, run)).empty());
 }
 
+// A run that stops where a contact lets go has no way to a Zeno point: its last phase has no motion yet.
+TEST(Remarks, AnEndAtARelease) {
+    Trajectory trajectory = simulate(test::load("ball_on_sine"), test::load("ball_on_sine")->default_run());
+    std::size_t release = 0, phase = 0;
+    while (trajectory.events[release].kind != Event::Kind::release) ++release;
+    while (trajectory.phases[phase].kind != Phase::Kind::constrained) ++phase;
+    trajectory.events.resize(release + 1);
+    trajectory.pieces.resize(trajectory.phases[phase].last_piece);
+    trajectory.phases.resize(phase + 2);
+    trajectory.phases.back().last_piece = trajectory.phases.back().first_piece;
+    trajectory.phases.back().end = trajectory.phases.back().start;
+    trajectory.end_time = trajectory.pieces.back().end;
+    ASSERT_FALSE(trajectory.pieces.back().held.empty());
+    ASSERT_TRUE(trajectory.phases.back().held.empty());
+    for (const Remark& remark : remarks(trajectory)) EXPECT_NE(remark.label, "ends before a Zeno point");
+}
+
+// Of a landing without a bounce nothing is left out.
+TEST(Remarks, AnEndAtALanding) {
+    const auto floor = test::load("ball_on_floor");
+    auto run = floor->default_run();
+    assign(run, floor->description(), "e=0");
+    const Trajectory whole = simulate(floor, run);
+    ASSERT_FALSE(whole.events.empty());
+    run.options.end_time = whole.events[0].t;
+    for (const Remark& remark : remarks(simulate(floor, run))) EXPECT_NE(remark.label, "ends before a Zeno point");
+}
+
 // So it is where a later impact is cut while what is proved is large beside the motion.
 TEST(Remarks, ABoundAsLargeAsTheMotionAfterSeveralImpacts) {
     const auto floor = test::load("ball_on_floor");
