@@ -200,5 +200,39 @@ TEST(Redundant, AnyPlateObeysTheLaws) {
     EXPECT_GE(released, 2);
 }
 
+// A list of contacts in a message names at least one: with gaps scaled by 1e8 'wall' touches while none is held.
+TEST(Redundant, NamesNoEmptySet) {
+    const auto model = test::typed(R"toml(
+title = "ball between a moving floor, a wall and a disc"
+[[coordinate]]
+name = "x"
+start = -0.1971
+rate = -1.5677
+[[coordinate]]
+name = "y"
+start = 1.3496
+rate = 0.5744
+force = "-0.2*y'"
+[lagrangian]
+kinetic = "(x'^2 + y'^2)/2"
+potential = "9.81*y"
+[[constraint]]
+name = "floor"
+gap = "1e8*(y - (0.218662*sin(1.127388*x + 3.001771) + 0.2*sin(13.408985*t)))"
+restitution = 0.7
+[[constraint]]
+name = "wall"
+gap = "1e8*(x + 1.813743)"
+restitution = 0
+[[constraint]]
+name = "disc"
+gap = "1e8*(sqrt((x - 1.318784)^2 + (y - 0.364146)^2) - 0.4)"
+restitution = 0.747
+)toml");
+    const std::string message = simulate(model, model->default_run()).outcome.message;
+    for (const char* empty : {"with ,", "with and", "while  ", "of  ", " ,"})
+        EXPECT_EQ(message.find(empty), std::string::npos) << message;
+}
+
 }  // namespace
 }  // namespace achilles
