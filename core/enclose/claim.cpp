@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "enclose/enclosure.hpp"
 #include "expression/expression.hpp"
@@ -41,8 +42,9 @@ Claim claim_as_written(const Run& run) {
 void widen(Claim& claim, double half) {
     if (half == 0.0) return;  // not even a rounding
     const Ground ground;
+    const Interval off = Interval(-1.0, 1.0) * as_written(half);
     for (Intervals* box : {&claim.q, &claim.v})
-        for (Interval& entry : *box) entry += Interval(-half, half);
+        for (Interval& entry : *box) entry += off;
 }
 
 namespace {
@@ -80,20 +82,51 @@ void join(EnclosedState& a, const EnclosedState& b) {
     join(a.v, b.v);
 }
 
+bool is_same(const EnclosedEvent& a, const EnclosedEvent& b) {
+    return a.kind == b.kind && a.contact == b.contact && a.held == b.held && a.opened == b.opened;
+}
+
+void join(EnclosedEvent& a, const EnclosedEvent& b) {
+    a.t = hull(a.t, b.t);
+    join(a.q, b.q);
+    join(a.v_before, b.v_before);
+    join(a.v_after, b.v_after);
+    a.impacts = std::min(a.impacts, b.impacts);
+    a.most_impacts = std::max(a.most_impacts, b.most_impacts);
+}
+
+// The event of a part at `at`, or the same Zeno point as `zeno` where impacts of that bouncing alone come before it: the other
+// part has cut it earlier, and all members of both have them.
+std::size_t skip_impacts_before(const EnclosedEvent& zeno, const std::vector<EnclosedEvent>& events, std::size_t at) {
+    if (zeno.kind != Event::Kind::zeno) return at;
+    std::size_t next = at;
+    while (next < events.size() && events[next].kind == Event::Kind::impact && events[next].contact == zeno.contact &&
+           events[next].opened.empty())
+        ++next;
+    return next < events.size() && is_same(events[next], zeno) ? next : at;
+}
+
+// The events that two parts have in common from the start on. Where one of them has another one before the time until which the
+// other is proved, they differ.
+void join_events(Enclosure& a, const Enclosure& b) {
+    std::vector<EnclosedEvent> common;
+    std::size_t i = 0, k = 0;
+    for (; i < a.events.size() && k < b.events.size(); ++i, ++k) {
+        i = skip_impacts_before(b.events[k], a.events, i);
+        k = skip_impacts_before(a.events[i], b.events, k);
+        if (!is_same(a.events[i], b.events[k])) break;
+        join(common.emplace_back(a.events[i]), b.events[k]);
+    }
+    const auto goes_on = [](const Enclosure& part, std::size_t next, const Enclosure& other) {
+        return next < part.events.size() && part.events[next].t.lo() < other.proved_until;
+    };
+    if (goes_on(a, i, b) || goes_on(b, k, a)) a.events_differ = true;
+    a.events = std::move(common);
+}
+
 // What two parts say together.
 void join(Enclosure& a, const Enclosure& b) {
-    std::size_t same = 0;
-    while (same < a.events.size() && same < b.events.size() && a.events[same].kind == b.events[same].kind) {
-        EnclosedEvent &x = a.events[same], y = b.events[same++];
-        x.t = hull(x.t, y.t);
-        join(x.q, y.q);
-        join(x.v_before, y.v_before);
-        join(x.v_after, y.v_after);
-        x.impacts = std::max(x.impacts, y.impacts);
-    }
-    const bool both_begin_so = same == std::min(a.events.size(), b.events.size());
-    if (!both_begin_so || (a.end && b.end && a.events.size() != b.events.size())) a.events_differ = true;
-    a.events.resize(same);
+    join_events(a, b);
     std::vector<EnclosedState> samples;
     for (EnclosedState& x : a.samples)
         for (const EnclosedState& y : b.samples)

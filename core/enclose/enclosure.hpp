@@ -33,7 +33,9 @@ struct EnclosedEvent {
     ContactSet held, opened;  // after it, and by it
     Interval t;
     Intervals q, v_before, v_after;  // v_after = v_before but at impacts
-    int impacts = 0;                 // zeno: of the bouncing that it ends
+    // zeno: impacts of its contact before the proof's cut of the bouncing, and of parts the fewest of any part and the most.
+    // 0 is a landing without a bounce.
+    int impacts = 0, most_impacts = 0;
 };
 
 struct EnclosedState {
@@ -47,9 +49,10 @@ struct Enclosure {
         Kind kind = Kind::undecided;
         std::string message;
     };
-    double proved_until = 0.0;           // s: until then everything here holds of every member
-    std::vector<EnclosedEvent> events;   // in time: every member has these, and no others until then
-    bool events_differ = false;          // of parts: these are what all begin with
+    double proved_until = 0.0;  // s: until then everything here holds of every member
+    // In time: every member has these, and no others until then, but for the impacts of a bouncing after its last one here.
+    std::vector<EnclosedEvent> events;
+    bool events_differ = false;          // of parts: their lists begin with these, and go on differently
     std::vector<EnclosedState> samples;  // at the claim's times, those before proved_until
     std::optional<EnclosedState> end;    // nothing where it is undecided
     Outcome outcome;
@@ -70,7 +73,8 @@ struct ProofWatch {
 Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch = nullptr);
 
 // The same of the box cut into so many parts along each of its sides that has a width, on all cores: each part is a theorem, and
-// this is what they say together. Throws InputError for more than a million parts.
+// this is what they say together. Parts may cut a bouncing after different numbers of impacts: of these the first are kept, which
+// all have, and then the Zeno point. Throws InputError for more than a million parts.
 Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts,
                          ProofWatch* watch = nullptr);
 

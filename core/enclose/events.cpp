@@ -21,7 +21,7 @@ Interval both(const Interval& a, const Interval& b) {
 void Prover::note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
                         const Intervals& v_after) {
     result_.events.push_back(
-        {kind, contact, held_, {}, t, positions(set_.hull()), v_before, v_after, bounces_[contact]});
+        {kind, contact, held_, {}, t, positions(set_.hull()), v_before, v_after, bounces_[contact], bounces_[contact]});
 }
 
 void Prover::retract(ContactSet onto) {
@@ -202,8 +202,9 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     retract(held_);
     measure_others(held_);
     const Intervals v = velocities(*zeno);
+    const int impacts = bounces_[contact];
     result_.events.push_back(
-        {Event::Kind::zeno, contact, held_, {}, proof->time, positions(*zeno), v, v, bounces_[contact]});
+        {Event::Kind::zeno, contact, held_, {}, proof->time, positions(*zeno), v, v, impacts, impacts});
     bounces_[contact] = 0;
     motion().forget();
     return true;

@@ -50,7 +50,7 @@ std::string to_text(const Spread::Side& side) { return fmt::format("{}={}..{}", 
 
 std::string told(const Spread& spread) {
     std::string text;
-    if (spread.width > 0.0) text = fmt::format("start \u00b1 {:g}", spread.width);
+    if (spread.width > 0.0) text = fmt::format("start \u00b1 {}", spread.width);
     for (const Spread::Side& side : spread.sides)
         text += fmt::format("{}{} in [{}, {}]", text.empty() ? "" : ", ", side.name, side.low, side.high);
     return text;

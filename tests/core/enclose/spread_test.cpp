@@ -22,6 +22,7 @@ TEST(Spread, IsReadAndWritten) {
         EXPECT_THROW(read_side(wrong, ball), InputError) << wrong;
     EXPECT_EQ(achilles::told(Spread()), "");
     EXPECT_EQ(achilles::told(Spread{1e-6, {*e}}), "start \u00b1 1e-06, e in [0.4, 0.6]");
+    EXPECT_EQ(achilles::told(Spread{0.0123456789, {}}), "start \u00b1 0.0123456789") << "no more than is proved";
 }
 
 TEST(Spread, MakesBoxes) {
@@ -34,6 +35,10 @@ TEST(Spread, MakesBoxes) {
     EXPECT_LE(claim.v[0].lo(), 1.0 - 1e-6);  // around the interval, too
     EXPECT_GE(claim.v[0].hi(), 2.0 + 1e-6);
     EXPECT_NEAR(width(claim.q[1]), 2e-6, 1e-12);
+    // The double nearest to 0.3 is below it, and what was typed is not.
+    const achilles::Claim wide = claim_of(model->description(), run, {0.3, {}});
+    EXPECT_LT(wide.q[0].lo(), -0.3);
+    EXPECT_GT(wide.q[0].hi(), 0.3);
 }
 
 }  // namespace achilles::test
