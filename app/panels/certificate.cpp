@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "panels/print.hpp"
@@ -75,11 +76,13 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
 }
 
 std::vector<std::string> certificate_lines(const Event& event) {
+    constexpr int digits = 6;
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
     if (is_plastic_landing(event)) {
         lines.emplace_back("it stays there without a bounce");
-        lines.push_back(with_minus(fmt::format("gap'' from {:.6g} to {:.6g}", -c.a_max, -c.a_min)));
+        lines.push_back(
+            with_minus("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits)));
         return lines;
     }
     lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
@@ -90,7 +93,7 @@ std::vector<std::string> certificate_lines(const Event& event) {
     if (c.shadowing_position)
         lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {}, v {}", bound_text(*c.shadowing_position),
                                     bound_text(*c.shadowing_velocity)));
-    lines.push_back(fmt::format("gap'' from {:.6g} to {:.6g}", -c.a_max, -c.a_min));
+    lines.push_back("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits));
     if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
     return lines;

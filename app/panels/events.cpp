@@ -7,10 +7,10 @@
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
+#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "output/output.hpp"
-#include "output/proof.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/event_columns.hpp"

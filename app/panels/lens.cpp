@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "output/bounds.hpp"
 #include "output/output.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"

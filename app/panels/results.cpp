@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <utility>
 
+#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
-#include "output/proof.hpp"
 #include "output/sentences.hpp"
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
@@ -289,7 +289,7 @@ std::string time_text(const Trajectory& trajectory, std::size_t index) {
 std::string proved_text(const Session& session, std::size_t event, const std::string& before) {
     const EnclosedEvent* const enclosed = session.enclosed(event);
     if (enclosed == nullptr) return "";
-    return before + with_minus(fmt::format("proved: t in [{}, {}]", enclosed->t.lo(), enclosed->t.hi()));
+    return before + "proved: t in " + with_minus(interval_text(enclosed->t.lo(), enclosed->t.hi()));
 }
 
 float results_height(const Session& session) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "output/proof.hpp"
 #include "paint/marker.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -124,7 +125,7 @@ void show_proof(const Session& session) {
     const std::string about = told(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(enclosure.end ? text_color() : error_color()));
     ImGui::TextUnformatted(
-        fmt::format("proved to t = {:.6g} s{}{}", enclosure.proved_until, enclosure.end ? "" : ", then undecided", of)
+        fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
             .c_str());
     ImGui::PopStyleColor();
     tooltip(enclosure.end
@@ -204,12 +205,12 @@ void show_status(const Session& session, const PanelState& state) {
         return;
     }
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
-    const std::string impacts = s.impacts == 1 ? std::string("1 impact") : fmt::format("{} impacts", s.impacts);
-    const std::string text = fmt::format(
-        "{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}", seconds, impacts,
-        s.steps, with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
-        s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
-        to_text(trajectory.run.options.method));
+    const std::string text =
+        fmt::format("{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
+                    seconds, session.sentences().impacts(), s.steps,
+                    with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
+                    s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
+                    to_text(trajectory.run.options.method));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
     show_estimate(session);

@@ -13,6 +13,7 @@
 #include "figure/publication.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
+#include "output/bounds.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
@@ -262,8 +263,8 @@ std::string intervals_text(const std::string& name, const Trajectory& trajectory
     for (const Event& event : simulate(trajectory.model, run).events) {
         if (event.kind != Event::Kind::zeno || !event.certificate) continue;
         const Certificate& c = *event.certificate;
-        text += fmt::format("  {:<34} [{:.13g}, {:.13g}]  width {:.1e}  {} impacts\n",
-                            fmt::format("{}, Zeno time {}", name, ++n), c.zeno_low, c.zeno_high,
+        text += fmt::format("  {:<34} {}  width {:.1e}  {} impacts before the cut\n",
+                            fmt::format("{}, Zeno time {}", name, ++n), interval_text(c.zeno_low, c.zeno_high),
                             c.zeno_high - c.zeno_low, event.impacts);
     }
     return text;

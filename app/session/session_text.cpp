@@ -45,8 +45,8 @@ std::string to_text(const Session& session) {
         text += fmt::format("pinned {}{}: {}\n", pinned.place, pinned.shown ? "" : " (hidden)",
                             pinned.name.empty() ? "the same" : pinned.name);
     if (const Proof* proof = session.proof())
-        text += fmt::format("{}: {} until {:.9g}\n", to_text(*session.proof_command()),
-                            to_text(proof->enclosure.outcome.kind), proof->enclosure.proved_until);
+        text += fmt::format("{}: {} until {}\n", to_text(*session.proof_command()),
+                            to_text(proof->enclosure.outcome.kind), reach_text(proof->enclosure, 9));
     if (session.orbit() != nullptr) text += to_text(*session.orbit(), session.orbit_point());
     if (session.influences_are_current()) text += to_text(*session.influences());
     text += to_text(session.plotted()) + to_text(session.scene());

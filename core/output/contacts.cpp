@@ -4,9 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
-#include "output/output.hpp"
+#include "output/bounds.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -49,23 +48,16 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     return impulses;
 }
 
-namespace {
-
-// A lower bound to three digits, not above what it was.
-std::string rounded_down(double bound) {
-    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 2.0);
-    return fmt::format("{:.3g}", std::floor(bound / unit) * unit);
-}
-
-}  // namespace
-
 std::string others_told(const Model& model, const Certificate::Others& others) {
+    constexpr int digits = 3;
     std::vector<std::string> parts;
     for (const Certificate::Others::Held& held : others.held)
         parts.push_back(fmt::format("{} stays held: its force is at least {}, of every impulse {} is passed on to it",
-                                    model.description().constraints[held.contact].name, rounded_down(held.least_force),
+                                    model.description().constraints[held.contact].name,
+                                    rounded_down(held.least_force, digits),
                                     interval_text(held.transmission_low + 0.0, held.transmission_high + 0.0)));
-    if (others.least_gap) parts.push_back(fmt::format("other gaps stay above {}", rounded_down(*others.least_gap)));
+    if (others.least_gap)
+        parts.push_back(fmt::format("other gaps stay above {}", rounded_down(*others.least_gap, digits)));
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 

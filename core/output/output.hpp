@@ -43,10 +43,6 @@ NormUnits norm_units(const SystemDescription& description);
 std::string sentence(const Certificate& certificate, const SystemDescription& description);
 // What is estimated of the error at the end, or why nothing is.
 std::string sentence(const ErrorEstimate& estimate);
-// "[low, high]" with as many digits as tell the ends apart, and two more.
-std::string interval_text(double low, double high);
-// A bound, to two digits; what is below 1e-16, the rounding of numbers about 1, is told as that.
-std::string bound_text(double bound);
 // The energy drift, to two digits; one of rounding alone is "below 1e-14", which is not nothing.
 std::string drift_text(double drift);
 // The least gap beside the size of the coordinates, to two digits; a negative one of rounding alone is "0 to rounding".

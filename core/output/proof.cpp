@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "model/model.hpp"
+#include "output/bounds.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -29,22 +31,98 @@ Json box(const Intervals& all) {
 
 Json state(const EnclosedState& there) { return {{"t", number(there.t)}, {"q", box(there.q)}, {"v", box(there.v)}}; }
 
-// A number and how far at most the truth is from it, to two digits: both ends are inside.
-std::string about(const Interval& x) {
-    const double centre = mid(x);
-    if (x.lo() == x.hi() && width(as_written(centre)) == 0.0) return fmt::format("{}", centre + 0.0);
-    const double radius = std::max(x.hi() - centre, centre - x.lo()) * (1.0 + 0x1p-50) + 0x1p-52 * std::abs(centre);
-    double shown = radius;
-    for (int ulps = 0; std::stod(fmt::format("{:.1e}", shown)) < radius && ulps < 3; ++ulps) shown *= 1.05;
-    return fmt::format("{} +- {:.1e}", centre + 0.0, shown);
-}
-
-std::string list(const std::vector<std::string>& names, const Intervals& all) {
+std::string list(const std::vector<std::string>& names, const Intervals& all, std::string (*text)(const Interval&)) {
     std::string result;
     for (std::size_t i = 0; i < names.size(); ++i)
-        result += fmt::format("{}{} = {}", i > 0 ? ", " : "", names[i], about(all[i]));
+        result += fmt::format("{}{} {}", i > 0 ? ", " : "", names[i], text(all[i]));
     return result;
 }
+
+bool is_landing(const EnclosedEvent& event) { return event.kind == Event::Kind::zeno && event.most_impacts == 0; }
+
+// A time that a person wrote is the double nearest to it.
+bool is_rounded(double time) { return width(as_written(time)) > 0.0; }
+
+// A proof for a person: what is assumed, how far it goes, and what is concluded.
+class ProofText {
+ public:
+    ProofText(const Model& model, const Claim& claim, const Enclosure& proof)
+        : description_(model.description()), claim_(claim), proof_(proof) {
+        for (const auto& coordinate : description_.coordinates) {
+            names_.push_back(coordinate.name);
+            rates_.push_back(coordinate.name + "'");
+        }
+    }
+
+    std::string text() const {
+        const bool is_whole = proof_.end.has_value();
+        std::string text = fmt::format("{}\n\n{}the completed execution {} t = {}:\n\n{}", description_.title,
+                                       hypotheses(), is_whole ? "is proved until" : "is proved only until",
+                                       reach_text(proof_, digits_of_reach), events());
+        if (is_whole) text += state("end", *proof_.end);
+        for (const EnclosedState& sample : proof_.samples) text += state("at", sample);
+        if (!is_whole) text += fmt::format("\nUndecided from there: {}.\n", proof_.outcome.message);
+        if (has_rounded_times()) text += "\nTimes of the end and of samples are the doubles nearest to those above.\n";
+        return text + fmt::format("\nIt stands on {}.\n", proof_.assumptions);
+    }
+
+ private:
+    std::string hypotheses() const {
+        std::string text = fmt::format("For every start with\n  {}\n  {}\n", list(names_, claim_.q, inner_text),
+                                       list(rates_, claim_.v, inner_text));
+        std::vector<std::string> parameters;
+        for (const auto& parameter : description_.parameters) parameters.push_back(parameter.name);
+        if (!parameters.empty())
+            text += fmt::format("and all parameters with\n  {}\n", list(parameters, claim_.parameters, inner_text));
+        return text;
+    }
+
+    // Of impacts in a row the first, and how many more there are.
+    std::string events() const {
+        std::string text;
+        int impacts = 0;
+        for (const EnclosedEvent& event : proof_.events) {
+            if (event.kind == Event::Kind::impact && impacts++ > 0) continue;
+            if (event.kind != Event::Kind::impact) text += more_impacts(std::exchange(impacts, 0), &event);
+            const std::string contact =
+                description_.constraints.size() > 1 ? ", " + description_.constraints[event.contact].name : "";
+            text += fmt::format("  {:<8} t {}{}\n           {}\n", is_landing(event) ? "landing" : to_text(event.kind),
+                                outer_text(event.t), contact, list(names_, event.q, outer_text));
+        }
+        text += more_impacts(impacts, nullptr);
+        if (proof_.events_differ) text += "  (the parts list different events from here on)\n";
+        return text;
+    }
+
+    // After the first of so many; `next` is null at the end.
+    static std::string more_impacts(int impacts, const EnclosedEvent* next) {
+        const int after_first = std::max(impacts - 1, 0);
+        const bool is_cut = next != nullptr && next->kind == Event::Kind::zeno && !is_landing(*next);
+        const int more_in_some = is_cut ? next->most_impacts - next->impacts : 0;
+        if (after_first + more_in_some == 0) return "";
+        std::string count = fmt::format("{}", after_first);
+        if (more_in_some > 0) count += fmt::format(" to {}", after_first + more_in_some);
+        return fmt::format("  {:<8} {} more{}{}\n", "impacts", count, is_cut ? " before the cut" : "",
+                           more_in_some > 0 ? ", by part" : "");
+    }
+
+    std::string state(const char* what, const EnclosedState& there) const {
+        return fmt::format("  {:<8} t = {}\n           {}\n           {}\n", what, there.t + 0.0,
+                           list(names_, there.q, outer_text), list(rates_, there.v, outer_text));
+    }
+
+    bool has_rounded_times() const {
+        const bool is_end = proof_.end && is_rounded(proof_.end->t);
+        return is_end || std::any_of(proof_.samples.begin(), proof_.samples.end(),
+                                     [](const EnclosedState& sample) { return is_rounded(sample.t); });
+    }
+
+    static constexpr int digits_of_reach = 10;
+    const SystemDescription& description_;
+    const Claim& claim_;
+    const Enclosure& proof_;
+    std::vector<std::string> names_, rates_;
+};
 
 }  // namespace
 
@@ -85,7 +163,10 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
         } else {
             entry["v"] = box(event.v_after);
         }
-        if (event.kind == Event::Kind::zeno) entry["impacts"] = event.impacts;
+        if (event.kind == Event::Kind::zeno) {
+            entry["impacts"] = event.impacts;
+            if (event.impacts < event.most_impacts) entry["impacts_of_parts"] = {event.impacts, event.most_impacts};
+        }
         events.push_back(entry);
     }
     for (const EnclosedState& sample : proof.samples) samples.push_back(state(sample));
@@ -108,55 +189,13 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
     return result.dump(1) + "\n";
 }
 
-std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof) {
-    const SystemDescription& description = model.description();
-    std::vector<std::string> names, rates, parameters;
-    for (const auto& coordinate : description.coordinates) {
-        names.push_back(coordinate.name);
-        rates.push_back(coordinate.name + "'");
-    }
-    for (const auto& parameter : description.parameters) parameters.push_back(parameter.name);
-    std::string text = fmt::format("{}\n\nFor every start in\n  {}\n  {}\n", description.title, list(names, claim.q),
-                                   list(rates, claim.v));
-    if (!parameters.empty()) text += fmt::format("and all parameters in\n  {}\n", list(parameters, claim.parameters));
-    const bool whole = proof.end.has_value();
-    text += fmt::format("the completed execution {} t = {}:\n\n", whole ? "is proved until" : "is proved only until",
-                        proof.proved_until);
-    int impacts = 0;
-    const auto tell_impacts = [&] {
-        if (impacts > 1) text += fmt::format("  {:<8} {} more\n", "impacts", impacts - 1);
-        impacts = 0;
-    };
-    for (const EnclosedEvent& event : proof.events) {
-        if (event.kind == Event::Kind::impact && impacts++ > 0) continue;
-        if (event.kind != Event::Kind::impact) tell_impacts();
-        const bool is_one_of_several = model.contacts() > 1;
-        text += fmt::format("  {:<8} t = {}{}\n           {}\n", to_text(event.kind), about(event.t),
-                            is_one_of_several ? ", " + description.constraints[event.contact].name : "",
-                            list(names, event.q));
-    }
-    tell_impacts();
-    if (proof.events_differ) text += "  (from here on the parts have different events)\n";
-    if (whole)
-        text += fmt::format("  {:<8} t = {}\n           {}\n           {}\n", "end", proof.end->t,
-                            list(names, proof.end->q), list(rates, proof.end->v));
-    for (const EnclosedState& sample : proof.samples)
-        text += fmt::format("  {:<8} t = {}\n           {}\n           {}\n", "at", sample.t, list(names, sample.q),
-                            list(rates, sample.v));
-    if (!whole) text += fmt::format("\nUndecided from there: {}.\n", proof.outcome.message);
-    return text + fmt::format("\nIt stands on {}.\n", proof.assumptions);
+std::string reach_text(const Enclosure& proof, int digits) {
+    const bool is_whole = proof.outcome.kind == Enclosure::Outcome::Kind::end_time;  // what a person wrote
+    return is_whole ? fmt::format("{}", proof.proved_until + 0.0) : rounded_down(proof.proved_until, digits);
 }
 
-std::string short_text(const Interval& x) {
-    const double centre = mid(x), half = std::max(x.hi() - centre, centre - x.lo());
-    if (!std::isfinite(half)) return fmt::format("[{}, {}]", x.lo(), x.hi());
-    if (half == 0.0) return fmt::format("{}", centre + 0.0);
-    constexpr int most = 15;  // decimals, of which a double of a few seconds has no more
-    const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, most);
-    const std::string text = fmt::format("{:.{}f}", centre, decimals);
-    const long double shown = std::stold(text), off = std::max(x.hi() - shown, shown - x.lo()),
-                      rounding = 0x1p-60L * (std::abs(shown) + off);
-    return fmt::format("{}({})", text, std::ceil((off + rounding) * std::pow(10.0L, decimals)));
+std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof) {
+    return ProofText(model, claim, proof).text();
 }
 
 std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const Enclosure& proof) {

@@ -12,11 +12,12 @@ namespace achilles {
 std::string_view to_text(Enclosure::Outcome::Kind kind);
 // Every interval is [lo, hi], both in the shortest form that reads back the same double; no wall clock.
 std::string to_json(const Model& model, const Claim& claim, const Enclosure& proof);
-// Numbers with how far the truth is from them at most, rounded up.
+// No more than to_json() claims: hypotheses as a person wrote them, or rounded inward; conclusions rounded outward, as numbers
+// with how far the truth is from them at most.
 std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof);
 
-// "2.7251421727(13)": the last digits of the number may be off by so many of them, and both ends are inside.
-std::string short_text(const Interval& x);
+// The time until which all is proved, s: the end time, or another one rounded down to so many digits.
+std::string reach_text(const Enclosure& proof, int digits = 6);
 
 // Of every event of a run the enclosed one that it is among: Zeno points and releases one after the other, impacts as they
 // follow these. Null where the proof has none; a run may cut a bouncing earlier than a proof does.

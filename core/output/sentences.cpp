@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/model.hpp"
+#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "system/units.hpp"
@@ -18,16 +19,17 @@ std::string with_unit(const std::string& value, const std::string& unit) {
     return unit.empty() ? value : value + " " + unit;
 }
 
+// "9 impacts before the cut": after a cut there are infinitely many.
+std::string counted(long impacts, int cuts) {
+    return fmt::format("{} {}{}", impacts, impacts == 1 ? "impact" : "impacts",
+                       cuts == 0   ? ""
+                       : cuts == 1 ? " before the cut"
+                                   : " before the cuts");
+}
+
 std::string seconds(double t, int digits = 6) { return fmt::format("{:.{}g} s", t + 0.0, digits); }
 
 }  // namespace
-
-std::string rounded_up(double bound) {
-    const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
-    std::string text = fmt::format("{:.2g}", std::ceil(bound / unit) * unit);
-    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
-    return text;
-}
 
 std::optional<double> proved_time(const Event& event) {
     if (!event.certificate || !event.certificate->certified || is_plastic_landing(event)) return std::nullopt;
@@ -106,10 +108,9 @@ std::string Sentences::zeno(std::size_t index) const {
     // Its impact has told what is lost.
     if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
     const Pile pile = pile_of(trajectory_, index);
-    std::string text =
-        fmt::format("{}: {}", begins, pile.impacts == 1 ? "1 impact" : fmt::format("{} impacts", pile.impacts));
+    std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
     if (pile.impacts > 0)
-        text += (pile.impacts == 1 ? " at " : " since ") + seconds(trajectory_.events[pile.first].t, 4);
+        text += (pile.impacts == 1 ? ", at " : ", the first at ") + seconds(trajectory_.events[pile.first].t, 4);
     text += lost(pile.loss);
     const std::optional<double> bound = proved_time(event);
     text += !bound         ? ", not certified"
@@ -118,6 +119,12 @@ std::string Sentences::zeno(std::size_t index) const {
     if (by_convention_ && *by_convention_ < index)
         text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
     return text;
+}
+
+std::string Sentences::impacts() const {
+    const auto cuts = std::count_if(trajectory_.events.begin(), trajectory_.events.end(),
+                                    [](const Event& event) { return event.truncation && !is_plastic_landing(event); });
+    return counted(trajectory_.statistics.impacts, static_cast<int>(std::min<std::ptrdiff_t>(cuts, 2)));
 }
 
 std::string Sentences::own_words(ContactSet contact, std::string ConstraintDescription::*words) const {

@@ -11,9 +11,9 @@
 
 namespace achilles {
 
-// "knee is held: 10 impacts since 2.46 s, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time of the exact motion from the
-// computed state at the cut is that near to the event's, by the certificate; "proved" is said of whole runs alone (proof.hpp). In the units
-// of the file.
+// "knee is held: 10 impacts before the cut, the first at 2.46 s, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time
+// of the exact motion from the computed state at the cut is that near to the event's, by the certificate; "proved" is said of
+// whole runs alone (proof.hpp). In the units of the file.
 class Sentences {
  public:
     // Of a run that outlives this. Throws nothing.
@@ -24,6 +24,8 @@ class Sentences {
     // "start at 0 s: in free flight" and "end at 20 s: knee is held"; of a run that ended early, why.
     std::string start() const;
     std::string end() const;
+    // "24 impacts before the cuts", of the whole run.
+    std::string impacts() const;
     // "2.13 J", or nothing where it is rounding: of an energy.
     std::string energy(double value) const;
     const std::string& energy_unit() const { return energy_unit_; }
@@ -46,8 +48,6 @@ class Sentences {
     std::optional<std::size_t> by_convention_;  // the first event that Moreau's law decided
 };
 
-// A bound to two digits, never below what it was: "3.6e-7".
-std::string rounded_up(double bound);
 // How far the Zeno time can be from the event's, by its certificate (s); nothing where none is proved, and at a landing.
 std::optional<double> proved_time(const Event& event);
 

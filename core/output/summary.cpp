@@ -6,6 +6,7 @@
 #include "depend/error_estimate.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
+#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "output/sentences.hpp"
@@ -192,17 +193,6 @@ std::string assumed() {
 
 }  // namespace
 
-std::string interval_text(double low, double high) {
-    int digits = 8;
-    while (digits < 17 && fmt::format("{:.{}g}", low, digits - 2) == fmt::format("{:.{}g}", high, digits - 2)) ++digits;
-    return fmt::format("[{:.{}g}, {:.{}g}]", low, digits, high, digits);
-}
-
-std::string bound_text(double bound) {
-    constexpr double rounding = 1e-16;
-    return fmt::format("{:.2g}", std::max(bound, rounding));
-}
-
 std::string drift_text(double drift) {
     return drift < noise ? fmt::format("below {}", noise) : fmt::format("{:.2g}", drift);
 }
@@ -277,9 +267,9 @@ std::string summary(const Trajectory& trajectory) {
     text += "\n" + sentence(estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text += fmt::format("{} impacts, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", s.impacts, s.steps,
-                        s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
-                        least_gap_text(least_gap(trajectory), scale.q.maxCoeff()));
+    text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n",
+                        Sentences(trajectory).impacts(), s.steps, s.evaluations, has_power ? " beside the work" : "",
+                        drift_text(s.energy_drift), least_gap_text(least_gap(trajectory), scale.q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";

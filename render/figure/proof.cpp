@@ -9,6 +9,7 @@
 #include "figure/ticks.hpp"
 #include "figure/values.hpp"
 #include "number/ground.hpp"
+#include "output/proof.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -215,7 +216,7 @@ void give_room(Panel& panel, const std::vector<Known>& known) {
 
 Markers undecided_mark(const Theme& theme, const Enclosure& proof) {
     Markers mark;
-    mark.label = fmt::format("undecided from {:.6g} s on", proof.proved_until);
+    mark.label = fmt::format("undecided from {} s on", reach_text(proof));
     mark.shape = Markers::Shape::bar;
     mark.fill = mark.edge = theme.error;
     return mark;

@@ -8,6 +8,7 @@
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "journal/journal.hpp"
+#include "output/bounds.hpp"
 #include "output/proof.hpp"
 #include "pictures/take_away.hpp"
 #include "session/open_session.hpp"
@@ -229,6 +230,10 @@ TEST(ProofFigure, IsDrawnAndMadeAgain) {
     const std::string svg = test::content(folder.path() / "ball.svg");
     EXPECT_NE(svg.find("proved: start \u00b1 0.001, e in [0.495, 0.505]"), std::string::npos);
     EXPECT_NE(svg.find("fill-opacity"), std::string::npos);
+    EXPECT_EQ(folder.run("figure ball_on_floor --proof --width 0.000123456789 --view height --out narrow.svg").status,
+              0);
+    EXPECT_NE(test::content(folder.path() / "narrow.svg").find("proved: start \u00b1 0.000123456789"),
+              std::string::npos);
     // The same by the explorer's command.
     EXPECT_EQ(
         folder.run("figure ball_on_floor --set e=0.5 --do \"prove width 1e-3 e=0.495..0.505\" --out do.svg").status, 0);

@@ -139,6 +139,18 @@ TEST(ProofTube, EndsWhereTheProofIsUndecided) {
     ASSERT_NE(mark, panel.markers.end());
     ASSERT_EQ(mark->points.size(), 1U);
     EXPECT_EQ(mark->points[0].x, until);
+    // No later than that: some of these times would be rounded up.
+    Proof other = ball.proof;
+    for (const double reached : {until, 2.6366666, 1.9999999, 0.3}) {
+        other.enclosure.proved_until = reached;
+        Figure figure;
+        name_proof(figure, other, light_theme());
+        ASSERT_EQ(figure.keys.size(), 2U);
+        const std::string begin = "undecided from ", &label = figure.keys[1].label;
+        ASSERT_TRUE(label.starts_with(begin) && label.ends_with(" s on")) << label;
+        EXPECT_LE(std::stold(label.substr(begin.size())), reached) << label;
+        EXPECT_GT(std::stold(label.substr(begin.size())), 0.99999 * reached) << label;
+    }
     ASSERT_EQ(panel.bands.size(), 1U);
     EXPECT_EQ(panel.bands[0].low, until);
     // A proof knows no work and no path: there is nothing to draw.

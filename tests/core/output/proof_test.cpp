@@ -11,28 +11,6 @@
 
 namespace achilles::test {
 
-// Both ends lie in what the digits and the number behind them say, and the number has two digits.
-TEST(ShortText, HoldsBothEnds) {
-    EXPECT_EQ(short_text(Interval(2.5)), "2.5");
-    EXPECT_EQ(short_text(Interval(2.72514212, 2.72514432)), "2.7251432(12)");
-    EXPECT_EQ(short_text(Interval(-0.352, 0.352)), "0.00(36)");
-    EXPECT_EQ(short_text(Interval(100.25, 300.75)), "200(101)");
-    std::mt19937 random(4);
-    std::uniform_real_distribution<double> place(-20.0, 20.0), size(-14.5, 1.0);
-    for (int i = 0; i < 2000; ++i) {
-        const double low = place(random), high = low + std::pow(10.0, size(random));
-        const std::string text = short_text(Interval(low, high));
-        const std::size_t bracket = text.find('('), point = text.find('.');
-        ASSERT_NE(bracket, std::string::npos) << text;
-        const std::size_t decimals = point == std::string::npos ? 0 : bracket - point - 1;
-        const long double shown = std::stold(text),
-                          off = std::stold(text.substr(bracket + 1)) * std::pow(10.0L, -static_cast<int>(decimals));
-        EXPECT_LE(shown - off, low + 1e-18L) << text;
-        EXPECT_GE(shown + off, high - 1e-18L) << text;
-        EXPECT_LE(off, 1.2 * (high - low) + 2e-15) << text << " of " << low << ", " << high;
-    }
-}
-
 // Whatever the run cuts earlier than the proof: the same Zeno points, releases and impacts.
 TEST(EnclosedEvents, AreThoseOfTheRun) {
     for (const std::string name :

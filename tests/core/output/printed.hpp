@@ -1,0 +1,36 @@
+// Numbers as a person reads them, with all digits that a quadruple has.
+#pragma once
+
+#include "core/enclose/truth.hpp"
+
+namespace achilles::test {
+
+// The set of reals that a text stands for: "= 0.1", "= 2.5 +- 1.3e-09", "in [0.059, 0.061]".
+struct Printed {
+    Real low, high;
+    static Printed of(const std::string& text) {
+        if (text.starts_with("in [") && text.ends_with("]")) {
+            const std::size_t comma = text.find(", ");
+            return {Real(text.substr(4, comma - 4)), Real(text.substr(comma + 2, text.size() - comma - 3))};
+        }
+        const std::size_t sign = text.find(" +- ");
+        if (!text.starts_with("= ")) ADD_FAILURE() << text;
+        const Real center(text.substr(2, sign == text.npos ? sign : sign - 2));
+        const Real off = sign == text.npos ? Real(0) : Real(text.substr(sign + 4));
+        return {center - off, center + off};
+    }
+    Real width() const { return high - low; }
+};
+
+// What quadruples round is no fault of what is printed.
+inline Real rounding_of(const Printed& x) {
+    return (boost::multiprecision::abs(x.low) + boost::multiprecision::abs(x.high)) * Real(1e-32);
+}
+inline bool holds(const Printed& x, const Interval& all) {
+    return x.low - rounding_of(x) <= Real(all.lo()) && Real(all.hi()) <= x.high + rounding_of(x);
+}
+inline bool lies_in(const Printed& x, const Interval& all) {
+    return x.low + rounding_of(x) >= Real(all.lo()) && Real(all.hi()) >= x.high - rounding_of(x);
+}
+
+}  // namespace achilles::test
