@@ -139,6 +139,11 @@ TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     EXPECT_EQ(answer.status, 3);
     EXPECT_NE(answer.err.find("achilles: the run stopped early: "), std::string::npos) << answer.err;
     EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
+    // The summary has the reason, and one is enough.
+    const Answer summed_up = folder.run("simulate ball_on_sine --max-impacts 3");
+    const std::string reason = "3 impacts by t = ";
+    EXPECT_NE(summed_up.out.find(reason), std::string::npos) << summed_up.out;
+    EXPECT_EQ(summed_up.err, "achilles: the run stopped early: too many impacts\n");
 }
 
 TEST(Cli, TheStepsOfARunCanBeLimited) {

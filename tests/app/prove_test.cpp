@@ -35,7 +35,7 @@ TEST(Prove, TellsAPersonWhatIsProvedAndWhatItStandsOn) {
     const Answer answer = Folder().run("prove ball_on_sine --end 4");
     EXPECT_EQ(answer.status, 0);
     for (const char* words :
-         {"For every start in", "is proved until t = 4", "zeno     t = 2.72514217273", "rounded to nearest"})
+         {"For every start with", "is proved until t = 4", "zeno     t = 2.72514217273", "rounded to nearest"})
         EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
 }
 
@@ -54,6 +54,41 @@ TEST(Prove, TakesBoxesAndInterval) {
     EXPECT_EQ(undecided.status, 3);
     EXPECT_NE(undecided.err.find("undecided at t = "), std::string::npos);
     EXPECT_TRUE(json::parse(undecided.out)["end"].is_null());
+}
+
+// Where a proof ends undecided, the reason stands once on a terminal, and how far it goes is not rounded up.
+TEST(Prove, SaysOnceWhyItIsUndecided) {
+    const Folder folder;
+    const Answer text = folder.run("prove ball_on_sine --set e=0.46..0.5"),
+                 data = folder.run("prove ball_on_sine --set e=0.46..0.5 --json -");
+    EXPECT_EQ(text.status, 3);
+    EXPECT_EQ(data.status, 3);
+    const json proof = json::parse(data.out);
+    const std::string reason = proof["outcome"]["message"];
+    const auto count = [&](const std::string& all) {
+        int times = 0;
+        for (std::size_t at = all.find(reason); at != all.npos; at = all.find(reason, at + 1)) ++times;
+        return times;
+    };
+    EXPECT_EQ(count(text.out), 1) << text.out;
+    EXPECT_EQ(count(text.err), 0) << text.err;
+    EXPECT_EQ(count(data.err), 1) << data.err;
+    for (const Answer& answer : {text, data}) {
+        const std::size_t at = answer.err.find("undecided at t = ");
+        ASSERT_NE(at, answer.err.npos) << answer.err;
+        EXPECT_LE(std::stold(answer.err.substr(at + 17)), proof["proved_until"].get<double>()) << answer.err;
+    }
+}
+
+// What a person typed is what is claimed to be proved.
+TEST(Prove, PrintsWhatWasTyped) {
+    const Folder folder;
+    const Answer answer = folder.run("prove ball_on_floor --set r=0.059..0.061 --width 1e-5 --end 0.9");
+    EXPECT_NE(answer.out.find("r in [0.059, 0.061]"), std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find("y in [0.99999, 1.00001]"), std::string::npos) << answer.out;
+    const Answer parts = folder.run("prove ball_on_sine --end 12 --set e=0.499..0.501 --split 16");
+    EXPECT_NE(parts.out.find("7 to 8 more before the cut, by part"), std::string::npos) << parts.out;
+    EXPECT_NE(parts.out.find("  release  t = 3.73"), std::string::npos) << parts.out;
 }
 
 TEST(Prove, RefusesWhatItDoesNotCoverAndWhatIsImpossible) {

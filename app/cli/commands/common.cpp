@@ -11,6 +11,7 @@
 #include "cli/terminal.hpp"
 #include "enclose/enclosure.hpp"
 #include "output/output.hpp"
+#include "output/proof.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -38,18 +39,20 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 
 }  // namespace
 
-int told_of(const Trajectory& trajectory, bool with_remarks) {
-    if (with_remarks)
+int told_of(const Trajectory& trajectory, bool with_reasons) {
+    if (with_reasons)
         for (const Remark& remark : remarks(trajectory))
             print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    print_clean(stderr, "achilles: the run stopped early: {}\n", trajectory.outcome.message);
+    print_clean(stderr, "achilles: the run stopped early: {}\n",
+                with_reasons ? trajectory.outcome.message : std::string(to_text(trajectory.outcome.kind)));
     return stopped_early;
 }
 
-int told_of(const Enclosure& proof) {
+int told_of(const Enclosure& proof, bool with_reason) {
     if (proof.end) return reached_end;
-    print_clean(stderr, "achilles: undecided at t = {}: {}\n", proof.proved_until, proof.outcome.message);
+    print_clean(stderr, "achilles: undecided at t = {}{}\n", reach_text(proof, 10),
+                with_reason ? ": " + proof.outcome.message : "");
     return stopped_early;
 }
 

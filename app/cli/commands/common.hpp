@@ -43,10 +43,10 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale,
 // --width-mm and what belongs to it, in the place of --size and --scale.
 void add_page_options(CLI::App& command, PaperSize& page);
 
-// Tells on standard error what a person may not expect of a finished run: its remarks, unless they stand elsewhere, and why it
-// stopped early. The exit status.
-int told_of(const Trajectory& trajectory, bool with_remarks = true);
-// The same of a proof: why it goes no further.
-int told_of(const Enclosure& proof);
+// Prints on standard error what a person may not expect of a finished run: its remarks and why it stopped early; where these stand
+// elsewhere only that it did. The exit status.
+int told_of(const Trajectory& trajectory, bool with_reasons = true);
+// The same of a proof: where it ends undecided, and why, unless that stands elsewhere.
+int told_of(const Enclosure& proof, bool with_reason = true);
 
 }  // namespace achilles

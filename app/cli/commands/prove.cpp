@@ -69,7 +69,7 @@ int run(const ProveArguments& arguments) {
               arguments.json.empty() ? printable(proof_text(*model, claim, proof)) : to_json(*model, claim, proof));
     files.commit();
     if (arguments.verbose) print_clean(stderr, "achilles: {:.3g} s\n", proof.statistics.seconds);
-    return told_of(proof);
+    return told_of(proof, !arguments.json.empty());
 }
 
 }  // namespace
