@@ -140,8 +140,8 @@ void go_to(const SweepData& data, const std::vector<double>& values, Commands& c
     if (!start.values.empty()) commands.emplace_back(std::move(start));
 }
 
-// "3 impacts, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. What is told beside a pointer
-// must be there within the frame: of a long run the beginning.
+// "3 impacts before the cut, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. What is told
+// beside a pointer must be there within the frame: of a long run the beginning.
 std::string events_of(const Session& session, const Run& run) {
     constexpr int most_impacts = 2000, most_steps = 20000, most_told = 6;
     Run shorter = run;
@@ -149,24 +149,26 @@ std::string events_of(const Session& session, const Run& run) {
     shorter.options.max_steps = std::min(shorter.options.max_steps, most_steps);
     std::vector<std::string> told;
     int impacts = 0;
-    const auto tell_impacts = [&] {
-        if (impacts > 0) told.push_back(impacts == 1 ? "an impact" : fmt::format("{} impacts", impacts));
+    const auto tell_impacts = [&](const char* before) {
+        if (impacts > 0) told.push_back((impacts == 1 ? "an impact" : fmt::format("{} impacts", impacts)) + before);
         impacts = 0;
     };
     try {
         const Trajectory trajectory = simulate(session.model(), shorter);
-        for (const Passage& passage : sequence_of(trajectory)) {
-            if (passage.kind == Event::Kind::impact) {
+        for (const Event& event : trajectory.events) {
+            if (event.kind == Event::Kind::impact) {
                 ++impacts;
                 continue;
             }
-            tell_impacts();
-            const char* const name = passage.kind == Event::Kind::zeno      ? "Zeno point"
-                                     : passage.kind == Event::Kind::release ? "release"
-                                                                            : "event";
-            told.push_back(fmt::format("{} at {} s", name, number(passage.t, "{:.5g}")));
+            const bool is_landing = is_plastic_landing(event), is_cut = event.truncation && !is_landing;
+            tell_impacts(is_cut ? " before the cut" : "");
+            const char* const name = is_landing                           ? "landing"
+                                     : event.kind == Event::Kind::zeno    ? "Zeno point"
+                                     : event.kind == Event::Kind::release ? "release"
+                                                                          : "event";
+            told.push_back(fmt::format("{} at {} s", name, number(event.t, "{:.5g}")));
         }
-        tell_impacts();
+        tell_impacts("");
         if (trajectory.outcome.kind != Outcome::Kind::end_time) told.emplace_back("\u2026");
     } catch (const InputError& problem) {
         return problem.message;

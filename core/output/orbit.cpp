@@ -154,7 +154,7 @@ std::string events_of(const Orbit& orbit) {
             continue;
         }
         impacts = std::max(impacts - 2, 0);
-        tell_impacts(" more");
+        tell_impacts(event.truncation && !is_plastic_landing(event) ? " more before the cut" : " more");
         impacts = 0;
         text += fmt::format("  {:<9} t = {:<18.13g} {}\n", is_plastic_landing(event) ? "landing" : to_text(event.kind),
                             event.t, named(orbit.run.model->description(), event.q, ""));
