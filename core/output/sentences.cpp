@@ -27,7 +27,7 @@ std::string counted(long impacts, int cuts) {
                                    : " before the cuts");
 }
 
-std::string seconds(double t, int digits = 6) { return fmt::format("{:.{}g} s", t + 0.0, digits); }
+std::string seconds(double t) { return fmt::format("{:.6g} s", t + 0.0); }
 
 }  // namespace
 
@@ -109,8 +109,6 @@ std::string Sentences::zeno(std::size_t index) const {
     if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
     const Pile pile = pile_of(trajectory_, index);
     std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
-    if (pile.impacts > 0)
-        text += (pile.impacts == 1 ? ", at " : ", the first at ") + seconds(trajectory_.events[pile.first].t, 4);
     text += lost(pile.loss);
     const std::optional<double> bound = proved_time(event);
     text += !bound         ? ", not certified"

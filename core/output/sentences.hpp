@@ -11,9 +11,9 @@
 
 namespace achilles {
 
-// "knee is held: 10 impacts before the cut, the first at 2.46 s, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time
-// of the exact motion from the computed state at the cut is that near to the event's, by the certificate; "proved" is said of
-// whole runs alone (proof.hpp). In the units of the file.
+// "knee is held: 10 impacts before the cut, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time of the exact motion from
+// the computed state at the cut is that near to the event's, by the certificate; "proved" is said of whole runs alone
+// (proof.hpp). In the units of the file.
 class Sentences {
  public:
     // Of a run that outlives this. Throws nothing.

@@ -19,7 +19,7 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     const Event sharp = first_zeno(session.trajectory());
     const std::vector<std::string> lines = certificate_lines(sharp);
     ASSERT_EQ(lines.size(), 5u);
-    EXPECT_EQ(lines[0], "Zeno time τ∞ in [2.72514147, 2.72514285]");
+    EXPECT_EQ(lines[0], "Zeno time τ∞ in [2.72514146, 2.72514286]");
     EXPECT_EQ(lines[1].rfind("cut to τ∞: q moves < ", 0), 0u) << lines[1];
     EXPECT_EQ(lines[2].rfind("drawn until τ∞: q within ", 0), 0u) << lines[2];
     EXPECT_EQ(lines[3].rfind("drawn at τ∞: q within ", 0), 0u) << lines[3];

@@ -252,7 +252,7 @@ TEST(ProofText, ClaimsNoMoreThanItsJson) {
         conclusions += proof.conclusions;
         cuts += proof.cuts;
     }
-    EXPECT_GT(conclusions, 600);
+    EXPECT_GT(conclusions, 400);
     EXPECT_GT(cuts, 15);
 }
 
