@@ -59,6 +59,11 @@ struct Transport {
     MatrixXd covariance;
 };
 
+// Whether all that a link says are numbers.
+bool is_known(const Link& link) {
+    return link.kind == Link::Kind::crossing || (link.J.allFinite() && link.left_out.allFinite());
+}
+
 ErrorEstimate none(std::string reason) {
     ErrorEstimate result;
     result.none_since = std::move(reason);
@@ -102,6 +107,12 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
     ErrorEstimate result;
     while (const Link* link = chain.next()) {
         if (stop.stop_requested()) return none("another thread asked to stop");
+        if (!is_known(*link))
+            return none(
+                fmt::format("at t = {:.6g} s a function overflows in the terms that a step leaves out, as cosh(u)^2 "
+                            "does beyond u = 355; "
+                            "write 1 - tanh(u)^2 for 1/cosh(u)^2",
+                            chain.state().t));
         carried.follow(*link);
         if (link->kind == Link::Kind::crossing) continue;
         if (link->kind == Link::Kind::step || link->event) carried.round(chain.state(), tangent);
@@ -127,7 +138,8 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         result.end = at_end(carried, tangent, chain.rate());
         if (!is_finite(*result.end)) {
             result.end.reset();
-            result.none_since = "what became of the errors is no number";
+            result.none_since =
+                "the errors grow beyond all numbers by the end of the run; a shorter run has an estimate";
         }
     }
     return result;

@@ -19,7 +19,8 @@ class FlowDifference : public FlowSlope {
     void slope_after(double span, ContactSet held, RowMatrix& S) override;
 
     // What polynomials of this degree leave out of q and v after a time, from the state of the last expansion on: the terms
-    // that follow, or where these fall too slowly the difference to two steps of half the length.
+    // that follow; where these fall too slowly, the difference to two steps of half the length; and where the series of
+    // these does not reach so far either, to as many shorter ones as it takes. Not a number where those do not get there.
     void left_out(int degree, double span, RowMatrix& delta);
     static constexpr int more_orders = 8;  // to which it must have been expanded
 
@@ -30,14 +31,18 @@ class FlowDifference : public FlowSlope {
         MotionSeries motion;
     };
     void expand_beside(const State& state);
-    void by_halves(int degree, double span, RowMatrix& delta);
+    bool by_halves(int degree, double span, RowMatrix& delta);
+    void by_parts(int degree, double span, RowMatrix& delta);
+    double open_terms(const MotionSeries& motion, double span) const;
+    static double reach(const MotionSeries& motion, int order, std::size_t rows, double size);
     double last_terms(double length) const;
+    int finite_order() const;
     double slope(const Beside& beside, int k, std::size_t i) const {
         return (beside.motion.coefficient(k, i) - motion_.coefficient(k, i)) / beside.distance;
     }
 
     Tangent tangent_;
-    MotionSeries motion_, from_half_;
+    MotionSeries motion_, part_;
     State state_;  // of the last expansion
     std::vector<Beside> beside_;
     int order_ = 0;        // of the motion

@@ -11,6 +11,7 @@ MotionSeries::MotionSeries(const Model& model, ContactSet held, std::span<const 
       rows_(static_cast<std::size_t>(highest_order + 1) * width_) {}
 
 void MotionSeries::expand(const State& state, int order) {
+    order_ = order;
     double *const from = rows_.data(), *const first = from + width_;
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
@@ -30,6 +31,13 @@ void MotionSeries::expand(const State& state, int order) {
         motion.power = never_small;
         made = series_.extend(motion, made + 1, order);
     }
+}
+
+int MotionSeries::finite_order() const {
+    for (int k = 0; k <= order_; ++k)
+        for (std::size_t i = 0; i < 2 * dof_; ++i)
+            if (!std::isfinite(coefficient(k, i))) return k - 1;
+    return order_;
 }
 
 double MotionSeries::sum(int first, int last, std::size_t i, double span) const {

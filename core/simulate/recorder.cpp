@@ -17,7 +17,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.model = std::move(model);
     trajectory_.run = run;
     any_gap_ = false;
-    largest_ = 0.0;
+    largest_ = largest_change_ = 0.0;
     if (keep_ == Keep::end) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
         trajectory_.passages.reserve(32);
@@ -58,6 +58,7 @@ void Recorder::go_back(const Mark& mark) {
     trajectory_.coefficients.resize(mark.coefficients);
     trajectory_.statistics = mark.statistics;
     scale_ = mark.scale;
+    largest_change_ = mark.largest_change;
     trajectory_.work = mark.work;
     any_gap_ = mark.any_gap;
 }
@@ -118,11 +119,13 @@ void Recorder::step(const Flow& flow, double gap, ContactSet held) {
     largest_ = std::max(largest_, scale_ + std::abs(trajectory_.work));
     // At rest nothing is left but the rounding of what there was.
     const double change = std::abs(energy_.total() - trajectory_.work - reference_);
-    if (change > 0x1p-60 * largest_) {
-        // What a drive gives and takes may be large where T and V are nothing.
-        const double size = work_.any() ? largest_ : scale_;
-        statistics.energy_drift = std::max(statistics.energy_drift, change / size);
-    }
+    if (!(change > 0x1p-60 * largest_)) return;
+    // What a drive gives and takes may be large where T and V are nothing; and before it begins, all of it may be nothing: the
+    // change is compared with the largest of the whole run.
+    if (work_.any())
+        largest_change_ = std::max(largest_change_, change);
+    else
+        statistics.energy_drift = std::max(statistics.energy_drift, change / scale_);
 }
 
 Exchange Recorder::exchange_of_jump(const State& before, const State& after, double work) {
@@ -186,6 +189,7 @@ Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluation
     trajectory_.end_held = trajectory_.phases.back().held;
     trajectory_.outcome = std::move(outcome);
     trajectory_.statistics.evaluations = evaluations;
+    if (largest_change_ > 0.0) trajectory_.statistics.energy_drift = largest_change_ / largest_;
     return std::move(trajectory_);
 }
 

@@ -21,13 +21,17 @@ class Recorder {
     struct Mark {
         std::size_t pieces, coefficients;
         Statistics statistics;
-        double scale, work;
+        double scale, largest_change, work;
         bool any_gap;
     };
     Mark mark() const {
-        return {trajectory_.pieces.size(), trajectory_.coefficients.size(),
-                trajectory_.statistics,    scale_,
-                trajectory_.work,          any_gap_};
+        return {trajectory_.pieces.size(),
+                trajectory_.coefficients.size(),
+                trajectory_.statistics,
+                scale_,
+                largest_change_,
+                trajectory_.work,
+                any_gap_};
     }
     void go_back(const Mark& mark);
 
@@ -67,9 +71,10 @@ class Recorder {
     Trajectory trajectory_;
     EnergyTerms<Evaluator<double>> energy_;
     Work work_;
-    double reference_ = 0.0;  // energy less work at the start of the stretch
-    double scale_ = 0.0;      // the largest |T| + |V| of the stretch so far
-    double largest_ = 0.0;    // the same of the run
+    double reference_ = 0.0;       // energy less work at the start of the stretch
+    double scale_ = 0.0;           // the largest |T| + |V| of the stretch so far
+    double largest_ = 0.0;         // the same of the run
+    double largest_change_ = 0.0;  // of the energy less the work, in the stretches of a run with work
     bool any_gap_ = false;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/depend/estimates.hpp"
+#include "depend/chain.hpp"
 #include "depend/completion_error.hpp"
 
 namespace achilles::test {
@@ -186,6 +187,102 @@ TEST(EstimatedError, OfEveryKindOfSystem) {
         ASSERT_TRUE(one.has_ratio()) << name;
         EXPECT_GT(one.ratio(), 0.9) << name;
         EXPECT_LT(one.ratio(), 1.1) << name;
+    }
+}
+
+// One coordinate that passes a narrow force: a pulse or a step in place, time or rate; or that flies over a narrow post, or one of
+// the potential. It starts some widths before the feature, and goes on for long after it: a step over its tail is much longer
+// than the series of the force reaches.
+std::shared_ptr<const Model> narrow_system(std::mt19937& random, int kind) {
+    const auto any = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto feature = [&](const std::string& variable, double from, double rate) {
+        const double width = std::exp(any(std::log(0.003), std::log(0.3)));
+        const double height = any(0.1, 1.0) * std::min(1.0, rate) / width, side = any(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
+        const std::string u = fmt::format("(({} - {})/{})", variable, from + any(3.0, 6.0) * width, width);
+        switch (static_cast<int>(any(0.0, 3.0))) {
+            case 0:
+                return fmt::format("{}*exp(-{}^2)", 0.1 * side * height, u);
+            case 1:
+                return fmt::format("{}*tanh({})", 0.5 * side, u);
+            default:
+                return fmt::format("{}*exp(-{}^2) + 0.1*tanh({})", 0.1 * side * height, u, u);
+        }
+    };
+    const double rate = any(0.7, 1.5);
+    std::string force = "0", potential = "0", gap = "x + 100";
+    if (kind == 0) force = feature("x", 1.0, rate);
+    if (kind == 1) force = feature("t", 0.0, 1.0);
+    if (kind == 2) force = "0.1 + " + feature("x'", rate, 0.1);
+    if (kind == 3) force = feature("x", 1.0, rate) + " + " + feature("t", 0.0, 1.0);
+    if (kind == 4) potential = feature("x", 1.0, rate);
+    const double end = any(3.0, 8.0);
+    if (kind == 5) {
+        const double width = std::exp(any(std::log(0.003), std::log(0.3)));
+        gap = fmt::format("y - 0.1*exp(-((x - {})/{})^2)", 1.0 + 5.0 * width, width);
+    }
+    return typed(
+        fmt::format("title = \"narrow\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nrate = {}\nforce = \"{}\"\n"
+                    "[[coordinate]]\nname = \"y\"\nstart = 0.5\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential "
+                    "= \"{} + {}*y\"\n"
+                    "[[constraint]]\ngap = \"{}\"\nrestitution = 0.5\n[run]\nend_time = {}\n",
+                    rate, force, potential, kind == 5 ? 1 : 0, gap, end));
+}
+
+// The estimate was 1e24 and more where the error is 1e-9: the terms after those that a step keeps are not what it leaves out
+// where they grow.
+TEST(EstimatedError, OfNarrowForcesIsThatOfTheRun) {
+    std::mt19937 random(36);
+    int rated = 0, covered = 0;
+    for (int i = 0; i < 66; ++i) {
+        const int kind = i % 6;
+        const auto model = narrow_system(random, kind);
+        const double tolerance = std::pow(10.0, -7 - i % 4);
+        const Rated one = rate(model, with(model->default_run(), tolerance, 1e-6));
+        if (!one.same) continue;
+        ++rated;
+        covered += one.is_covered() ? 1 : 0;
+        EXPECT_LT(one.reach, 1e4 * one.error + 1e-12) << i << ", kind " << kind;
+    }
+    EXPECT_GE(rated, 60);
+    EXPECT_GE(covered, rated - 1);
+}
+
+// Of pulses in time the run knows where it is to its rounding, so what follows is the pulse's error alone.
+TEST(EstimatedError, OfAPulseIsRightToAPercent) {
+    for (const char* variable : {"x - 2", "t - 1"}) {
+        const auto model = free_motion(fmt::format("exp(-(({})/0.03)^2)/(0.03*sqrt(pi))", variable), 1.0);
+        const Rated one = rate(model, with(model->default_run(), 1e-10, 1e-6));
+        ASSERT_TRUE(one.same);
+        EXPECT_NEAR(one.ratio(), 1.0, 0.01) << variable;
+    }
+}
+
+// A start at another time changes nothing before the drive does; its derivative is asked as exactly as the motion's own rate, not
+// as its rounding. It took 464183 parts of one step.
+TEST(EstimatedError, OfADriveThatHasPassedTakesFewParts) {
+    const auto model = free_motion("-x + exp(-((t - 1)/0.02)^2)", 0.0);
+    auto run = with(model->default_run(), 1e-9, 1e-6);
+    const Trajectory trajectory = simulate(model, run);
+    Chain chain(trajectory, {.errors = true});
+    std::size_t links = 0;
+    while (chain.next() != nullptr) ++links;
+    EXPECT_LT(links, 3 * trajectory.pieces.size());
+}
+
+// A square of cosh overflows where it is far from infinite in its reciprocal: what a step leaves out there has no number.
+TEST(EstimatedError, SaysWhereAFunctionOverflows) {
+    const auto model = free_motion("-49.6/cosh((t - 2.07)/0.0077)^2 - 1.02*exp(-((x - 2)/0.2)^2)", 0.5);
+    auto run = with(model->default_run(), 1e-9, 1e-6);
+    const ErrorEstimate estimate = estimate_error(simulate(model, run));
+    EXPECT_FALSE(estimate.end);
+    EXPECT_NE(estimate.none_since.find("cosh(u)^2"), std::string::npos) << estimate.none_since;
+}
+
+// What a drive does is compared with the energy of the whole run, not with what there is before it begins, which is nothing.
+TEST(EnergyDrift, IsRelativeToTheLargestEnergyOfTheRun) {
+    for (const char* pulse : {"exp(-((t - 1)/0.03)^2)", "exp(-((t - 5)/0.3)^2)"}) {
+        const auto model = free_motion(pulse, 0.0);
+        EXPECT_LT(simulate(model, model->default_run()).statistics.energy_drift, 1e-8) << pulse;
     }
 }
 
