@@ -10,6 +10,77 @@ namespace achilles {
 
 namespace {
 
+// A factor of a divisor, with the power that it stands in.
+struct Divisor {
+    Expression factor;
+    int power = 1;
+};
+
+// The factors of a divisor that may be 0: roots and real powers are edges of their own, exponentials and cosh never are.
+std::vector<Divisor> factors_of(Expression divisor, int power) {
+    const Graph::Node& node = Builder::node(divisor);
+    Graph& graph = divisor.graph();
+    switch (node.operation) {
+        case Operation::multiply: {
+            std::vector<Divisor> factors = factors_of({&graph, node.a}, power);
+            const std::vector<Divisor> others = factors_of({&graph, node.b}, power);
+            factors.insert(factors.end(), others.begin(), others.end());
+            return factors;
+        }
+        case Operation::power:
+            if (node.exponent > 0) return factors_of({&graph, node.a}, power * node.exponent);
+            return {};
+        case Operation::negate:
+            return factors_of({&graph, node.a}, power);
+        case Operation::number:
+        case Operation::pi:
+        case Operation::sqrt:
+        case Operation::real_power:
+        case Operation::exp:
+        case Operation::cosh:
+            return {};
+        default:
+            return {{divisor, power}};
+    }
+}
+
+// Whether the quotient stays finite where a divisor that is linear in a variable vanishes, as sin(x)/x and (1 - cos(x))/x^2 do: a
+// zero of the numerator as often. What is not seen to be so is none.
+bool is_removable(Expression numerator, const Divisor& divisor, std::span<const std::uint32_t> moving) {
+    Graph& graph = numerator.graph();
+    for (const std::uint32_t slot : moving) {
+        const Expression slope = derivative(divisor.factor, slot), nothing = graph.number(0);
+        if (slope.is_zero() || !is_constant(slope)) continue;
+        const Expression zero = -substitute(divisor.factor, {&slot, 1}, {&nothing, 1}) / slope;
+        Expression rest = numerator;
+        for (int k = 0; k < divisor.power; ++k, rest = derivative(rest, slot))
+            if (!substitute(rest, {&slot, 1}, {&zero, 1}).is_zero()) return false;
+        return true;
+    }
+    return false;
+}
+
+// A pole has a distance as an edge has: the square of what a quotient is divided by. A coefficient below the tolerance hides it
+// from the series of the motion, as 1e-10/(1 - t)^2, and a step leads past it.
+std::vector<Edge> poles_of(Expression function, const char* place, std::span<const std::uint32_t> moving) {
+    Graph& graph = function.graph();
+    const Graph::Node node = Builder::node(function);  // a copy: what follows makes nodes
+    Expression numerator = graph.number(1), divisor = numerator;
+    if (node.operation == Operation::divide) {
+        numerator = {&graph, node.a};
+        divisor = {&graph, node.b};
+    } else if (node.operation == Operation::power && node.exponent < 0) {
+        divisor = power({&graph, node.a}, -node.exponent);
+    } else if (node.operation == Operation::tan) {
+        divisor = apply(Operation::cos, {&graph, node.a});
+    }
+    std::vector<Edge> poles;
+    for (const Divisor& each : factors_of(divisor, 1))
+        if (!is_removable(numerator, each, moving))
+            poles.push_back({each.factor, each.factor, power(each.factor, 2), place, Edge::Kind::edge});
+    return poles;
+}
+
 // What is watched of a node; nothing of most. A power has an edge and may hide.
 std::vector<Edge> edges_of(Expression function, const char* place) {
     Graph& graph = function.graph();
@@ -56,7 +127,10 @@ std::vector<Edge> edges_of(const Equations& equations, const Layout& layout) {
             if (!needed[id]) continue;
             const Expression function(&whole.graph(), id);
             if (is_leaf(Builder::node(function).operation)) continue;
-            for (const Edge& edge : edges_of(function, place)) {
+            std::vector<Edge> found = edges_of(function, place);
+            const std::vector<Edge> poles = poles_of(function, place, moving);
+            found.insert(found.end(), poles.begin(), poles.end());
+            for (const Edge& edge : found) {
                 const auto is_known = [&](const Edge& known) {
                     return known.event_function == edge.event_function && known.kind == edge.kind;
                 };

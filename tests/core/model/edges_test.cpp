@@ -79,6 +79,62 @@ TEST_P(Kinks, EndManyRuns) {
         [&](std::size_t, Attempt&& attempt) { expect_to_end(kink, std::get<Trajectory>(attempt)); }, 1);
 }
 
+// Poles whose coefficient is below the tolerance, in time, place and rate, in forces, the potential and the gap: both methods
+// stepped over them in silence.
+TEST(Poles, EndTheRunHoweverWeakTheyAre) {
+    struct Pole {
+        std::string force, potential, gap, part;
+    };
+    for (const auto& [force, potential, gap, part] : {Pole{"1e-10/(1 - t)^2", "0", "x + 3", "in the forces"},
+                                                      Pole{"1e-12*(1 - t)^-3", "0", "x + 3", "in the forces"},
+                                                      Pole{"1e-12*tan(pi*t/2)", "0", "x + 3", "in the forces"},
+                                                      Pole{"0", "1e-13*x/(2 - 2*t)", "x + 3", "in the potential"},
+                                                      Pole{"1e-12/((x - 1)*(t + 4))", "0", "x + 3", "in the forces"},
+                                                      Pole{"0", "-1e-13/(x - 1)^2", "x + 3", "in the potential"},
+                                                      Pole{"0", "0", "x + 3 + 1e-12/(x - 1)^2", "in the gap"},
+                                                      Pole{"1e-14*log(1 - t)", "0", "x + 3", "in the forces"}}) {
+        const auto model = test::typed("title = \"pole\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\nforce = \"" +
+                                       force + "\"\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"" + potential +
+                                       "\"\n[[constraint]]\ngap = \"" + gap + "\"\nrestitution = 0.5\n");
+        for (const Method method : {Method::taylor, Method::dopri5}) {
+            auto run = model->default_run();
+            run.options.method = method;
+            const Trajectory trajectory = simulate(model, run);
+            const std::string& message = trajectory.outcome.message;
+            EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::left_the_domain) << force << potential << gap << message;
+            EXPECT_NE(message.find(part), message.npos) << message;
+            EXPECT_NE(message.find(", just after t = "), message.npos) << message;
+            EXPECT_NEAR(trajectory.end_time, 1.0, 1e-6) << message;
+        }
+    }
+}
+
+// A wall of the potential, however thin, turns the motion round: it was stepped over, too.
+TEST(Poles, TurnTheMotionWhereTheyRepelIt) {
+    const auto model = test::typed(
+        "title = \"wall\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
+        "potential = \"1e-13/(x - 1)^2\"\n[[constraint]]\ngap = \"x + 30\"\nrestitution = 0.5\n");
+    for (const Method method : {Method::taylor, Method::dopri5}) {
+        auto run = model->default_run();
+        run.options.method = method;
+        const Trajectory trajectory = simulate(model, run);
+        EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        EXPECT_NEAR(trajectory.end.v[0], -1.0, 1e-4);
+        EXPECT_NEAR(trajectory.end.q[0], -8.0, 1e-3);
+    }
+}
+
+// A quotient that stays finite where its divisor vanishes has no pole.
+TEST(Poles, AreNoneWhereTheNumeratorVanishesToo) {
+    for (const char* force : {"sin(x - 1)/(x - 1)", "(1 - cos(t - 1))/(t - 1)^2", "1/(1 + x^2)"}) {
+        const auto model = test::typed(
+            std::string("title = \"no pole\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\nforce = \"") + force +
+            "\"\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"0\"\n"
+            "[[constraint]]\ngap = \"x + 3\"\nrestitution = 0.5\n");
+        EXPECT_EQ(simulate(model, model->default_run()).outcome.kind, Outcome::Kind::end_time) << force;
+    }
+}
+
 // In contact as well: a bead slides along a roof to its ridge.
 TEST(KinksInContact, EndTheRun) {
     const auto model = ball(plain, "y", "y + sqrt(x^2) - 3");
