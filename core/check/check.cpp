@@ -28,9 +28,9 @@ class Report : EquationsOnPage {
                                   is_one() ? "" : "s"));
         given();
         page_.heading(fmt::format("Free motion: M q'' + bias = {}", forces ? "Q" : "0"));
-        matrix({"M", "M"}, simplified_.M, model_.layout().dof);
-        matrix({"bias", "b"}, simplified_.bias, 1);
-        if (forces) matrix({"Q", "Q"}, simplified_.Q, 1);
+        matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);
+        matrix({"bias", "b"}, simplified_.bias, model_.equations().bias, 1);
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, model_.equations().Q, 1);
         for (std::size_t i = 0; i < model_.contacts(); ++i) {
             contact(i, forces);
             page_.heading(fmt::format("Zeno condition{}: hddot < 0 where h = 0 and hdot = 0", of(" of {}", i)));

@@ -24,11 +24,11 @@ class SheetWriter : EquationsOnPage {
         unwritten_conditions();
         page_.heading({"Motion", fmt::format("Motion: $M \\ddot{{q}} + b = {}$", forces ? "Q" : "0")});
         page_.caption("mass matrix");
-        matrix({"M", "M"}, simplified_.M, model_.layout().dof);
+        matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);
         page_.caption("bias: inertia of the rates, and the potential's forces");
-        matrix({"bias", "b"}, simplified_.bias, 1);
+        matrix({"bias", "b"}, simplified_.bias, model_.equations().bias, 1);
         if (forces) page_.caption("forces");
-        if (forces) matrix({"Q", "Q"}, simplified_.Q, 1);
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, model_.equations().Q, 1);
         for (std::size_t i = 0; i < model_.contacts(); ++i) contact(i, forces, true);
         result.blocks = page_.blocks();
         const Layout& layout = model_.layout();

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "check/flat_gap.hpp"
+#include "expression/graph.hpp"
 #include "model/flat.hpp"
 #include "output/wrap.hpp"
 
@@ -15,6 +16,39 @@ namespace {
 
 // A formula of more terms than this is no longer read.
 constexpr std::size_t most_terms = 150;
+
+// An expression of more symbols than this, written as it was derived, neither.
+constexpr double most_symbols = 400.0;
+
+// Of an expression written out, with every shared part as often as it stands there.
+double written_size(Expression expression) {
+    const std::vector<bool> needed = reachable(std::span(&expression, 1));
+    std::vector<double> size(needed.size(), 0.0);
+    for (std::uint32_t id = 0; id < needed.size(); ++id) {
+        if (!needed[id]) continue;
+        const Graph::Node& node = expression.graph().node(id);
+        size[id] = 1.0;
+        if (is_leaf(node.operation)) continue;
+        size[id] += size[node.a];
+        if (is_binary(node.operation)) size[id] += size[node.b];
+    }
+    return size[expression.id()];
+}
+
+// Its numerator and its denominator as they stand.
+Factored unfactored(const Fraction& fraction) {
+    Factored result;
+    const auto put = [&](const Multinomial& base, int exponent) {
+        if (base.terms().size() != 1) return result.factors.push_back({base, exponent});
+        const Multinomial::Term& term = base.terms().front();
+        const boost::multiprecision::cpp_rational number(term.coefficient);
+        result.number *= exponent > 0 ? number : 1 / number;
+        if (!base.is_number()) result.factors.push_back({Multinomial({{term.powers, 1}}), exponent});
+    };
+    put(fraction.numerator, 1);
+    put(fraction.denominator, -1);
+    return result;
+}
 
 std::size_t terms(const Fraction& f) { return f.numerator.terms().size() + f.denominator.terms().size(); }
 
@@ -32,20 +66,21 @@ void EquationsOnPage::contact(std::size_t index, bool forces, bool named) {
         page_.formula({"h", "h"},
                       achilles::write(model_.equations().gaps[index], model_.slot_names(), page_.notation()).text);
     caption("gradient of the gap");
-    matrix({"dh", "\\mathrm{d}h"}, c.dh, model_.layout().dof);
+    const ContactEquations& derived = model_.equations().free.contacts[index];
+    matrix({"dh", "\\mathrm{d}h"}, c.dh, derived.g, model_.layout().dof);
     flat(index);
     caption("rate of the gap");
-    formula({"hdot", "\\dot{h}"}, c.hdot,
+    formula({"hdot", "\\dot{h}"}, c.hdot, derived.hdot,
             {moves ? "dh q' + h_t" : "dh q'", moves ? "\\mathrm{d}h\\,\\dot{q} + h_t" : "\\mathrm{d}h\\,\\dot{q}"});
     caption("acceleration of the gap in free motion");
-    formula({"hddot", "\\ddot{h}"}, c.hddot,
+    formula({"hddot", "\\ddot{h}"}, c.hddot, derived.hddot,
             {fmt::format("q'^T Hess(h) q'{} {}", moves ? " + 2 dh_t q' + h_tt" : "",
                          forces ? "+ dh M^-1 (Q - bias)" : "- dh M^-1 bias"),
              fmt::format("\\dot{{q}}^{{\\top}}\\,\\mathrm{{Hess}}(h)\\,\\dot{{q}}{} {}",
                          moves ? " + 2\\,\\mathrm{d}h_t\\,\\dot{q} + h_{tt}" : "",
                          forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
     caption("contact force while it is held");
-    formula({"lambda", "\\lambda"}, c.lambda,
+    formula({"lambda", "\\lambda"}, c.lambda, derived.lambda,
             {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
 }
 
@@ -71,7 +106,7 @@ void EquationsOnPage::unwritten_conditions() {
 }
 
 void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
-                             std::size_t columns) {
+                             std::span<const Expression> derived, std::size_t columns) {
     std::vector<std::vector<std::string>> rows;
     std::vector<std::size_t> widths(columns, 0);
     bool complete = true;
@@ -89,25 +124,52 @@ void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<F
         const std::size_t row = i / columns, column = i % columns;
         if (!vector && column < row) continue;  // M is symmetric
         const std::string number = vector ? fmt::format("{}", i + 1) : fmt::format("{}{}", row + 1, column + 1);
-        formula({left.text + number, fmt::format("{{{}}}_{{{}}}", left.latex, number)}, entries[i], {});
+        formula({left.text + number, fmt::format("{{{}}}_{{{}}}", left.latex, number)}, entries[i], derived[i], {});
     }
 }
 
-// The left hand side and what was found; where nothing was, what it would be simplified from.
-void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& fraction, const Both& definition) {
-    if (fraction && terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
+// The left hand side and what was found; where nothing was, what was derived.
+void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived,
+                              const Both& definition) {
+    if (!fraction) return unsimplified(left, derived, definition);
+    if (terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
     page_.formula(left, is_text() ? definition.text : definition.latex);
-    const std::string why = fraction ? fmt::format("not written out: it has {} terms", terms(*fraction))
-                                     : "not simplified: it takes too many operations";
+    const std::string why = fmt::format("not written out: it has {} terms", terms(*fraction));
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
+}
+
+// As it was derived, where that can be read; else what it is, where that has a name.
+void EquationsOnPage::unsimplified(const Both& left, Expression derived, const Both& definition) {
+    const double size = written_size(derived);
+    const bool short_enough = size <= most_symbols;
+    page_.formula(left, short_enough ? achilles::write(derived, model_.slot_names(), page_.notation()).text
+                        : is_text()  ? definition.text
+                                     : definition.latex);
+    const std::string why =
+        short_enough ? "not simplified: it takes too many operations"
+                     : fmt::format("neither simplified nor written out: as derived it has {:.2g} symbols", size);
+    page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
+}
+
+std::string EquationsOnPage::written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const {
+    algebra.work() = Work{1000000};
+    try {
+        return writer.write(fraction, algebra).text;
+    } catch (const TooLong&) {
+        return writer.write(unfactored(fraction)).text;
+    }
 }
 
 EquationsOnPage::Quotient EquationsOnPage::factor_or_sum(const Fraction& fraction) const {
     Algebra& algebra = simplified_.algebra();
-    algebra.work() = Work{1000000};
     Quotient result{written(fraction), {}, {}};
     if (fraction.denominator.is_number()) return result;
-    return split(factor(fraction, algebra), result.whole, writer_);
+    algebra.work() = Work{1000000};
+    try {
+        return split(factor(fraction, algebra), result.whole, writer_);
+    } catch (const TooLong&) {
+        return split(unfactored(fraction), result.whole, writer_);
+    }
 }
 
 EquationsOnPage::Quotient EquationsOnPage::split(const Factored& factored, const std::string& whole,
@@ -143,14 +205,19 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
     std::vector<Fraction> values;
     for (const auto& [symbol, value] : zeno.solved) {
         zeno.algebra->work() = Work{1000000};
-        values.push_back(zeno.algebra->simplify(value));
+        try {
+            values.push_back(zeno.algebra->simplify(value));
+        } catch (const TooLong&) {
+            values.clear();
+            break;  // what was solved for is not written out
+        }
     }
     // It knows what the algebra has met so far.
     const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
     std::vector<std::string> there;
     for (std::size_t i = 0; i < values.size(); ++i)
         there.push_back(
-            in_line(fmt::format("{} = {}", plain(zeno.solved[i].first), writer.write(values[i], *zeno.algebra).text)));
+            in_line(fmt::format("{} = {}", plain(zeno.solved[i].first), written(values[i], writer, *zeno.algebra))));
     if (!there.empty()) {
         const std::string line = fmt::format("there {}", fmt::join(there, ", "));
         page_.sentence({line, line});

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,8 @@ class EquationsOnPage {
     // With `named` everything is said in words, too, and the gap stands there.
     void contact(std::size_t index, bool forces, bool named = false);
     // In one piece if the page is wide enough, else entry by entry.
-    void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries, std::size_t columns);
+    void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
+                std::span<const Expression> derived, std::size_t columns);
     // What was found about hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
     // The other half of it: bounces pile up only if each impact leaves less of its speed, and some.
@@ -57,8 +59,11 @@ class EquationsOnPage {
         std::string whole, top, bottom;
     };
     void flat(std::size_t index);
-    std::string written(const Fraction& fraction) const { return writer_.write(fraction, simplified_.algebra()).text; }
-    void formula(const Both& left, const std::optional<Fraction>& fraction, const Both& definition);
+    // In factors; as a quotient of sums where factoring takes too many operations.
+    std::string written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const;
+    std::string written(const Fraction& fraction) const { return written(fraction, writer_, simplified_.algebra()); }
+    void formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived, const Both& definition);
+    void unsimplified(const Both& left, Expression derived, const Both& definition);
     Quotient factor_or_sum(const Fraction& fraction) const;
     static Quotient split(const Factored& factored, const std::string& whole, const Writer& writer);
     static void long_formula(Page& page, const Both& left, const Quotient& quotient);

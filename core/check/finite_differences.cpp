@@ -203,7 +203,20 @@ class InContact {
     static Expression as_expression(const ZenoCondition& zeno) {
         Algebra& algebra = *zeno.algebra;
         algebra.work() = Work{1000000};
-        return algebra.expression(expand(zeno.positive * zeno.decisive, algebra));
+        const Factored whole = zeno.positive * zeno.decisive;
+        try {
+            return algebra.expression(expand(whole, algebra));
+        } catch (const TooLong&) {
+            return product(whole, algebra);
+        }
+    }
+    static Expression product(const Factored& whole, Algebra& algebra) {
+        Expression result =
+            algebra.expression(Fraction{Multinomial(numerator(whole.number)), Multinomial(denominator(whole.number))});
+        for (const auto& [base, exponent] : whole.factors)
+            for (int i = 0; i < std::abs(exponent); ++i)
+                result = exponent > 0 ? result * algebra.expression(base) : result / algebra.expression(base);
+        return result;
     }
     Surface surface_;
     Functions hddot_, shown_;

@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "algebra/writer.hpp"
+#include "check/equation_sheet.hpp"
 #include "check/simplified.hpp"
 #include "core/several.hpp"
 #include "model/read_system.hpp"
@@ -42,6 +43,32 @@ Condition condition(const Model& model) { return condition(model, model.default_
 Condition condition(const std::string& asset) { return condition(*test::load(asset)); }
 
 using Verdict = ZenoCondition::Verdict;
+
+// Four links, the first with an inertia that is a quotient: what the contact force takes to simplify left nothing for M to be
+// written with, and there was no report at all.
+TEST(Check, WritesWhatItCannotSimplify) {
+    std::string text = "title = \"four links\"\n", kinetic = "a1'^2/(2 + cos(a2))", potential = "0", gap = "1/2", x, y;
+    for (int i = 1; i <= 4; ++i) {
+        text += fmt::format("[[coordinate]]\nname = \"a{}\"\nstart = {}\n", i, 0.3 * i);
+        x += fmt::format("{}L{}*a{}'*cos(a{})", i > 1 ? " + " : "", i, i, i);
+        y += fmt::format("{}L{}*a{}'*sin(a{})", i > 1 ? " + " : "", i, i, i);
+        kinetic += fmt::format(" + m{}/2*(({})^2 + ({})^2)", i, x, y);
+        gap += fmt::format(" + L{}*sin(a{})", i, i);
+    }
+    for (int i = 1; i <= 4; ++i)
+        text +=
+            fmt::format("[[parameter]]\nname = \"m{}\"\nvalue = 1\n[[parameter]]\nname = \"L{}\"\nvalue = 1\n", i, i);
+    text += fmt::format(
+        "[lagrangian]\nkinetic = \"{}\"\npotential = \"{}\"\n[[constraint]]\ngap = \"{}\"\nrestitution = 0.5\n",
+        kinetic, potential, gap);
+    const auto model = test::typed(text);
+    double disagreement = 1.0;
+    const std::string report = check_report(*model, model->default_run(), 0.0, Notation::text, disagreement);
+    EXPECT_LT(disagreement, 1e-15);
+    EXPECT_NE(report.find("neither simplified nor written out: as derived it has "), std::string::npos) << report;
+    EXPECT_NE(report.find("cos(a2) + 2"), std::string::npos) << report;
+    EXPECT_FALSE(equation_sheet(*model, model->default_run()).blocks.empty());
+}
 
 TEST(ZenoCondition, OfTheBallIsThePapers) {
     const Condition ball = condition("ball_on_sine");
