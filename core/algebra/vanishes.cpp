@@ -1,22 +1,121 @@
 #include "algebra/vanishes.hpp"
 
+#include <algorithm>
+#include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "algebra/algebra.hpp"
 
 namespace achilles {
 
-bool vanishes(Expression expression) {
-    if (expression.is_zero()) return true;
-    constexpr long work = 400000;
-    Graph graph(expression.graph());
-    Algebra algebra(graph, Work{work});
+namespace {
+
+constexpr long most_work = 400000;
+
+// number atom + rest = 0
+struct Solved {
+    std::size_t atom;
+    Multinomial number, rest;
+};
+
+class Elimination {
+ public:
+    Elimination(Graph& graph, std::span<const std::uint32_t> unknowns)
+        : algebra_(graph, Work{most_work}), unknowns_(unknowns) {}
+
+    bool proves(Expression expression, std::vector<Expression> zeros) {
+        for (std::size_t i = 0; i < zeros.size(); ++i) {
+            const Multinomial zero = algebra_.simplify(zeros[i]).numerator;
+            const auto solved = solve(zero, true);
+            if (!solved) continue;
+            const std::uint32_t slot = slot_of(solved->atom);
+            const Expression value = -(algebra_.expression(solved->rest) / algebra_.expression(solved->number));
+            const auto replaced = [&](Expression x) { return substitute(x, {&slot, 1}, {&value, 1}); };
+            expression = replaced(expression);
+            std::transform(zeros.begin(), zeros.end(), zeros.begin(), replaced);
+        }
+        // What is left is solved for functions, which are replaced in the polynomial alone.
+        Multinomial left = algebra_.simplify(expression).numerator;
+        for (const Expression zero : zeros) {
+            if (left.is_zero()) return true;
+            if (const auto solved = solve(algebra_.simplify(zero).numerator, false)) left = replaced(left, *solved);
+        }
+        return left.is_zero();
+    }
+
+ private:
+    // For an unknown symbol that no function depends on, or for a function.
+    std::optional<Solved> solve(const Multinomial& zero, bool for_a_symbol) const {
+        const std::vector<std::size_t> atoms = zero.atoms();
+        for (const std::size_t atom : atoms) {
+            if (is_unknown(atom) != for_a_symbol || (!for_a_symbol && !is_moving_function(atom))) continue;
+            const std::vector<Multinomial> parts = zero.coefficients(atom);
+            if (parts.size() != 2 || !parts[1].is_number()) continue;
+            if (for_a_symbol && is_inside(slot_of(atom), atoms, atom)) continue;
+            return Solved{atom, parts[1], parts[0]};
+        }
+        return std::nullopt;
+    }
+
+    bool is_symbol(std::size_t atom) const {
+        return algebra_.graph().node(algebra_.atom(atom).id()).operation == Operation::symbol;
+    }
+    std::uint32_t slot_of(std::size_t atom) const { return algebra_.graph().node(algebra_.atom(atom).id()).a; }
+    bool is_unknown(std::size_t atom) const {
+        return is_symbol(atom) && std::find(unknowns_.begin(), unknowns_.end(), slot_of(atom)) != unknowns_.end();
+    }
+    bool is_moving_function(std::size_t atom) const {
+        return !is_symbol(atom) && depends_on(algebra_.atom(atom), unknowns_);
+    }
+    bool is_inside(std::uint32_t slot, const std::vector<std::size_t>& atoms, std::size_t but) const {
+        return std::any_of(atoms.begin(), atoms.end(), [&](std::size_t atom) {
+            return atom != but && depends_on(algebra_.atom(atom), {&slot, 1});
+        });
+    }
+
+    // number^d times the polynomial, of degree d in the atom, where the atom is -rest/number.
+    Multinomial replaced(const Multinomial& polynomial, const Solved& solved) {
+        const std::vector<Multinomial> parts = polynomial.coefficients(solved.atom);
+        Multinomial result, power(1);
+        for (std::size_t k = 0; k < parts.size(); ++k) {  // powers of the number: Horner's rule, from below
+            result = times(result, solved.number, algebra_.work()) + times(parts[k], power, algebra_.work());
+            power = times(power, -solved.rest, algebra_.work());
+        }
+        return algebra_.reduced(result);
+    }
+
+    Algebra algebra_;
+    std::span<const std::uint32_t> unknowns_;
+};
+
+// Whether a proof is found, with the work that it may take.
+template <class Proof>
+bool is_proved(const Proof& proof) {
     try {
-        return algebra.simplify(graph.adopt(expression)).is_zero();
+        return proof();
     } catch (const TooLong&) {
+    } catch (const TooLarge&) {
     } catch (const std::domain_error&) {
     }
     return false;
+}
+
+}  // namespace
+
+bool vanishes(Expression expression) {
+    if (expression.is_zero()) return true;
+    Graph graph(expression.graph());
+    Algebra algebra(graph, Work{most_work});
+    return is_proved([&] { return algebra.simplify(graph.adopt(expression)).is_zero(); });
+}
+
+bool vanishes_where(Expression expression, std::span<const Expression> zeros, std::span<const std::uint32_t> unknowns) {
+    if (expression.is_zero()) return true;
+    Graph graph(expression.graph());
+    std::vector<Expression> adopted;
+    for (const Expression zero : zeros) adopted.push_back(graph.adopt(zero));
+    return is_proved([&] { return Elimination(graph, unknowns).proves(graph.adopt(expression), adopted); });
 }
 
 }  // namespace achilles

@@ -8,15 +8,17 @@
 
 namespace achilles {
 
-std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program) {
+std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
+                                                 ContactSet unpressed) {
     Certificate::Others others;
     const std::size_t bouncing = neighbours.bouncing.size();
     std::size_t next = bouncing;
     for (const std::size_t contact : neighbours.held) {
         const Interval hddot = program.output(next), W = program.output(next + 1);
         next += 2;
-        if (!certainly_negative(hddot) || !certainly_positive(W)) return std::nullopt;
-        Certificate::Others::Held held{contact, 0.0, 0.0, (-hddot / W).lo()};
+        const bool is_unpressed = unpressed.contains(contact);
+        if (!(is_unpressed || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
+        Certificate::Others::Held held{contact, 0.0, 0.0, is_unpressed ? 0.0 : (-hddot / W).lo()};
         for (std::size_t k = 0; k < bouncing; ++k) {
             const Interval kappa = program.output(next++);
             if (!(kappa.lo() >= 0.0)) {
@@ -41,7 +43,8 @@ Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& p
     return program.output(bouncing + i * (2 + bouncing) + 2);
 }
 
-OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held) {
+OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed)
+    : unpressed_(unpressed) {
     if (model.contacts() == 1) return;
     neighbours_ = &model.neighbours(contact, held);
     variables_ = model.bouncing(contact, held).variables;
@@ -51,7 +54,7 @@ OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, 
 std::optional<Certificate::Others> OthersStay::prove(const std::vector<Interval>& box) {
     for (std::size_t i = 0; i < variables_.size(); ++i) program_.input(variables_[i]) = box[i];
     program_.run();
-    return others_proved(*neighbours_, program_);
+    return others_proved(*neighbours_, program_, unpressed_);
 }
 
 }  // namespace achilles

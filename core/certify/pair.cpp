@@ -126,9 +126,10 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
 }
 
 PairConditions::PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second,
-                               ContactSet held, const Ground&)
+                               ContactSet held, ContactSet unpressed, const Ground&)
     : dof_(static_cast<std::size_t>(model.dof())),
       held_(held),
+      unpressed_(unpressed),
       autonomous_(model.equations().autonomous),
       layout_(model.layout()),
       truncation_(run.options.truncation),
@@ -155,7 +156,7 @@ std::optional<Certificate::Others> PairConditions::others_stay(const std::vector
     others_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
     others_.clock() = box[2 * dof_ + 2];
     others_.run();
-    return others_proved(programs_->others, others_);
+    return others_proved(programs_->others, others_, unpressed_);
 }
 
 // What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.

@@ -37,8 +37,9 @@ struct PairCollision {
 
 class PairConditions {
  public:
+    // While others are held, of which `unpressed` need no force.
     PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second, ContactSet held,
-                   const Ground& ground);
+                   ContactSet unpressed, const Ground& ground);
 
     struct Completion {
         Certificate certificate;
@@ -64,7 +65,7 @@ class PairConditions {
     std::optional<Certificate::Others> others_stay(const std::vector<Interval>& box);
 
     std::size_t dof_;
-    ContactSet held_;
+    ContactSet held_, unpressed_;
     bool autonomous_;
     Layout layout_;
     Truncation truncation_;

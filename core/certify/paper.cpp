@@ -28,7 +28,7 @@ struct PaperConditions::Bounds {
 };
 
 PaperConditions::PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 const Ground& ground)
+                                 ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
@@ -43,7 +43,7 @@ PaperConditions::PaperConditions(const Model& model, const Run& run, std::size_t
       box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
       contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
       rates_(model.evaluator<Interval>(model.bouncing(contact, held).rates, run.parameters)),
-      others_(model, run, contact, held) {}
+      others_(model, run, contact, held, unpressed) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.

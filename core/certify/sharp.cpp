@@ -42,7 +42,7 @@ struct SharpConditions::Time {
 };
 
 SharpConditions::SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 const Ground& ground)
+                                 ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
@@ -56,7 +56,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, std::size_t
       contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
       trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
       guess_(model.evaluator(model.bouncing(contact, held).rates, run.parameters)),
-      others_(model, run, contact, held),
+      others_(model, run, contact, held, unpressed),
       box_{std::vector<Interval>(dof_),
            std::vector<Interval>(dof_),
            std::vector<double>(dof_),

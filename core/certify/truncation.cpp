@@ -9,11 +9,11 @@
 namespace achilles {
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
-                                                            ContactSet held) {
+                                                            ContactSet held, ContactSet unpressed) {
     const Ground ground;
     if (run.options.truncation.conditions == Conditions::paper)
-        return std::make_unique<PaperConditions>(model, run, contact, held, ground);
-    return std::make_unique<SharpConditions>(model, run, contact, held, ground);
+        return std::make_unique<PaperConditions>(model, run, contact, held, unpressed, ground);
+    return std::make_unique<SharpConditions>(model, run, contact, held, unpressed, ground);
 }
 
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact) {

@@ -51,9 +51,9 @@ class TruncationConditions {
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
 };
 
-// The conditions that the run asks for, of a contact while others are held.
+// The conditions that the run asks for, of a contact while others are held, of which `unpressed` need no force.
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact = 0,
-                                                            ContactSet held = {});
+                                                            ContactSet held = {}, ContactSet unpressed = {});
 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);

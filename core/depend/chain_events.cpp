@@ -160,6 +160,9 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet 
                                            trajectory_->run.parameters);
     trend->at(state_);
     const Gradient& e = *restitutions_[contact];
+    if (e.value(0) == 0.0 && e.row(0).isZero(0.0)) return RowVectorXd::Zero(J.cols());  // it ends at the impact
+    if (e.value(0) == 0.0 && model_->is_carried(contact, others))
+        break_off("with a restitution above 0 a contact that nothing presses would bounce away");
     using Number = Jet<double, 5>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
     const Number wait = estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e.value(0), 3),
@@ -177,7 +180,8 @@ void Chain::reach_zeno_point(std::size_t event) {
     set_gaps();
     const std::size_t i = now.contacts.only();
     const double a = -surfaces_.of(i, held_.without(i)).normal_acceleration(state_);
-    take_least(margins_.a_inf, a);
+    const bool may_be_unpressed = is_plastic_landing(now) && now.certificate->a_max == 0.0;
+    if (!may_be_unpressed || !model_->is_carried(i, held_.without(i))) take_least(margins_.a_inf, a);
     // The members that wait for longer go on for so long.
     Link& link = add(Link::Kind::jump, event);
     link.J.col(tangent_.wait()) += rate();

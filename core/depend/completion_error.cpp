@@ -30,6 +30,8 @@ Trend CompletionError::trend(const Cut& cut) {
 }
 
 State CompletionError::shift(const Cut& cut) {
+    if (model_->restitution(run_.parameters, cut.contact) == 0.0)  // no flight follows
+        return {Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
     const Bouncing& bouncing = model_->bouncing(cut.contact, cut.others);
     auto known = shadows_.find({cut.others, cut.contact});
     if (known == shadows_.end())
@@ -57,6 +59,7 @@ State CompletionError::shift(const Cut& cut) {
 
 CompletionError::Wait CompletionError::wait(const Cut& cut) {
     const double e = model_->restitution(run_.parameters, cut.contact), u = e * cut.speed;
+    if (u == 0.0) return {0.0, 0.0};
     const Trend at_cut = trend(cut);
     Wait wait{estimated_wait(at_cut, e, cut.speed), 0.0};
     auto flight = flights_.find(cut.others);

@@ -77,7 +77,9 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     maps.retract(set_);
     measure_others(ContactSet::of(contact));
     const Interval hddot = maps.normal(set_.hull()).hddot;
-    if (certainly_negative(hddot)) {
+    if (!certainly_positive(hddot) && !certainly_negative(hddot) && model_->is_carried(contact, {}))
+        unpressed_ = ContactSet::of(contact);
+    if (certainly_negative(hddot) || unpressed_.contains(contact)) {
         hold(ContactSet::of(contact));
     } else if (certainly_positive(hddot)) {
         openings_[contact].known = KnownRoot::at_rest;

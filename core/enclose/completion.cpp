@@ -40,8 +40,9 @@ struct Completion::Box {
     Trend trend;
 };
 
-Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
-    : z_(coordinates), layout_(model.layout()), u_(coordinates.u(contact)) {
+Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held,
+                       ContactSet unpressed)
+    : z_(coordinates), layout_(model.layout()), unpressed_(unpressed), u_(coordinates.u(contact)) {
     const Bouncing& bouncing = model.bouncing(contact, held);
     hddot_ = {Range(with_parameters<Interval>(bouncing.hddot, layout_, z_.parameters),
                     with_parameters<Interval>(bouncing.shadow, layout_, z_.parameters), bouncing.variables),
@@ -64,7 +65,7 @@ void Completion::look(const Intervals& box) {
 bool Completion::others_stay(const Intervals& box) {
     if (neighbours_ == nullptr) return true;
     look(box);
-    const auto others = others_proved(*neighbours_, neighbours_program_);
+    const auto others = others_proved(*neighbours_, neighbours_program_, unpressed_);
     return others && !others->rounded_zero;
 }
 

@@ -14,8 +14,9 @@ namespace achilles {
 
 class Completion {
  public:
-    // Of a contact while others are held.
-    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, ContactSet held = {});
+    // Of a contact while others are held, of which `unpressed` need no force.
+    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, ContactSet held = {},
+               ContactSet unpressed = {});
 
     // What is proved of the bouncing of all members from a collision on.
     struct Proof {
@@ -48,6 +49,7 @@ class Completion {
 
     Coordinates z_;
     Layout layout_;
+    ContactSet unpressed_;
     std::size_t u_;
     ShadowTerms<Range> hddot_;
     TrendTerms<Evaluator<double>> trend_;

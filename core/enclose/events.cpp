@@ -119,7 +119,9 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
     set_.set(z_.u(contact), 0.0);
     retract(held_.with(contact));
     const Interval hddot = maps(contact).normal(set_.hull()).hddot;
-    if (certainly_negative(hddot)) {
+    const bool may_vanish = !certainly_negative(hddot) && !certainly_positive(hddot);
+    if (may_vanish && model_->is_carried(contact, held_)) unpressed_ = unpressed_.with(contact);
+    if (certainly_negative(hddot) || unpressed_.contains(contact)) {
         hold(held_.with(contact));
         note_event(Event::Kind::zeno, contact, time, v_before, velocities(set_.hull()));
         return check_opened(opened);

@@ -140,13 +140,18 @@ Maps& Prover::maps(std::size_t contact) {
 }
 
 Completion& Prover::completion(std::size_t contact) {
-    auto& known = completions_[{held_, contact}];
-    if (!known) known = std::make_unique<Completion>(*model_, z_, contact, held_);
+    auto& known = completions_[{unpressed_, {held_, contact}}];
+    if (!known) known = std::make_unique<Completion>(*model_, z_, contact, held_, unpressed_);
     return *known;
 }
 
 void Prover::hold(ContactSet contacts) {
     held_ = contacts;
+    const ContactSet before = unpressed_;
+    unpressed_ = {};
+    for (std::size_t i = 0; i < z_.contacts; ++i)
+        if (before.contains(i) && held_.contains(i) && model_->is_carried(i, held_.without(i)))
+            unpressed_ = unpressed_.with(i);
     motion().forget();
 }
 
@@ -166,7 +171,8 @@ Prover::Next Prover::next_in(const Step& step) const {
     std::vector<FirstRoot> roots;
     Next next{{}, {}, step.length(), {}};
     for (std::size_t i = 0; i < z_.contacts; ++i) {
-        const FirstRoot& root = roots.emplace_back(first_root(step.watched(i), step.length()));
+        const FirstRoot& root = roots.emplace_back(unpressed_.contains(i) ? FirstRoot{FirstRoot::Kind::none, {}}
+                                                                          : first_root(step.watched(i), step.length()));
         if (root.kind == FirstRoot::Kind::none) continue;
         next.clear = std::min(next.clear, root.at.lo());
         const bool is_first = !next.contact || root.at.hi() < next.elapsed.hi();

@@ -80,9 +80,9 @@ class Prover {
     using OfContact = std::pair<ContactSet, std::size_t>;
     std::map<ContactSet, std::unique_ptr<Stepper>> motions_;
     std::map<OfContact, std::unique_ptr<Maps>> maps_;
-    std::map<OfContact, std::unique_ptr<Completion>> completions_;
+    std::map<std::pair<ContactSet, OfContact>, std::unique_ptr<Completion>> completions_;  // by the unpressed ones
     Doubleton set_;
-    ContactSet held_;
+    ContactSet held_, unpressed_;    // of the held ones, those that need no force (theory-gaps.md 2.7)
     std::vector<Opening> openings_;  // by contact
     std::size_t last_ = 0;           // contact of which there was an event
     int doubts_ = 0;                 // steps in a row that ended before what is not decided

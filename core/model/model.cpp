@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
-#include "algebra/vanishes.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
+#include "model/unpressed.hpp"
 #include "number/ground.hpp"
 #include "system/mistakes.hpp"
 
@@ -119,8 +119,7 @@ const Program& Model::power(ContactSet held) const {
 }
 
 bool Model::is_carried(std::size_t contact, ContactSet held) const {
-    return derived(carried_, {held, contact},
-                   [&] { return vanishes(held_motions().of(held).contacts.at(contact).hddot); });
+    return derived(carried_, {held, contact}, [&] { return needs_no_force(contact, held, held_motions(), layout_); });
 }
 
 const Bouncing& Model::bouncing(std::size_t contact, ContactSet held) const {

@@ -183,7 +183,7 @@ bool Execution::carry(const Closed& closed, const Carriers& carriers) {
 void Execution::hold(ContactSet held, ContactSet touching) {
     next_.held = held;
     next_.touching = touching;
-    next_.unwatched = {};
+    next_.unwatched = next_.unpressed = {};
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (touching.contains(i)) next_.starts[i] = {{0.0, 0.0}, 1};
 }

@@ -41,7 +41,9 @@ void Execution::land(std::size_t which, const Contact& contact) {
             if (!complete_pair(ContactSet::of(which), v_after, true)) end_chatter(ContactSet::of(which));
             return;
         }
-        const ContactSet landing = landing_with(which, contact);
+        const auto together = landing_with(which, contact);
+        if (!together) return;
+        const ContactSet landing = *together;
         if (landing.count() > 1 || !next_.touching.empty() || !stays_held(which, contact)) return collide(landing);
     }
     land_alone(contact);
@@ -51,8 +53,10 @@ void Execution::land(std::size_t which, const Contact& contact) {
 void Execution::land_alone(const Contact& contact) {
     const double e = restitutions_[which_];
     conditions_ = nullptr;
+    const ContactSet unpressed = always_unpressed(next_.held);
     for (const OfContact& known : all_conditions_)
-        if (known.contact == which_ && known.held == next_.held) conditions_ = known.conditions.get();
+        if (known.contact == which_ && known.held == next_.held && known.unpressed == unpressed)
+            conditions_ = known.conditions.get();
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
         is_well_resolved(-contact.hdot))
@@ -87,8 +91,10 @@ void Execution::land_alone(const Contact& contact) {
 // The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
 bool Execution::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
+        const ContactSet unpressed = always_unpressed(next_.held);
         all_conditions_.push_back(
-            {which_, next_.held, timed([&] { return truncation_conditions(*model_, run_, which_, next_.held); }),
+            {which_, next_.held, unpressed,
+             timed([&] { return truncation_conditions(*model_, run_, which_, next_.held, unpressed); }),
              model_->evaluator<Interval>(model_->restitution(which_), run_.parameters).output(0)});
         conditions_ = all_conditions_.back().conditions.get();
     }
@@ -133,12 +139,17 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
            2.0 * u / a < 4.0 * ulp(collision.before.t);
 }
 
-// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, and nothing is cut short.
+// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, or where the contact stays closed
+// without a force, and nothing is cut short.
 void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
-    const Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
-    if (certainly_negative(hddot)) {
+    Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
+    if (surfaces_->needs_no_force(which_, next_.held, collision.with(collision.restart), scale_)) {
+        hddot = Interval(0.0);
+        next_.unpressed = next_.unpressed.with(which_);
+    }
+    if (next_.unpressed.contains(which_) || certainly_negative(hddot)) {
         Certificate certificate;
         certificate.certified = true;
         certificate.conditions = run_.options.truncation.conditions;
@@ -153,12 +164,8 @@ void Execution::capture(const Contact& contact, const Collision& before) {
     } else if (certainly_positive(hddot)) {
         bounce(contact, 0.0);
         next_.starts[which_] = {{0.0, 0.0}, 2};
-    } else if (surfaces_->count() > 1) {
-        collide(ContactSet::of(which_));  // it may stay closed without a force, as of two that fall together
     } else {
-        stop(Outcome::Kind::undecided,
-             "after a plastic impact hddot is zero to within rounding: contact or flight cannot be decided at " +
-                 where(next_.state));
+        collide(ContactSet::of(which_));  // the rate of hddot decides
     }
 }
 
@@ -178,6 +185,7 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (held.contains(i)) next_.starts[i] = {};
     change_rates(collision.before.v, ContactSet::of(which_));
+    next_.unpressed = unpressed_of(next_.unpressed, held);
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -223,10 +231,12 @@ void Execution::release(std::size_t which) {
         return stop(Outcome::Kind::undecided,
                     "the contact force vanishes before the Zeno time at " + where(next_.state));
     const ContactSet held = next_.held;
+    const ContactSet vanishing = surfaces_->count() > 1 ? vanishing_with(which) : ContactSet::of(which);
     const bool leaves = certainly_positive(surfaces_->of(which, held.without(which)).normal(next_.state).jerk);
-    if (surfaces_->count() > 1 && (!leaves || !next_.touching.empty() || not_unique_)) {
+    if (surfaces_->count() > 1 &&
+        (!leaves || vanishing.count() > 1 || !next_.touching.with(next_.unpressed).empty() || not_unique_)) {
         const ContactSet resting = next_.resting();
-        decide(held.with(next_.touching));
+        decide(held.with(next_.touching), vanishing);
         if (outcome_) return;
         const ContactSet gone = resting.without(next_.resting());
         return gone.empty() ? carry_on() : leave(gone);

@@ -39,6 +39,7 @@ class EventStepper {
     const Polynomial& gap_along(std::size_t contact);
     void make_gap(std::size_t contact, Polynomial& h);
     End doubt_gap(double theta);
+    bool surely_closes_at_start();
     End land_here();
     End land_under();
     std::optional<End> locate_impact(double theta);
@@ -59,7 +60,7 @@ class EventStepper {
     bool is_last() const;
     ContactSet held() const { return request_->held; }
     bool is_watched(std::size_t contact) const {
-        return !request_->touching.with(request_->unwatched).contains(contact);
+        return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);
     }
     const EventStart& start_of(std::size_t contact) const { return request_->starts[contact]; }
 

@@ -70,6 +70,8 @@ bool Execution::restart(const Run& run) {
 void Execution::begin() {
     forget_held();
     next_.state = run_.start();
+    scale_ = {Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
+    note_scale();
     next_.starts.assign(surfaces_->count(), {});
     begin_stretch({}, run_.options.end_time);
     ContactSet landing, resting;
@@ -141,7 +143,8 @@ const StepRequest* Execution::next() {
             if (next_.held.contains(i)) next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
     const EventStart& start = next_.starts.front();  // of the only contact, where it is asked for
-    next_.plain = stalled_ == 0 && !start.asked_again && (in_contact || start.multiplicity <= 1);
+    next_.plain =
+        stalled_ == 0 && !start.asked_again && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
     if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
@@ -184,6 +187,7 @@ void Execution::accept(const StepResult& result) {
     if (result.end == End::doubt && !shared && may_ask_exactly()) return ask_exactly();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
+    note_scale();
     switch (result.end) {
         case End::no_event:
             next_.begins = false;
@@ -211,6 +215,13 @@ void Execution::advance(const StepResult& result) {
     stalled_ = result.state->t - next_.state.t > 0x1p-51 * std::abs(next_.state.t) ? 0 : stalled_ + 1;
     last_step_ = result.duration;
     for (std::size_t i = 0; i < next_.starts.size(); ++i) next_.starts[i] = result.starts[i];
+}
+
+void Execution::note_scale() {
+    const State& state = next_.state;
+    scale_.q = scale_.q.cwiseMax(state.q.cwiseAbs());
+    scale_.v = scale_.v.cwiseMax(state.v.cwiseAbs());
+    scale_.t = std::max(scale_.t, std::abs(state.t));
 }
 
 // A motion that ends at `until` at the latest.

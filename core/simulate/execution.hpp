@@ -84,6 +84,7 @@ class Execution {
         if (surfaces_->count() > 1) change_other_rates(v_before, but);
     }
     void change_other_rates(const Vector& v_before, ContactSet but);
+    void note_scale();
     bool may_ask_exactly() const;
     void ask_exactly();
     std::string doubt(const StepResult& result) const;
@@ -123,7 +124,9 @@ class Execution {
     void enter_phase();
     void enter_or_stay();
     // Where several contacts are closed (several.cpp).
-    ContactSet landing_with(std::size_t which, const Contact& contact);
+    std::optional<ContactSet> landing_with(std::size_t which, const Contact& contact);
+    bool is_order_independent(ContactSet landing);
+    double rounding_so_far(const Contact& contact) const;
     bool stays_held(std::size_t which, const Contact& contact);
     bool is_pressed(const Closed& closed, ContactSet held, const State& state);
     double plastic_work(const State& before, ContactSet contacts);
@@ -132,10 +135,18 @@ class Execution {
     bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
                        const Vector& v_after, bool below_rounding);
     bool too_short_to_resolve(std::size_t which, double hdot);
-    void decide(ContactSet closed);
+    void decide(ContactSet closed, ContactSet vanishing = {});
     ContactVector<double> accelerations(const Closed& closed);
-    bool judge(ContactSet closed, ContactSet active);
+    bool judge(ContactSet closed, ContactSet active, ContactSet vanishing);
+    bool judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed);
+    ContactSet vanishing_with(std::size_t which);
     ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
+    bool needs_no_force(std::size_t contact, ContactSet held) {
+        return surfaces_->needs_no_force(contact, held.without(contact), next_.state, scale_);
+    }
+    ContactSet unpressed_of(ContactSet contacts, ContactSet held);
+    ContactSet always_unpressed(ContactSet held);
+    ContactSet unpressed_among(ContactSet closed, ContactSet active);
     bool is_chatter() const;
     bool moves_within_rounding(std::size_t which, double speed);
     void end_chatter(ContactSet contacts);
@@ -162,11 +173,12 @@ class Execution {
     bool is_stuck(const Closed& closed, ContactSet pressed);
     ContactSet enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed);
     bool carry_on_without(std::size_t which, const State& state);
-    void forget_held() { next_.held = next_.touching = next_.carried = next_.unwatched = {}; }
+    void forget_held() { next_.held = next_.touching = next_.carried = next_.unwatched = next_.unpressed = {}; }
     void carry_on();
 
     StepRequest next_;        // where the motion stands, and how it goes on
     double last_step_ = 0.0;  // s
+    State scale_;             // the largest |q|, |v|, |t| so far
     long evaluations_ = 0;
     int stalled_ = 0;  // steps in a row that were as short as the resolution of t
     InDoubt in_doubt_;
@@ -181,14 +193,14 @@ class Execution {
     // The truncation conditions of contacts while others are held, those met so far.
     struct OfContact {
         std::size_t contact;
-        ContactSet held;
+        ContactSet held, unpressed;
         std::unique_ptr<TruncationConditions> conditions;
         Interval e;  // the restitution that they know
     };
     std::vector<OfContact> all_conditions_;
     struct PairOf {
         std::size_t first, second;
-        ContactSet held;
+        ContactSet held, unpressed;
         std::unique_ptr<PairConditions> conditions;
     };
     std::vector<PairOf> all_pairs_;               // the same of two contacts

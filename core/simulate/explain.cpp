@@ -6,6 +6,7 @@
 #include "simulate/contact_forces.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
+#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -15,6 +16,19 @@ std::size_t first_of(ContactSet contacts, const Model& model) {
     for (std::size_t i = 0; i < model.contacts(); ++i)
         if (contacts.contains(i)) return i;
     return 0;
+}
+
+// Of what is held those that never need a force.
+ContactSet unpressed_at(const Trajectory& trajectory, ContactSet held, const State& state) {
+    ContactSet found;
+    if (held.empty()) return found;
+    Surfaces surfaces(*trajectory.model, trajectory.run);
+    const State scale = scale_of(trajectory);
+    for (std::size_t i = 0; i < surfaces.count(); ++i)
+        if (held.contains(i) && surfaces.is_nearly_free(i, held.without(i), state, scale) &&
+            surfaces.never_needs_force(i, held.without(i)))
+            found = found.with(i);
+    return found;
 }
 
 }  // namespace
@@ -48,7 +62,8 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
     reason.normal_acceleration = surface.normal_acceleration(collision.with(collision.restart));
     if (reason.normal_acceleration < 0.0)
-        reason.attempt = truncation_conditions(model, run, which, carriers)->prove_any(collision);
+        reason.attempt = truncation_conditions(model, run, which, carriers, unpressed_at(trajectory, carriers, before))
+                             ->prove_any(collision);
     return reason;
 }
 

@@ -58,6 +58,8 @@ std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
             // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
             if (!asked_before && end_step_at(descent.theta)) {
                 asked_again_ = asked_again_.with(contact_);
+            } else if (surely_closes_at_start()) {
+                return land_here();
             } else if (!(knows_its_start() && is_last() && gap_along(contact_)(1.0) >= 0.0)) {
                 return doubt_gap(descent.theta);
             }
@@ -109,6 +111,20 @@ StepResult::End EventStepper::doubt_gap(double theta) {
     if (end_step_at(theta) && (held().empty() || end_on_surface()))
         end_step(surfaces_->of(contact_).at(flow_->end()).h);
     return End::doubt;
+}
+
+// Whether the gap, which starts within its remainder, closes so fast that it is through this before it could turn round: then
+// the impact is certain, and only its instant is not known better.
+bool EventStepper::surely_closes_at_start() {
+    const EventStart& start = start_of(contact_);
+    if (start.multiplicity > 0) return false;
+    const Polynomial& h = gap_along(contact_);
+    const double span = flow_->duration(), remainder = flow_->remainder(contact_, h), rate = h.c[1] / span;
+    if (!(h.c[0] <= remainder) || !(rate < -4.0 * start.gap.rate_error)) return false;
+    double acceleration = 0.0;  // at most, over the step
+    for (int k = 2; k <= h.degree; ++k) acceleration += k * (k - 1) * std::abs(h.c[static_cast<std::size_t>(k)]);
+    const double passage = 2.0 * (std::abs(h.c[0]) + remainder) / -rate;
+    return passage * acceleration / (span * span) < -0.25 * rate;
 }
 
 // The gap came down to zero within the remainder of the step before: where that ended.

@@ -9,8 +9,8 @@
 namespace achilles {
 
 // Contacts with h = 0 and hdot = 0: who of them is held, who leaves, who merely touches (theory-gaps.md 2.2). What was held
-// before counts no more.
-void Execution::decide(ContactSet closed) {
+// before counts no more. The forces of `vanishing` are known to be 0.
+void Execution::decide(ContactSet closed, ContactSet vanishing) {
     forget_held();
     not_unique_ = false;
     if (closed.empty()) return;
@@ -25,8 +25,8 @@ void Execution::decide(ContactSet closed) {
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("no forces hold {}, at {}", names_of(closed), where(next_.state)));
     not_unique_ = !forces->unique;
-    const bool decided =
-        forces->unique ? judge(closed, all.contacts_at(forces->active)) : hold_dependent(all, hddot, *forces);
+    const bool decided = forces->unique ? judge(closed, all.contacts_at(forces->active), vanishing)
+                                        : hold_dependent(all, hddot, *forces);
     if (!decided)
         stop(Outcome::Kind::undecided,
              fmt::format("the contact force and its rate are zero to within rounding: contact or release cannot be "
@@ -74,15 +74,27 @@ ContactSet Execution::pressed_by_rates(ContactSet doubtful, ContactSet held) {
 
 // Proves for each contact what the forces say of it: `active` are held by them, the others leave. Where that cannot be told,
 // the rate of hddot along the motion decides, of one contact or of several that do not feel one another.
-bool Execution::judge(ContactSet closed, ContactSet active) {
-    ContactSet held, doubtful;
+bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing) {
+    const ContactSet unpressed = unpressed_among(closed, active);
+    return judge(closed, active, vanishing, unpressed) ||
+           (!unpressed.empty() && judge(closed, active, vanishing, {}));  // others may press them, after all
+}
+
+bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed) {
+    active = active.with(unpressed);
+    next_.touching = {};
+    ContactSet held = unpressed, doubtful;
+    const double resolved = 16.0 * 0x1p-52 * std::abs(next_.state.t);
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (!closed.contains(i)) continue;
-        const Interval hddot = surfaces_->of(i, active.without(i)).normal(next_.state).hddot;
-        if (certainly_negative(hddot)) {
+        if (unpressed.contains(i)) next_.starts[i] = {};
+        if (!closed.without(unpressed).contains(i)) continue;
+        const auto [hddot, jerk] = surfaces_->of(i, active.without(i)).normal(next_.state);
+        // Known to be, or nearer to it than time resolves.
+        const bool is_zero = vanishing.contains(i) || mag(hddot) <= resolved * mag(jerk);
+        if (!is_zero && certainly_negative(hddot)) {
             held = held.with(i);
             next_.starts[i] = {};
-        } else if (certainly_positive(hddot)) {
+        } else if (!is_zero && certainly_positive(hddot)) {
             next_.starts[i] = {{0.0, 0.0}, 2};
         } else {
             doubtful = doubtful.with(i);
@@ -108,7 +120,53 @@ bool Execution::judge(ContactSet closed, ContactSet active) {
         }
     }
     next_.held = held;
-    return true;
+    next_.unpressed = unpressed;
+    return unpressed_of(unpressed, held) == unpressed;
+}
+
+// Of these contacts those that stay closed without a force while `held` are.
+ContactSet Execution::unpressed_of(ContactSet contacts, ContactSet held) {
+    ContactSet found;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (contacts.contains(i) && held.contains(i) && needs_no_force(i, held)) found = found.with(i);
+    return found;
+}
+
+// Those that nothing presses now and that, at whatever state these are held, nothing does.
+ContactSet Execution::always_unpressed(ContactSet held) {
+    ContactSet found;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (next_.unpressed.contains(i) && held.contains(i) && surfaces_->never_needs_force(i, held.without(i)))
+            found = found.with(i);
+    return found;
+}
+
+// Of closed contacts those that need no force, while the others of them and those that `active` says are pressed are held.
+ContactSet Execution::unpressed_among(ContactSet closed, ContactSet active) {
+    ContactSet found;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (closed.contains(i) && surfaces_->is_nearly_free(i, active.without(i), next_.state, scale_))
+            found = found.with(i);
+    active = active.without(found);  // what may be no force presses no other
+    for (ContactSet before; before != found;) {
+        before = found;
+        found = unpressed_of(found, active.with(found));
+    }
+    return found;
+}
+
+// The held contacts whose forces vanish with that of this one, as far as the state is known: as where a floor, and nothing else,
+// presses a ball against a wall.
+ContactSet Execution::vanishing_with(std::size_t which) {
+    ContactSet found = ContactSet::of(which);
+    const double known = state_error() + 0x1p-40;
+    const State scale{known * scale_.q, known * scale_.v, 0.0};
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (i == which || !next_.held.contains(i) || next_.unpressed.contains(i)) continue;
+        const Interval hddot = surfaces_->of(i, next_.held.without(i)).hddot_within(scale, next_.state);
+        if (!certainly_negative(hddot)) found = found.with(i);
+    }
+    return found;
 }
 
 // Whether a contact with h = hdot = hddot = 0 stays so along the motion that holds these: where hddot is 0 everywhere, or
@@ -125,13 +183,15 @@ void Execution::check_touching() {
     const std::string while_held = next_.held.empty()
                                        ? "no contact was held"
                                        : names_of(next_.held) + (next_.held.count() == 1 ? " was held" : " were held");
-    for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (next_.touching.contains(i) && !(std::abs(surfaces_->of(i).at(next_.state).h) <= closed * size))
-            return stop(
-                Outcome::Kind::redundant_contacts,
-                fmt::format(
-                    "{} was closed while {}, and is closed no more: which contacts carry cannot be decided, at {}",
-                    names_of(ContactSet::of(i)), while_held, where(next_.state)));
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        if (!next_.touching.contains(i)) continue;
+        const Contact contact = surfaces_->of(i).at(next_.state);
+        if (std::abs(contact.h) <= closed * size * contact.g.norm()) continue;
+        return stop(Outcome::Kind::redundant_contacts,
+                    fmt::format(
+                        "{} was closed while {}, and is closed no more: which contacts carry cannot be decided, at {}",
+                        names_of(ContactSet::of(i)), while_held, where(next_.state)));
+    }
 }
 
 // Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.

@@ -128,6 +128,20 @@ ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     return {enclosure.hddot(), enclosure.jerk()};
 }
 
+Interval ContactKinematics::hddot_within(const State& distances, const State& state) {
+    const Ground ground;
+    auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
+    const auto around = [](double x, double distance) { return Interval(x) + Interval(-distance, distance); };
+    for (std::size_t i = 0; i < dof_; ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        enclosure.input(i) = around(state.q[k], distances.q[k]);
+        enclosure.input(dof_ + i) = around(state.v[k], distances.v[k]);
+    }
+    enclosure.clock() = around(state.t, distances.t);
+    enclosure.run();
+    return enclosure.hddot();
+}
+
 double ContactKinematics::normal_acceleration(const State& state) {
     if (!normal_) normal_ = model_->evaluator(programs_->normal_acceleration, parameters_);
     set_state(*normal_, state);

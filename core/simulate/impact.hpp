@@ -55,6 +55,8 @@ class ContactKinematics {
         Interval hddot, jerk;
     };
     Normal normal(const State& state);
+    // hddot over all states within these distances of one.
+    Interval hddot_within(const State& distances, const State& state);
     double normal_acceleration(const State& state);
     double jerk(const State& state);
 

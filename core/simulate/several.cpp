@@ -35,19 +35,44 @@ std::string Execution::names_of(ContactSet contacts) const {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// Those whose landings cannot be told from this one in time (theory-gaps.md 2.4).
-ContactSet Execution::landing_with(std::size_t which, const Contact& contact) {
-    const auto uncertainty = [&](std::size_t i, double hdot) {
-        return 4.0 * surfaces_->of(i).gap_error(next_.state) + std::abs(hdot) * ulp(next_.state.t);
-    };
-    const double when = uncertainty(which, contact.hdot) / std::abs(contact.hdot);
-    ContactSet landing = ContactSet::of(which);
+// What roundings of the coordinates, as large as they have been, make of a gap.
+double Execution::rounding_so_far(const Contact& contact) const { return 0x1p-53 * contact.g.cwiseAbs().dot(scale_.q); }
+
+// Whether these landings lead to the same in every order, with what is held (theory-gaps.md 2.4).
+bool Execution::is_order_independent(ContactSet landing) {
+    const Closed closed = surfaces_->at(next_.state, next_.held.with(landing));
+    ContactVector<double> e(closed.W.rows());
+    for (std::size_t i = 0; i < closed.which.size(); ++i)
+        e[static_cast<Eigen::Index>(i)] = restitutions_[closed.which[i]];
+    return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, closed.places_of(next_.held),
+                             closed.places_of(landing))
+                .matters();
+}
+
+// Those whose landings cannot be told from this one in time (theory-gaps.md 2.4). Nothing, and the run has ended, where the
+// order matters and a smaller tolerance may tell it.
+std::optional<ContactSet> Execution::landing_with(std::size_t which, const Contact& contact) {
+    constexpr double few = 4.0, resolved = 16.0;
+    const double time = ulp(next_.state.t);
+    const double when = few * surfaces_->of(which).gap_error(next_.state) / std::abs(contact.hdot) + time;
+    ContactSet landing = ContactSet::of(which), in_doubt;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (i == which || next_.held.contains(i) || next_.touching.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
-        if (other.hdot < 0.0 && other.h <= uncertainty(i, other.hdot) - other.hdot * when) landing = landing.with(i);
+        if (!(other.hdot < 0.0)) continue;
+        const double own = few * surfaces_->of(i).gap_error(next_.state) - other.hdot * (time + when);
+        const double rounding = few * rounding_so_far(other) - other.hdot * resolved * time;
+        if (other.h <= std::max(own, rounding)) {
+            landing = landing.with(i);
+        } else if (other.h <= next_.starts[i].gap.error && next_.held.count() + 2 <= most_contacts &&
+                   !is_order_independent(ContactSet::of(which).with(i))) {
+            in_doubt = in_doubt.with(i);
+        }
     }
-    return landing;
+    if (in_doubt.empty() || run_.options.tolerance <= exact_tolerance) return landing.with(in_doubt);
+    stop(Outcome::Kind::undecided, fmt::format("which of {} lands first cannot be told at this tolerance, at {}",
+                                               names_of(landing.with(in_doubt)), where(next_.state)));
+    return std::nullopt;
 }
 
 // Whether all that is held stays so at an impact of this contact: the impact presses it (kappa >= 0), and with the velocities
@@ -58,11 +83,21 @@ bool Execution::stays_held(std::size_t which, const Contact& contact) {
     const Closed closed = surfaces_->at(next_.state, next_.held.with(which));
     const auto held = closed.places_of(next_.held), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
-    if (order_dependence(enclosure(closed.W, radius_of(closed.W)), e, held, lands).by_transmission) return false;
+    const auto W = enclosure(closed.W, radius_of(closed.W));
+    if (order_dependence(W, e, held, lands).by_transmission) return false;
     const double restitution = restitutions_[which];
     const State after{next_.state.q, impact(contact, next_.state.v, restitution), next_.state.t};
     const bool rests = restitution == 0.0 && surfaces_->of(which, next_.held).normal_acceleration(after) < 0.0;
-    return is_pressed(closed, rests ? held.with(lands) : held, after);
+    for (std::size_t i = 0; i < closed.which.size(); ++i) {
+        const std::size_t other = closed.which[i];
+        if (!next_.unpressed.contains(other)) continue;
+        if (!surfaces_->needs_no_force(other, next_.held.without(other), after, scale_)) return false;
+        e[static_cast<Eigen::Index>(i)] = restitutions_[other];
+        if (restitutions_[other] > 0.0 && order_dependence(W, e, held.without(i), lands.with(i)).matters())
+            return false;
+    }
+    const ContactSet pressed = held.without(closed.places_of(next_.unpressed));
+    return is_pressed(closed, rests ? pressed.with(lands) : pressed, after);
 }
 
 // Whether the forces that hold some of these contacts press, by more than their rounding.
@@ -139,9 +174,14 @@ void Execution::collide(ContactSet landing) {
     joint->not_unique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
-    const ContactSet open = closed.places_of(all.without(resting));
+    // What nothing presses would let go of what comes a moment earlier, unless it is plastic.
+    ContactSet loose;
+    for (std::size_t i = 0; i < surfaces_->count(); ++i)
+        if (next_.unpressed.contains(i) && restitutions_[i] > 0.0) loose = loose.with(i);
+    const ContactSet open = closed.places_of(all.without(resting.without(loose)));
+    const ContactSet fast = closed.places_of(held.without(loose));
     if (open.count() > 1) {
-        const auto order = order_dependence(enclosure(closed.W, radius_of(closed.W)), e, places, open);
+        const auto order = order_dependence(enclosure(closed.W, radius_of(closed.W)), e, fast, open);
         joint->order_matters = order.matters();
         joint->rounded_zero = order.rounded_zero;
     }
@@ -159,7 +199,7 @@ void Execution::collide(ContactSet landing) {
     };
     if (joint->order_matters) {
         joint->alternatives.push_back({std::nullopt, rates(impact->hdot_after)});
-        for (const ImpactSequence& other : alternatives(closed.W, before, e, places))
+        for (const ImpactSequence& other : alternatives(closed.W, before, e, fast))
             joint->alternatives.push_back(
                 {closed.which[static_cast<std::size_t>(other.first)], rates(other.hdot_after)});
     }
@@ -175,18 +215,17 @@ void Execution::collide(ContactSet landing) {
     double speed = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
-    record_.impact(next_.state, v_after, speed, exchange, landing, std::move(joint));
+    record_.impact(next_.state, v_after, speed, exchange, landing, surfaces_->count() > 1 ? std::move(joint) : nullptr);
     next_.state.v = v_after;
     // Who leaves at once, and who may be held.
     ContactSet left;
-    next_.touching = next_.carried = next_.unwatched = {};
+    forget_held();
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t contact = closed.which[i];
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         next_.starts[contact] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
         if (!(hdot > 0.0)) left = left.with(contact);
     }
-    next_.held = {};
     change_rates(v_before, all);
     decide(left);
     record_.after_impact(resting.without(next_.resting()), next_.resting());
@@ -216,19 +255,24 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
                               const Vector& v_after, bool below_rounding) {
     const std::array<std::size_t, 2> pair{first, second};
     PairCollision collision{next_.state, {}, {}};
-    double speed = 0.0;
+    double speed = 0.0, approach = 0.0, height = 0.0;  // of the gap; the others with |dh| = 1, in any unit
     for (std::size_t k = 0; k < 2; ++k) {
         const Contact contact = surfaces_->of(pair[k], held).at(next_.state);
         const bool closed =
             landing.contains(pair[k]) || next_.held.contains(pair[k]) || next_.touching.contains(pair[k]);
         collision.h[k] = closed ? 0.0 : contact.h;
         collision.sigma[k] = next_.held.contains(pair[k]) ? 0.0 : contact.hdot;
-        if (landing.contains(pair[k])) speed = std::max(speed, -contact.hdot);
+        const double slope = surfaces_->of(pair[k]).at(next_.state).g.norm();
+        height += collision.h[k] / slope;
+        if (!landing.contains(pair[k])) continue;
+        speed = std::max(speed, -contact.hdot);
+        approach = std::max(approach, -contact.hdot / slope);
     }
     // Quick: what is high above the tolerances needs no look.
-    if (!below_rounding && (speed > 1e-2 || collision.h[0] + collision.h[1] > 1e-4)) return false;
+    if (!below_rounding && (approach > 1e-2 || height > 1e-4)) return false;
+    const ContactSet unpressed = always_unpressed(held);
     const auto same = [&](const PairOf& known) {
-        return known.first == first && known.second == second && known.held == held;
+        return known.first == first && known.second == second && known.held == held && known.unpressed == unpressed;
     };
     auto known = std::find_if(all_pairs_.begin(), all_pairs_.end(), same);
     if (known == all_pairs_.end()) {
@@ -237,8 +281,8 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
         for (std::size_t i = 0; i < both.which.size(); ++i) places = places.with(i);
         if (!HeldBlock<double>::of(both.W, places)) return false;  // they cannot both be held with the others
         const Ground ground;
-        all_pairs_.push_back(
-            {first, second, held, std::make_unique<PairConditions>(*model_, run_, first, second, held, ground)});
+        all_pairs_.push_back({first, second, held, unpressed,
+                              std::make_unique<PairConditions>(*model_, run_, first, second, held, unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
     auto completion = timed([&] { return known->conditions->certify(collision, below_rounding); });
@@ -260,6 +304,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     event.held = all;
     next_.state = restart;
     next_.touching = next_.carried = next_.unwatched = {};
+    next_.unpressed = unpressed_of(next_.unpressed, all);
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (all.contains(i)) next_.starts[i] = {};
     change_rates(before.v, all);
@@ -278,10 +323,11 @@ bool Execution::is_chatter() const {
 // for its rounding, is known to: then roundings decide which of them lands, and may keep them going for ever.
 bool Execution::moves_within_rounding(std::size_t which, double speed) {
     constexpr double few = 16.0;
+    const double way = speed * last_step_ / surfaces_->of(which).at(next_.state).g.norm();
+    if (!(way < 0x1p-40 * (1.0 + next_.state.q.cwiseAbs().maxCoeff()))) return false;  // cheap
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (i == which || next_.held.contains(i) || next_.touching.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
-        if (!(speed * last_step_ < 0x1p-40 * (1.0 + next_.state.q.cwiseAbs().maxCoeff()))) continue;  // cheap
         const double known = few * surfaces_->of(i).gap_error(next_.state);
         if (other.h < known && std::abs(other.hdot) * last_step_ < known && speed * last_step_ < known) return true;
     }

@@ -82,6 +82,27 @@ Closed Surfaces::at(const State& state, ContactSet contacts) {
     return closed;
 }
 
+bool Surfaces::is_nearly_free(std::size_t contact, ContactSet held, const State& state, const State& scale) {
+    constexpr double roundings = 0x1p-26;  // far more than a projection leaves
+    const State distances{roundings * scale.q, roundings * scale.v, roundings * scale.t};
+    const Interval hddot = of(contact, held).hddot_within(distances, state);
+    return !certainly_positive(hddot) && !certainly_negative(hddot);
+}
+
+bool Surfaces::needs_no_force(std::size_t contact, ContactSet held, const State& state, const State& scale) {
+    if (!is_nearly_free(contact, held, state, scale)) return false;
+    if (!held.empty()) {
+        const Closed closed = at(state, held.with(contact));
+        if (!HeldBlock<double>::of(closed.W, closed.places_of(held.with(contact)))) return false;
+    }
+    return unpressed().needs_no_force(contact, held) || unpressed().needs_no_force_from(state, contact, held);
+}
+
+UnpressedContacts& Surfaces::unpressed() {
+    if (!unpressed_) unpressed_ = std::make_unique<UnpressedContacts>(*model_, run_.parameters);
+    return *unpressed_;
+}
+
 // Newton's method, as ContactKinematics::project().
 std::optional<double> Surfaces::project_several(State& state, ContactSet onto, ContactSet still) {
     if (onto.count() > most_contacts) return std::nullopt;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "contacts/delassus.hpp"
+#include "model/unpressed.hpp"
 #include "simulate/impact.hpp"
 
 namespace achilles {
@@ -36,6 +38,13 @@ class Surfaces {
 
     // At most most_contacts of them.
     Closed at(const State& state, ContactSet contacts);
+    // Whether hddot of a contact, while these are held, may be 0 but for roundings of `scale`, which is what the coordinates,
+    // the rates and the time have come to so far.
+    bool is_nearly_free(std::size_t contact, ContactSet held, const State& state, const State& scale);
+    // Whether a contact that is closed with these is proved to stay so without a force (theory-gaps.md 2.7).
+    bool needs_no_force(std::size_t contact, ContactSet held, const State& state, const State& scale);
+    // The same at every state of the run.
+    bool never_needs_force(std::size_t contact, ContactSet held) { return unpressed().needs_no_force(contact, held); }
     // Moves q onto the surfaces of all these contacts in one solve, until every |h| is at rounding level, and v so that
     // hdot = 0 of those that are still. The least gap of these; nothing where that fails: dh = 0, gaps that contradict one
     // another, or more than most_contacts.
@@ -52,12 +61,14 @@ class Surfaces {
 
  private:
     std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
+    UnpressedContacts& unpressed();
     bool land_beside(State& state, std::size_t contact, ContactSet held, Contact& landed);
 
     const Model* model_;
     Run run_;
     std::vector<ContactKinematics> free_;
     std::map<std::pair<ContactSet, std::size_t>, ContactKinematics> while_held_;
+    std::unique_ptr<UnpressedContacts> unpressed_;  // made where it is first asked for
 };
 
 }  // namespace achilles

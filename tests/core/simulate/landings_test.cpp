@@ -1,0 +1,81 @@
+// Landings that come within the errors of one another: certain where their order does not matter, one landing where it does
+// (theory-gaps.md 2.4).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/systems.hpp"
+
+namespace achilles::test {
+namespace {
+
+constexpr Method methods[] = {Method::taylor, Method::dopri5};
+
+// A ball falls into the corner of a wall and a floor, which it reaches `apart` seconds later or before.
+std::shared_ptr<const Model> corner(double height, double apart) {
+    const double fall = std::sqrt(2.0 * height / 9.81), x = 1.5 * (fall + apart) * (fall + apart);
+    return typed(fmt::format(R"toml(
+title = "Corner"
+coordinate = [{{ name = "x", start = {:.17g} }}, {{ name = "y", start = {} }}]
+lagrangian = {{ kinetic = "(x'^2 + y'^2)/2", potential = "3*x + 9.81*y" }}
+constraint = [{{ name = "wall", gap = "x", restitution = 0.5 }}, {{ name = "floor", gap = "y", restitution = 0.5 }}]
+[run]
+end_time = {}
+)toml",
+                             x, height, 4.0 * fall));
+}
+
+TEST(LandingsAtOnce, NeedNoOrderInACorner) {
+    for (const double height : {0.3, 1.0, 2.7})
+        for (const double size : {0.0, 1e-17, 1e-16, 3e-16, 1e-15, 2e-15, 5e-15, 1e-14, 3e-14, 1e-13, 1e-12, 1e-10})
+            for (const double apart : {size, -size})
+                for (const Method method : methods) {
+                    SCOPED_TRACE(fmt::format("{} {} {}", height, apart, to_text(method)));
+                    const auto model = corner(height, apart);
+                    auto run = model->default_run();
+                    run.options.method = method;
+                    const Trajectory trajectory = simulate(model, run);
+                    ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+                    EXPECT_EQ(trajectory.by_convention, 0);
+                    EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1));
+                    EXPECT_LT(trajectory.end.q.norm() + trajectory.end.v.norm(), 1e-12);
+                    const double fall = std::sqrt(2.0 * height / 9.81);
+                    for (std::size_t i = 0; i < 4; ++i) {  // each contact as it would land alone
+                        const Event& event = trajectory.events[i];
+                        if (!event.contacts.has_one()) continue;
+                        const double speed = event.contacts.contains(0) ? 3.0 : 9.81;
+                        const bool first = event.t < 1.5 * fall;
+                        EXPECT_NEAR(event.t, first ? fall : 2.0 * fall, 1e-9);
+                        EXPECT_NEAR(event.impact_speed, speed * fall * (first ? 1.0 : 0.5), 1e-8);
+                    }
+                }
+}
+
+// On the axis of a V of half angle 0.6 from the vertical, turned by phi with its weight: both walls are reached at once.
+TEST(LandingsAtOnce, AreOneOnTheAxisOfATurnedV) {
+    for (int i = 0; i < 80; ++i) {
+        const double phi = -0.4 + 0.01 * i;
+        SCOPED_TRACE(phi);
+        const auto model = typed(fmt::format(R"toml(
+title = "V"
+coordinate = [{{ name = "x", start = {:.17g} }}, {{ name = "y", start = {:.17g} }}]
+parameter = [{{ name = "phi", value = {} }}]
+lagrangian = {{ kinetic = "(x'^2 + y'^2)/2", potential = "9.81*(-sin(phi)*x + cos(phi)*y)" }}
+constraint = [{{ name = "l", gap = "cos(phi + 0.6)*y - sin(phi + 0.6)*x", restitution = 0.5 }},
+              {{ name = "r", gap = "cos(phi - 0.6)*y - sin(phi - 0.6)*x", restitution = 0.5 }}]
+[run]
+end_time = 2
+)toml",
+                                             -std::sin(phi), std::cos(phi), phi));
+        const Trajectory trajectory = simulate(model, model->default_run());
+        ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1));
+        EXPECT_GE(trajectory.by_convention, 1);
+        EXPECT_EQ(trajectory.events[0].contacts.count(), 2);
+        EXPECT_EQ(trajectory.events[1].contacts.count(), 2);
+        EXPECT_NEAR(trajectory.events[1].t, 3.0 * std::sqrt(2.0 / 9.81) - std::sqrt(2.0 / 9.81), 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace achilles::test
