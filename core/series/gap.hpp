@@ -17,7 +17,10 @@ struct GapOver {
 
     // How fast the error of the state moves what an event is looked for in: the gap's rate in flight, hddot itself in
     // contact. `size`: the sizes of hddot and of its rate together (m/s^2 and m/s^3, as the two are added).
-    Number drift(const Number& size) const { return state_error * (1.0 + min(size, Number(steepest))); }
+    // `unit`: the size of what 1 is said of, of a gap that is written in another unit than the coordinates.
+    Number drift(const Number& size, double unit = 1.0) const {
+        return state_error * (unit + min(size, Number(steepest * unit)));
+    }
     // What all this has made the gap wrong by after a time in flight (s), the state's error drifting so fast.
     Number error_after(const Number& span, const Number& drifting) const {
         return error + (rate_error + 0.5 * drifting * span) * span;

@@ -53,7 +53,8 @@ class TaylorStep {
           tolerance_(tolerance),
           rows_((highest_order + 1) * width_, Number(0.0)),
           units_(width_, Number(0.0)),
-          gaps_(contacts, GapOver<Number>{0.0, 0.0, 0.0, 0.0, 0.0}) {}
+          gaps_(contacts, GapOver<Number>{0.0, 0.0, 0.0, 0.0, 0.0}),
+          gap_units_(contacts, 1.0) {}
 
     std::size_t dof() const { return dof_; }
     std::size_t contacts() const { return contacts_; }
@@ -64,6 +65,8 @@ class TaylorStep {
     const Number& event(std::size_t contact, int k) const { return row(k)[2 * dof_ + contact]; }
     // 1/(tolerance of each component).
     const Number* units() const { return units_.data(); }
+    // What 1 m of a coordinate makes of a gap, roughly: tolerances of event functions are in it. 1 unless it is set.
+    double& gap_unit(std::size_t contact) { return gap_units_[contact]; }
     int order() const { return order_; }
     bool is_open(std::size_t contact) const { return !held_.contains(contact); }
     bool any_open() const {
@@ -141,7 +144,8 @@ class TaylorStep {
     double tolerance_;
     std::vector<Number> rows_, units_;
     std::vector<GapOver<Number>> gaps_;  // where the step starts
-    Number time_ = 0.0;                  // the same
+    std::vector<double> gap_units_;
+    Number time_ = 0.0;  // the same
     ContactSet held_;
     int order_ = 0;  // of the last expansion
 };
@@ -161,7 +165,7 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
     for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + contacts() + i) > 0.0);
     for (std::size_t i = 0; i < contacts(); ++i) {
         events[i] = is_open(i) ? gaps_[i].h : series.start(dof_ + i);
-        set_unit(2 * dof_ + i, 1.0 + abs(events[i]));
+        set_unit(2 * dof_ + i, gap_units_[i] + abs(events[i]));
     }
     Number* const first = row(1);
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -189,7 +193,7 @@ Number TaylorStep<Number>::aim(const Number& longest) {
         if (!is_open(i)) continue;
         const Number height = abs(gaps_[i].h) + abs(gaps_[i].hdot) * target;
         Number& unit = units_[2 * dof_ + i];
-        unit = select((height > 0.0) & (height < 1.0), 1.0 / (tolerance_ * height), unit);
+        unit = select((height > 0.0) & (height < gap_units_[i]), 1.0 / (tolerance_ * height), unit);
     }
     return target;
 }
@@ -239,7 +243,7 @@ auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const Te
     const bool open = is_open(contact);
     const auto term = [&](int k) { return abs(event(contact, k)); };
     const Number own = max(sizes.last + 4.0 * unit_roundoff * sizes.all, 2.0 / unit(contact));
-    const Number drifting = gap.drift(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1));
+    const Number drifting = gap.drift(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1), gap_units_[contact]);
     return {own, open ? gap.error_after(span, drifting) : drifting, drifting};
 }
 

@@ -22,7 +22,8 @@ namespace achilles {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-using Values = std::vector<double>;  // q, v, then of each contact h, hdot where it is open, hddot, 0 where it is held
+// q, v, then of each contact, in its unit (gap_units), h, hdot where it is open, hddot, 0 where it is held.
+using Values = std::vector<double>;
 using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
 
 bool is_finite(const Values& values) {
@@ -37,14 +38,18 @@ class Dopri5 : public Stepper {
           dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
           model_(&model),
           parameters_(run.parameters),
-          gaps_(model.contacts()) {}
+          gaps_(model.contacts()),
+          units_(gap_units(model, run)) {}
 
     void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
     const State& current_state() override { return to_; }
-    void event_function(std::size_t contact, Polynomial& p) const override { p = component(event(contact)); }
+    void event_function(std::size_t contact, Polynomial& p) const override {
+        p = component(event(contact));
+        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] *= units_[contact];
+    }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
@@ -81,11 +86,12 @@ class Dopri5 : public Stepper {
     Model::MotionEvaluators motions_;                   // of those met so far
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // of them, that of held_
     double span_ = 0.0;
-    double natural_ = 0.0;     // the step the error control would take next; 0: not known
-    State from_, to_;          // the last step's ends
-    double time_ = 0.0;        // s, where it starts,
-    double begun_ = 0.0;       // by Odeint's own clock
-    std::vector<Gap> gaps_;    // at `from`
+    double natural_ = 0.0;   // the step the error control would take next; 0: not known
+    State from_, to_;        // the last step's ends
+    double time_ = 0.0;      // s, where it starts,
+    double begun_ = 0.0;     // by Odeint's own clock
+    std::vector<Gap> gaps_;  // at `from`
+    std::vector<double> units_;
     bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
     std::array<Values, 5> nodes_;
     long evaluations_ = 0;
@@ -107,8 +113,8 @@ void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
     }
     for (std::size_t contact = 0, held = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        dydt[i] = is_open(contact) ? y[i + 1] : motion.jerk(held++);
-        dydt[i + 1] = is_open(contact) ? motion.hddot(contact) : 0.0;
+        dydt[i] = is_open(contact) ? y[i + 1] : motion.jerk(held++) / units_[contact];
+        dydt[i + 1] = is_open(contact) ? motion.hddot(contact) / units_[contact] : 0.0;
     }
 }
 
@@ -154,8 +160,8 @@ void Dopri5::set(double dt) {
     }
     for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        y[i] = is_open(contact) ? gaps_[contact].h : motion_->hddot(contact);
-        if (is_open(contact)) y[i + 1] = gaps_[contact].hdot;
+        y[i] = (is_open(contact) ? gaps_[contact].h : motion_->hddot(contact)) / units_[contact];
+        if (is_open(contact)) y[i + 1] = gaps_[contact].hdot / units_[contact];
     }
     dense_.initialize(y, 0.0, dt);
     begun_ = 0.0;
@@ -209,8 +215,8 @@ StepFailure Dopri5::do_step(double time, double longest, double first, double le
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
     for (std::size_t contact = 0; continuing_ && contact < gaps_.size(); ++contact) {
-        gaps_[contact].h = nodes_[4][event(contact)];
-        gaps_[contact].hdot = nodes_[4][event(contact) + 1];
+        gaps_[contact].h = units_[contact] * nodes_[4][event(contact)];
+        gaps_[contact].hdot = units_[contact] * nodes_[4][event(contact) + 1];
     }
     from_ = to_;
     StepFailure failure = StepFailure::not_a_number;
@@ -252,14 +258,15 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
-    const double allowed = 4.0 * tolerance_ * (1.0 + size);
+    const double allowed = 4.0 * tolerance_ * (units_[contact] + size);
     return (is_open(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
 double Dopri5::drifting(std::size_t contact, const Polynomial& p) const {
     return gaps_[contact].drift(is_open(contact)
                                     ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
-                                    : std::abs(p.c[0]) + std::abs(p.c[1]) / span_);
+                                    : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
+                                units_[contact]);
 }
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
@@ -278,7 +285,7 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     end.error = earlier_error(contact, p) + own;
     end.state_error = gap.state_error;
     end.rate_error = gap.rate_error + drifting(contact, p) * span_ +
-                     std::min(4.0 * tolerance_ * (1.0 + std::abs(end.hdot)), own / span_);
+                     std::min(4.0 * tolerance_ * (units_[contact] + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace

@@ -28,7 +28,10 @@ Taylor::Taylor(const Model& model, const Run& run)
       tolerance_(std::max(run.options.tolerance, unit_roundoff)),
       model_(&model),
       parameters_(run.parameters),
-      step_(dof_, model.contacts(), tolerance_) {}
+      step_(dof_, model.contacts(), tolerance_) {
+    const std::vector<double> units = gap_units(model, run);
+    for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
+}
 
 void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || held != held_) {
