@@ -72,7 +72,9 @@ std::string difference_by_scaling(const SystemDescription& system, double factor
     SystemDescription scaled = system;
     for (ConstraintDescription& constraint : scaled.constraints)
         constraint.gap.text = fmt::format("{:.17g}*({})", factor, constraint.gap.text);
-    const Trajectory one = run_of(system), two = run_of(scaled);
+    const Trajectory one = run_of(system);
+    if (one.outcome.kind == Outcome::Kind::undecided) return "undecided";
+    const Trajectory two = run_of(scaled);
     if (one.outcome.kind != two.outcome.kind)
         return fmt::format("'{}' at {} and '{}' at {}", one.outcome.message, one.end_time, two.outcome.message,
                            two.end_time);

@@ -12,7 +12,7 @@ namespace achilles::test {
 SystemDescription random_system(std::uint64_t seed);
 
 // Runs a system as it is, and with all its gaps multiplied by a number. What of the courses differs: how they ended, an event, or
-// its time by more than rounding makes of it along the way; "" where nothing does.
+// its time by more than rounding makes of it along the way; "" where nothing does, "undecided" where the system as it is ends so.
 std::string difference_by_scaling(const SystemDescription& system, double factor);
 
 }  // namespace achilles::test

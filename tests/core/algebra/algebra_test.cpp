@@ -163,5 +163,26 @@ TEST_F(Simplification, TellsWhatIsZeroHoweverItIsWritten) {
     EXPECT_FALSE(zero("a*x/x - b*y/y"));
 }
 
+TEST_F(Simplification, TellsWhatIsZeroWhereOthersAre) {
+    const auto parsed = [&](const std::string& text) { return parse(text, scope, graph); };
+    const std::uint32_t unknowns[] = {2, 3};  // x, y
+    const auto zero = [&](const std::string& text, const std::vector<std::string>& where) {
+        std::vector<Expression> zeros;
+        for (const std::string& one : where) zeros.push_back(parsed(one));
+        return vanishes_where(parsed(text), zeros, unknowns);
+    };
+    EXPECT_TRUE(zero("a*x", {"3*x"}));
+    EXPECT_TRUE(zero("sin(x - a)*y", {"2*x - 2*a"}));
+    EXPECT_TRUE(zero("a*(x - sin(y))^2", {"x - sin(y)"}));
+    EXPECT_TRUE(zero("x*y - 2", {"x - y - 1", "y - 1"}));
+    EXPECT_TRUE(zero("a*sqrt(x^2 + y^2) - 2*a", {"sqrt(x^2 + y^2)/2 - 1"}));
+    EXPECT_FALSE(zero("a*x", {"y"}));
+    EXPECT_FALSE(zero("a*x + b", {"x"}));
+    EXPECT_FALSE(zero("y*(x - 1)", {"y*(x - a)"}));  // where y is 0 alone
+    EXPECT_FALSE(zero("x - a", {"a*x - a^2"}));      // a may be 0
+    EXPECT_FALSE(zero("y - a", {"x + sin(x) - y"}));
+    EXPECT_FALSE(zero("x - sin(y)", {"x + sin(x) - 2*sin(y)"}));
+}
+
 }  // namespace
 }  // namespace achilles
