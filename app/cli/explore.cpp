@@ -91,7 +91,7 @@ class Explorer {
         for (const Command& command : commands) take(command);
         take_answer();
         recover();
-        film_.follow(session_, state_.film);
+        if (film_.follow(session_, state_.film)) window_.draw_again();
         keep_text();
         if (commands.empty() && !tour_.runs()) remember_looks();
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
@@ -127,7 +127,9 @@ class Explorer {
         if (!tour_.runs()) stop_tour();
     }
 
+    // What it does comes after the frame that led to it was drawn.
     void take(const Command& command) {
+        window_.draw_again();
         const auto* replay = std::get_if<command::Replay>(&command);
         if (replay == nullptr) {
             keep(command);  // first, for the case that it crashes
@@ -149,6 +151,7 @@ class Explorer {
     }
 
     void give_up(const InputError& problem) {
+        window_.draw_again();
         stop_tour();
         session_.refuse(problem);
     }
@@ -214,8 +217,9 @@ class Explorer {
         const Unsaved& text = unsaved_.front();
         if (!state_.recovery_question) {
             const bool is_busy = is_typing(state_) || session_.document().is_changed();
-            if (!is_busy) state_.recovery_question = RecoveryQuestion{text.name, text.when, Answer::none};
-            return;
+            if (is_busy) return;
+            state_.recovery_question = RecoveryQuestion{text.name, text.when, Answer::none};
+            return window_.draw_again();
         }
         const Answer answer = state_.recovery_question->answer;
         if (answer == Answer::none) return;

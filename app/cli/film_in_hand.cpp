@@ -10,23 +10,27 @@ void FilmInHand::begin(std::unique_ptr<FilmJob> begun) {
     film_ = std::move(begun);
 }
 
-void FilmInHand::follow(Session& session, std::optional<FilmProgress>& progress) {
-    if (!film_) return progress.reset();
+bool FilmInHand::follow(Session& session, std::optional<FilmProgress>& progress) {
+    if (!film_) {
+        progress.reset();
+        return false;
+    }
     const bool is_given_up = progress && progress->is_given_up;
     if (is_given_up) film_->cancel();
     const bool has_ended = film_->update();
     progress = FilmProgress{film_->film(), film_->progress(), film_->share(), false};
-    if (!has_ended) return;
+    if (!has_ended) return false;
     const std::unique_ptr<FilmJob> film = std::move(film_);
     progress.reset();
     if (is_given_up)
-        session.tell(film->film() + " is given up");
+        session.tell("stopped the film " + film->film());
     else if (film->is_made())
-        session.tell(std::filesystem::absolute(film->film()).lexically_normal().string() + " is written");
+        session.tell("wrote " + std::filesystem::absolute(film->film()).lexically_normal().string());
     else if (film->has_frames())
         session.tell(film->said());
     else
         session.refuse(InputError(film->film(), {}, film->said()));
+    return true;
 }
 
 }  // namespace achilles

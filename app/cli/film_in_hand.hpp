@@ -15,8 +15,8 @@ class FilmInHand {
     // Throws InputError while another one is drawn.
     void begin(std::unique_ptr<FilmJob> begun);
     bool is_busy() const { return film_ != nullptr; }
-    // Tells how far it is, takes from there whether it is given up, and tells the session what became of it.
-    void follow(Session& session, std::optional<FilmProgress>& progress);
+    // Tells how far it is, takes from there whether it is given up, and tells the session what became of it: then true.
+    bool follow(Session& session, std::optional<FilmProgress>& progress);
 
  private:
     std::unique_ptr<FilmJob> film_;

@@ -30,7 +30,7 @@ void Session::perform(const command::Export& command) {
     if (library_.before_writing) library_.before_writing(command.file);
     const std::filesystem::path file(command.file);
     const std::string path = (file.is_absolute() ? file : library_.folder / file).lexically_normal().string();
-    notice_ = fmt::format("{} is written", path);
+    notice_ = "wrote " + path;
     if (!library_.exports) return;
     if (!is_film(command.file)) return take_away(*this, command);
     std::unique_ptr<FilmJob> film = begin_film(*this, command);

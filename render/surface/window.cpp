@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
 #include <cstdlib>
 #include <optional>
@@ -31,6 +32,9 @@ static_assert(key::escape == GLFW_KEY_ESCAPE && key::remove == GLFW_KEY_DELETE &
 constexpr double sleep_seconds = 0.5;
 // ImGui needs a few frames after an event before everything has settled.
 constexpr int settling_frames = 4;
+
+// By another thread: what it has made is new to the next frames.
+std::atomic<bool> was_woken = false;
 
 std::string& last_glfw_error() {
     static std::string text;
@@ -241,7 +245,7 @@ void Window::Implementation::wait() {
             glfwWaitEvents();
         unsettled = std::max(unsettled, 1);
     }
-    if (!events.empty()) unsettled = settling_frames;
+    if (was_woken.exchange(false) || !events.empty()) unsettled = settling_frames;
 }
 
 bool Window::Implementation::is_closing() {
@@ -301,7 +305,12 @@ void Window::keep_drawing(bool moving, double pause) {
     implementation_->pause = pause;
 }
 
-void Window::wake() { glfwPostEmptyEvent(); }
+void Window::draw_again() { implementation_->unsettled = settling_frames; }
+
+void Window::wake() {
+    was_woken = true;
+    glfwPostEmptyEvent();
+}
 
 void Window::restyle(double scale, bool dark) {
     implementation_->scale = scale;

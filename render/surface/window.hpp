@@ -26,7 +26,9 @@ class Window {
     // false: nothing moves by itself, so after a few frames the window sleeps until the user does something, or where
     // `pause` is positive so many seconds at most. true at first.
     void keep_drawing(bool moving, double pause = 0.0);
-    // Wakes a sleeping window; the only member that another thread may call.
+    // For a draw function that has changed what it shows after it drew it: some more frames follow, as after an event.
+    void draw_again();
+    // Wakes a sleeping window, which draws some frames; the only member that another thread may call.
     static void wake();
     // From the next frame on; `scale` comes on top of what the monitor asks for.
     void restyle(double scale, bool dark);

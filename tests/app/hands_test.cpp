@@ -238,7 +238,7 @@ TEST(Hand, takes_a_figure_away_and_is_told_what_cannot_be_written) {
     ask("menu Figure as SVG\u2026", file);
     hands.press(key::enter);
     EXPECT_EQ(hands.session.error(), "");
-    EXPECT_EQ(hands.session.notice(), file + " is written");
+    EXPECT_EQ(hands.session.notice(), "wrote " + file);
     EXPECT_EQ(test::content(file).rfind("<?xml", 0), 0U);
     // It is there already: Enter alone overwrites nothing.
     ask("menu Figure as SVG\u2026", file);

@@ -153,7 +153,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
     for (const char* name : {"a.svg", "a.png", "a.json", "a.csv", "a.journal"}) {
         session.apply(command::Export{in_folder(name), false});
         EXPECT_EQ(session.error(), "");
-        EXPECT_EQ(session.notice(), in_folder(name) + " is written");
+        EXPECT_EQ(session.notice(), "wrote " + in_folder(name));
         session.apply(command::Export{in_folder(name), false});
         EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
         session.apply(command::Export{in_folder(name), true});

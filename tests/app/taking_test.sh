@@ -4,7 +4,11 @@
 #     taking_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-mkdir "$folder/papers"
+mkdir "$folder/papers" "$folder/bin"
+# Another program stands for ffmpeg.
+printf '#!/bin/sh\nfor last; do :; done\ncase $last in */*) echo film > "$last" ;; esac\n' > "$folder/bin/ffmpeg"
+chmod +x "$folder/bin/ffmpeg"
+export PATH=$folder/bin:$PATH
 
 open_window "" ball_on_sine --record "$folder/record"
 settle
@@ -36,6 +40,14 @@ xdotool sleep 0.3 key Return
 recorded "^export $folder/papers/a.svg$" "the dialog does not complete a folder and write into it: $(cat "$folder/record")"
 await test -s "$folder/papers/a.svg" || fail "nothing is written"
 recorded '^hide export$' "the dialog stays"
+
+# A film: when it is there that is seen, without a key or a move of the mouse.
+xdotool key ctrl+shift+p sleep 0.5
+xdotool type --delay 20 "export $folder/papers/b.mp4 fps 1 pixels 320"
+xdotool sleep 0.2 key Return
+recorded "^export $folder/papers/b.mp4" "the palette exports no film"
+await test -s "$folder/papers/b.mp4" || fail "no film is made"
+expect_drawn "the end of a film is not drawn before the next key"
 
 # A mechanism on paper, dropped: its session is there again.
 "$build/achilles" figure impact_oscillator --mechanism --at 3 --width-mm 85 --out "$folder/mechanism.svg"

@@ -76,3 +76,11 @@ settle() {
     done
     fail "the window does not come to rest"
 }
+# What the window shows is all that there is to see: a key that does nothing draws it anew, and nothing changes.
+expect_drawn() {
+    settle
+    cp "$folder/Xvfb_screen0" "$folder/asleep"
+    xdotool key shift sleep 0.5
+    settle
+    cmp -s "$folder/Xvfb_screen0" "$folder/asleep" || fail "$1"
+}

@@ -286,7 +286,7 @@ TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {
     session.apply(command::Export{"mine.svg", false});
     std::filesystem::current_path(here);
     EXPECT_EQ(session.error(), "");
-    EXPECT_EQ(session.notice(), (folder.path() / "mine.svg").string() + " is written");
+    EXPECT_EQ(session.notice(), "wrote " + (folder.path() / "mine.svg").string());
 
     Hands hands("ball_on_sine");
     hands.click("menu File");

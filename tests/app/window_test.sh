@@ -37,11 +37,21 @@ settle
 xdotool key --window "$window" space
 await grep -q '^play' "$folder/journal" || xdotool key space
 await grep -q '^play' "$folder/journal" || fail "space does not play"
+xdotool key --window "$window" space
+await grep -q '^pause' "$folder/journal" || fail "space does not pause"
 
 # The editor: a comment typed at the end of the text, saved to a file that the dialog asks for.
 xdotool key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
 xdotool type --delay 40 "# by hand"
 await grep -q '^text .*# by hand"$' "$folder/journal" || fail "what is typed does not take effect"
+# Its effect is seen without another key or a move of the mouse: the message about what cannot be read.
+xdotool key Return
+xdotool type --delay 40 "[["
+await grep -q '^text .*# by hand.*\[\["$' "$folder/journal" || fail "what is typed on the next line does not take effect"
+expect_drawn "what a text leads to is not drawn before the next key"
+xdotool key BackSpace sleep 0.1 key BackSpace sleep 0.1 key BackSpace
+by_hand_again() { [ "$(grep -c '^text .*# by hand"$' "$folder/journal")" -ge 2 ]; }
+await by_hand_again || fail "what is taken back does not take effect"
 xdotool key ctrl+s sleep 0.5 key ctrl+a sleep 0.2
 xdotool type --delay 40 "$folder/mine.toml"
 xdotool sleep 0.3 key Return
