@@ -32,7 +32,7 @@ void menu(const char* name, PanelState& state, const Content& content) {
     remember(state, std::string("menu ") + name);
     if (!open) return;
     content();
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndMenu();
 }
 
@@ -168,15 +168,15 @@ void theme_switch(const Session& session, PanelState& state, Commands& commands)
 
 void use_view_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (is_pressed(key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
-    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
+    if (takes_key(state, key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
+    if (!io.KeyCtrl || io.KeyAlt) return;
     for (const Shown& panel : panels)
-        if (is_pressed(panel.key, false))
+        if (takes_key(state, panel.key, false))
             commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
-    if (is_pressed('D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
-    if (is_pressed('=', false)) enlarge(session, 1, commands);
-    if (is_pressed('-', false)) enlarge(session, -1, commands);
-    if (is_pressed('0', false)) enlarge(session, 0, commands);
+    if (takes_key(state, 'D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+    if (takes_key(state, '=', false)) enlarge(session, 1, commands);
+    if (takes_key(state, '-', false)) enlarge(session, -1, commands);
+    if (takes_key(state, '0', false)) enlarge(session, 0, commands);
 }
 
 void show_bar(const Session& session, PanelState& state, Commands& commands) {

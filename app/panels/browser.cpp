@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -123,8 +124,10 @@ int take_field_keys(ImGuiInputTextCallbackData* data) {
         data->DeleteChars(0, data->BufTextLen);
         data->InsertChars(0, browser.line.c_str());
         data->CursorPos = data->SelectionStart = data->SelectionEnd = data->BufTextLen;
-        browser.rewrites = browser.focuses = false;
+        browser.rewrites = browser.focuses = browser.selects = false;
     }
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways && std::exchange(browser.selects, false))
+        data->SelectAll();
     return 0;
 }
 
@@ -148,14 +151,19 @@ void list(BrowserState& browser, const std::string& path, const std::vector<std:
     browser.chosen = std::min(browser.chosen, static_cast<int>(browser.rows.size()) - 1);
 }
 
-void choose(BrowserState& browser) {
+// The keys of the field, and where no control of the dialog has keys or letters they lead back to it.
+void choose(PanelState& state) {
+    BrowserState& browser = state.browser;
     const int count = static_cast<int>(browser.rows.size()), before = browser.chosen;
-    if (count == 0) return;
-    if (is_pressed(key::down)) browser.chosen = std::min(browser.chosen + 1, count - 1);
-    if (is_pressed(key::up)) browser.chosen = std::max(browser.chosen - 1, -1);
-    if (is_pressed(key::page_down)) browser.chosen = std::min(browser.chosen + shown_rows, count - 1);
-    if (is_pressed(key::page_up)) browser.chosen = std::max(browser.chosen - shown_rows, 0);
-    browser.scrolls = browser.scrolls || browser.chosen != before;
+    const bool is_free = !has_keys(state) && !ImGui::GetIO().WantTextInput;
+    if (count == 0 || !(state.browser_has_field || is_free)) return;
+    if (takes_key(state, key::down)) browser.chosen = std::min(browser.chosen + 1, count - 1);
+    if (takes_key(state, key::up)) browser.chosen = std::max(browser.chosen - 1, -1);
+    if (takes_key(state, key::page_down)) browser.chosen = std::min(browser.chosen + shown_rows, count - 1);
+    if (takes_key(state, key::page_up)) browser.chosen = std::max(browser.chosen - shown_rows, 0);
+    if (browser.chosen == before) return;
+    browser.scrolls = true;
+    browser.focuses = !state.browser_has_field;
 }
 
 // The row that was clicked; -1: none.
@@ -190,7 +198,12 @@ int show_rows(BrowserState& browser, PanelState& state) {
 bool path_line(PanelState& state, bool focuses) {
     BrowserState& browser = state.browser;
     std::string& path = state.editor.path;
-    if (ImGui::IsWindowAppearing()) browser.line = path;  // what is proposed
+    if (ImGui::IsWindowAppearing()) {
+        browser.line = path;  // what is proposed
+        browser.selects = true;
+        browser.rewrites = false;
+        browser.chosen = -1;  // by another dialog
+    }
     if (focuses || browser.focuses) ImGui::SetKeyboardFocusHere();
     // Where the field has not the hand, its text is ours; when it gets it, the cursor goes behind that.
     if (browser.rewrites && !state.browser_has_field) path = browser.line;
@@ -210,7 +223,7 @@ Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool 
     const std::string& path = state.editor.path;
     if (!state.reads_folders) return {};
     list(browser, path, endings);
-    choose(browser);
+    choose(state);
     const int clicked = show_rows(browser, state), taken = clicked >= 0 ? clicked : entered ? browser.chosen : -1;
     std::error_code ignored;
     if (taken < 0) {

@@ -47,7 +47,8 @@ struct BrowserState {
     bool scrolls = false;   // to the chosen row
     std::string line;       // that is to stand in the field, where `rewrites`
     bool rewrites = false, focuses = false;
-    bool tab = false;  // was pressed, and there was nothing to complete
+    bool selects = false;  // what is proposed is to be selected, all of it
+    bool tab = false;      // was pressed, and there was nothing to complete
 };
 
 }  // namespace achilles

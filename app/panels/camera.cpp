@@ -79,7 +79,7 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
             else
                 commands.emplace_back(command::Camera{std::string(to_text(camera))});
         }
-        close_by_escape();
+        close_by_escape(state);
         ImGui::EndPopup();
     }
     return x;

@@ -44,7 +44,7 @@ void choose_system(const Session& session, PanelState& state, Commands& commands
                 request(session, state, command::Open{entry.name}, commands);
             remember(state, "open " + entry.name);
         }
-        close_by_escape();
+        close_by_escape(state);
         ImGui::EndCombo();
     }
 }
@@ -300,31 +300,19 @@ std::size_t lines_that_fit(std::size_t lines) {
     return std::min(lines, static_cast<std::size_t>(room));
 }
 
-// All that is not as the file has it, in one place: what it is, what the file has; a click puts it back. Where there is no room
-// for all the others have their marks, and "reset all".
-void changes(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    std::vector<Difference> all = differences(session.description(), session.run(), file);
-    all.erase(all.begin() + static_cast<std::ptrdiff_t>(lines_that_fit(all.size())), all.end());
-    if (all.empty()) return;
-    section("Differs from the file");
-    // The tail of an italic y reaches out to the left.
-    ImDrawList* const list = ImGui::GetWindowDrawList();
-    const ImVec2 low = list->GetClipRectMin();
-    list->PushClipRect({low.x - units(2.0F), low.y}, list->GetClipRectMax());
-    for (const Difference& difference : all) {
-        const ImVec2 at = ImGui::GetCursorScreenPos();
-        const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
-        if (ImGui::InvisibleButton(("put back " + difference.name).c_str(), {width, line}))
-            commands.push_back(difference.back);
-        remember(state, "put back " + difference.name);
-        const bool is_hovered = ImGui::IsItemHovered();
-        tooltip(fmt::format("{}; the file has {}. A click puts it back", difference.told(), difference.other));
-        const std::string file_has = "file: " + difference.other;
-        const float other = std::min(std::ceil(width_of(file_has)), 0.5F * width);
-        cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
-        cell({std::floor(at.x + width - other), at.y}, file_has, other, is_hovered ? text_color() : faint_color());
-    }
-    list->PopClipRect();
+// One difference from the file on a line: what it is, what the file has. A click puts it back.
+void show_difference(const Difference& difference, const std::string& of, PanelState& state, Commands& commands) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
+    if (ImGui::InvisibleButton(("put back " + difference.name).c_str(), {width, line}))
+        commands.push_back(difference.back);
+    remember(state, "put back " + difference.name);
+    const bool is_hovered = ImGui::IsItemHovered();
+    tooltip(fmt::format("{}; the {} has {}. A click puts it back", difference.told(), of, difference.other));
+    const std::string file_has = of + ": " + difference.other;
+    const float other = std::min(std::ceil(width_of(file_has)), 0.5F * width);
+    cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
+    cell({std::floor(at.x + width - other), at.y}, file_has, other, is_hovered ? text_color() : faint_color());
 }
 
 void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {
@@ -348,6 +336,20 @@ void show_system(const Session& session, PanelState& state, Commands& commands) 
     tooltip(shown ? "back to the sliders (Ctrl+E)" : "edit the text of the system (Ctrl+E)");
 }
 
+void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,
+                  Commands& commands) {
+    const std::vector<Difference> all = differences(session.description(), session.run(), session.file_run());
+    const std::size_t count = std::min(lines, all.size());
+    if (count == 0) return;
+    section(("Differs from the " + of).c_str());
+    // The tail of an italic y reaches out to the left.
+    ImDrawList* const list = ImGui::GetWindowDrawList();
+    const ImVec2 low = list->GetClipRectMin();
+    list->PushClipRect({low.x - units(2.0F), low.y}, list->GetClipRectMax());
+    for (std::size_t i = 0; i < count; ++i) show_difference(all[i], of, state, commands);
+    list->PopClipRect();
+}
+
 void show_controls(const Session& session, PanelState& state, Commands& commands) {
     describe_system(session);
     // Rows close enough that most systems need no scrolling.
@@ -365,7 +367,9 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
     end_time(session, file, state, commands);
     accuracy(session, file, state, commands);
     show_runs(session, state, commands);
-    changes(session, file, state, commands);
+    // Where there is no room for all the others have their marks, and "reset all".
+    show_changes(session, "file", lines_that_fit(differences(session.description(), session.run(), file).size()), state,
+                 commands);
     ImGui::PopStyleVar();
 }
 

@@ -82,7 +82,7 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
         "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
         "Enter takes it");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 

@@ -54,9 +54,9 @@ Verdict to_save(const Document& document, const std::string& path) {
     return {"There is a file of this name. Overwrite it?", true, true};
 }
 
-Verdict to_take_away(const Session& session, const PanelState& state, const std::string& path) {
+Verdict to_take_away(const Session& session, const PanelState& state, const std::string& typed) {
     const TakeAwayForm& form = state.take_away;
-    const std::string ending = ending_of(path);
+    const std::string path = take_away_file(form, typed), ending = ending_of(path);
     const bool is_picture = !ending_of_picture(path).empty(),
                is_data = ending == "json" || ending == "csv" || ending == "journal";
     const auto refuse = [](const std::string& why) { return Verdict{why, false, false}; };
@@ -70,10 +70,14 @@ Verdict to_take_away(const Session& session, const PanelState& state, const std:
         return refuse("end it in .svg, .png, .pdf, .json, .csv or .journal");
     if (ending == "pdf" && find_program("rsvg-convert").empty())
         return refuse("a PDF is written by rsvg-convert (librsvg2-bin), which is not installed");
-    const std::string note = is_data ? "" : take_away_note(session, state);
-    if (note.starts_with("! ")) return refuse(note.substr(2));
+    const TakeAwayNote note = is_data ? TakeAwayNote() : take_away_note(session, form);
+    if (note.is_wrong) return refuse(note.text);
     // A picture of the dialog knows no folder.
-    return state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
+    Verdict verdict = state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
+    // Without ffmpeg there is no film, but its pictures.
+    if (is_film(path) && verdict.is_good && !verdict.asks && find_program("ffmpeg").empty())
+        verdict.note = "goes to " + frames_folder(verdict.note.substr(std::string_view("goes to ").size())).string();
+    return verdict;
 }
 
 // "contact force" as a part of a file's name.
@@ -129,7 +133,7 @@ void give_up(EditorState& editor) {
     close(editor);
 }
 
-bool is_escape() { return is_pressed(key::escape, false); }
+bool is_escape(const PanelState& state) { return takes_key(state, key::escape, false); }
 
 const std::vector<std::string> systems_and_sessions{".toml", ".journal", ".svg", ".png", ".pdf"};
 const std::vector<std::string> taken_away{".svg", ".png", ".pdf", ".mp4", ".gif", ".json", ".csv", ".journal"};
@@ -147,7 +151,7 @@ bool path_chosen(const char* action, const std::vector<std::string>& endings, Pa
     ImGui::PopStyleColor();
     const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
     ImGui::SameLine();
-    if (button("Cancel", state) || is_escape()) give_up(editor);
+    if (button("Cancel", state) || is_escape(state)) give_up(editor);
     // Enter alone overwrites nothing, and what goes to a folder or a row only goes there.
     const bool goes = entered && !verdict.asks && !browsed.has_taken;
     const bool chosen = verdict.is_good && (pressed || goes || (can_choose && browsed.is_chosen));
@@ -178,15 +182,15 @@ void save_dialog(PanelState& state, const Session& session, Commands& commands) 
 void take_away_dialog(PanelState& state, const Session& session, Commands& commands) {
     if (session.under_way() != nullptr) {
         ImGui::TextDisabled("the run is still under way");
-        if (button("Cancel", state) || is_escape()) give_up(state.editor);
+        if (button("Cancel", state) || is_escape(state)) give_up(state.editor);
         return;
     }
     show_take_away_form(session, state);
     const auto judge = [&](const std::string& path) { return to_take_away(session, state, path); };
     if (!path_chosen("Export", taken_away, state, judge)) return;
-    const std::string file = expanded(state.editor.path);
+    const std::string file = take_away_file(state.take_away, expanded(state.editor.path));
     close(state.editor);
-    commands.emplace_back(take_away_command(state, file, judge(file).asks));
+    commands.emplace_back(take_away_command(state.take_away, file, judge(file).asks));
 }
 
 // Nothing keeps what waited any longer.
@@ -215,7 +219,7 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
         editor.known = editor.text;  // nor is what was typed last
     }
     ImGui::SameLine();
-    if (button("Cancel", state) || is_escape()) give_up(editor);
+    if (button("Cancel", state) || is_escape(state)) give_up(editor);
 }
 
 // A journal or a picture may come from anybody: nothing is allowed by Enter.
@@ -232,7 +236,7 @@ void file_dialog(PanelState& state) {
     ImGui::Spacing();
     if (button("Allow", state)) question.answer = true;
     ImGui::SameLine();
-    if (button("Refuse", state) || is_escape()) question.answer = false;
+    if (button("Refuse", state) || is_escape(state)) question.answer = false;
     if (question.answer) ImGui::CloseCurrentPopup();
 }
 
@@ -244,12 +248,12 @@ void recovery_dialog(PanelState& state) {
         fmt::format("The text of {} was not saved when its window ended ({}).", question.name, question.when).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    const bool entered = is_pressed(key::enter, false);
+    const bool entered = takes_key(state, key::enter, false);
     if (button("Recover", state) || entered) question.answer = Answer::recover;
     ImGui::SameLine();
     if (button("Discard", state)) question.answer = Answer::discard;
     ImGui::SameLine();
-    if (button("Later", state) || is_escape()) question.answer = Answer::later;
+    if (button("Later", state) || is_escape(state)) question.answer = Answer::later;
     if (question.answer != Answer::none) ImGui::CloseCurrentPopup();
 }
 
@@ -276,10 +280,10 @@ void go_on_if_saved(const Session& session, EditorState& editor, Commands& comma
 void take_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
-    if (is_pressed('S', false)) save_or_ask(session, state, commands);
-    if (is_pressed('O', false)) ask_to_open(state);
-    if (is_pressed('N', false)) request(session, state, command::New{}, commands);
-    if (is_pressed('E', false)) toggle_editor(session, state, commands);
+    if (takes_key(state, 'S', false)) save_or_ask(session, state, commands);
+    if (takes_key(state, 'O', false)) ask_to_open(state);
+    if (takes_key(state, 'N', false)) request(session, state, command::New{}, commands);
+    if (takes_key(state, 'E', false)) toggle_editor(session, state, commands);
 }
 
 }  // namespace
@@ -302,9 +306,11 @@ void ask_to_take_away(const Session& session, PanelState& state, const std::stri
         const std::string title = as_name(session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
         stem += "-" + (title.empty() ? fmt::format("plot_{}", plot) : title);
     }
+    const std::string dotted = "." + ending, name = stem + dotted;
     state.take_away.plot = plot;
-    state.take_away.what = is_film(ending) ? TakeAwayForm::What::film : TakeAwayForm::What::plots;
-    state.editor.path = state.reads_folders ? free_name(stem, ending) : stem + ending;
+    state.take_away.what = is_film(name) ? TakeAwayForm::What::film : TakeAwayForm::What::plots;
+    state.take_away.ending = ending;
+    state.editor.path = state.reads_folders ? free_name(stem, dotted) : name;
     state.editor.asking = EditorState::Asking::take_away;
 }
 
@@ -335,7 +341,7 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     take_keys(session, state, commands);
     using Asking = EditorState::Asking;
     const bool wants_export = session.scene().shows("export");
-    if (wants_export && editor.asking == Asking::nothing) ask_to_take_away(session, state, ".svg");
+    if (wants_export && editor.asking == Asking::nothing) ask_to_take_away(session, state, "svg");
     const bool was_open = editor.asking == Asking::take_away;
     constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
                                                          {Asking::save, "Save the system"},

@@ -135,7 +135,7 @@ void show_spreads(PanelState& state, Commands& commands) {
         if (ImGui::MenuItem(name.c_str())) commands.emplace_back(command::Prove{width, {}});
         remember(state, fmt::format("prove {:g}", width));
     }
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 
@@ -185,7 +185,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     remember(state, "impacts");
     tooltip("list every impact; without, those in a row are one line, which a click opens");
     ImGui::SameLine(right - width - units(16.0F) - copy_width);
-    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && is_pressed('C', false);
+    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && takes_key(state, 'C', false);
     if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
     remember(state, "copy events");
     tooltip("the chosen event, or all, as a table with every digit, for a spreadsheet (Ctrl+C)");

@@ -110,13 +110,14 @@ void show_card(const Session& session, const std::string& message) {
     else
         show_message(message, width);
     ImGui::EndGroup();
+    if (!is_good && message[0] == '/') tooltip(message);  // with the folder of its file
 }
 
 // Ctrl+Z and Ctrl+Shift+Z or Ctrl+Y, unless a text field has them.
-void use_keys(const Session& session, Commands& commands) {
+void use_keys(const Session& session, const PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput || !io.KeyCtrl) return;
-    const bool z = is_pressed('Z'), again = is_pressed('Y') || (z && io.KeyShift);
+    const bool z = takes_key(state, 'Z'), again = takes_key(state, 'Y') || (z && io.KeyShift);
     if (again && session.can_redo()) commands.emplace_back(command::Redo{});
     if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
 }
@@ -137,7 +138,9 @@ void begin_change(PanelState& state, Commands& commands) {
 }
 
 // For the panels; whatever stands before them takes Escape for itself.
-bool escape_pressed() { return is_pressed(key::escape, false) && !is_covered() && !ImGui::GetIO().WantTextInput; }
+bool escape_pressed(const PanelState& state) {
+    return takes_key(state, key::escape, false) && !ImGui::GetIO().WantTextInput;
+}
 
 // A frame around the panel that a tour's words are about.
 void show_highlight(const std::string& panel, const Arrangement& parts) {
@@ -168,7 +171,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     use_theme(session.theme().dark);
     state.width = double{ImGui::GetIO().DisplaySize.x}, state.height = double{ImGui::GetIO().DisplaySize.y};
     begin_change(state, commands);
-    state.escape = escape_pressed();
+    state.escape = escape_pressed(state);
     begin_focus(state);
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
@@ -222,11 +225,12 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
              [&] { show_splitter(splitter, state, commands); });
     show_highlight(session.scene().highlight(), parts);
     use_focus(state);
-    use_keys(session, commands);
+    use_keys(session, state, commands);
     use_view_keys(session, state, commands);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);
+    state.focus.front = front_popup();
     return commands;
 }
 

@@ -1,6 +1,6 @@
 #include "panels/focus.hpp"
 
-#include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
@@ -100,8 +100,14 @@ int neighbour(const std::vector<Stop>& stops, const Stop& from, int dx, int dy) 
 
 bool has_keys(const PanelState& state) { return !state.focus.at.empty(); }
 
+bool is_in_front(const PanelState& state) { return popup_of_window() == state.focus.front; }
+
+bool takes_key(const PanelState& state, int code, bool repeat) {
+    return is_in_front(state) && is_pressed(code, repeat);
+}
+
 bool owns_keys(PanelState& state, const std::string& name) {
-    if (state.focus.at != name || ImGui::GetIO().WantTextInput) return false;
+    if (state.focus.at != name || ImGui::GetIO().WantTextInput || !is_in_front(state)) return false;
     state.focus.is_owned = true;
     return true;
 }
@@ -122,8 +128,8 @@ void begin_focus(PanelState& state) {
     focus.is_owned = false;
     const bool in_menu = is_covered() && front_dialog() == 0;
     walk_menus_by_keys(in_menu && !ImGui::GetIO().WantTextInput);
-    // What stood before the panels has this Escape.
-    if (std::exchange(focus.was_covered, is_covered()) && !is_covered()) state.escape = false;
+    // ImGui's own Tab would give letters to a field while the ring goes to another control.
+    if (is_pressed(key::tab) && !ImGui::GetIO().WantTextInput) ImGui::NavMoveRequestCancel();
     const auto& clicked = ImGui::GetIO().MouseClicked;
     if (clicked[ImGuiMouseButton_Left] || clicked[ImGuiMouseButton_Right]) focus.at.clear();
     if (!focus.at.empty() && take_escape(state)) focus.at.clear();
@@ -134,15 +140,17 @@ void use_focus(PanelState& state) {
     if (is_covered() && front_dialog() == 0) return;  // a menu has them
     const std::vector<Stop> stops = reachable(focus);
     const ImGuiIO& io = ImGui::GetIO();
+    // What has opened or closed in this frame was not there for its keys.
+    const bool is_new = focus.front != front_popup();
     // The palette and a path complete by Tab; in the text of a system it is a letter.
-    const bool is_taken = io.WantTextInput && !state.browser.tab;
+    const bool is_taken = is_new || (io.WantTextInput && !state.browser.tab);
     if (is_pressed(key::tab) && !io.KeyCtrl && !io.KeyAlt && !is_taken) tab(state, stops);
     state.browser.tab = false;
     const int at = index_of(stops, focus.at);
     if (at < 0) return focus.at.clear();
     const Stop& here = stops[static_cast<std::size_t>(at)];
     paint_ring(here.area);
-    if (io.WantTextInput || focus.is_owned || io.KeyCtrl || io.KeyAlt) return;
+    if (is_new || io.WantTextInput || focus.is_owned || io.KeyCtrl || io.KeyAlt) return;
     if (is_pressed(key::enter, false) || is_pressed(key::keypad_enter, false) || is_pressed(' ', false))
         press_item(here.id, begins(here.name, takes_letters));
     arrows(focus, stops, here);

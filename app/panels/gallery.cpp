@@ -69,8 +69,8 @@ void show_cards(const Session& session, PanelState& state, Commands& commands) {
 void show_gallery(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("gallery");
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.KeyCtrl && !io.KeyAlt && is_pressed('G', false) && (shown || !is_covered()))
-        commands.emplace_back(command::Show{"gallery", !shown});
+    const auto is_shortcut = [&] { return io.KeyCtrl && !io.KeyAlt && takes_key(state, 'G', false); };
+    if (!shown && is_shortcut()) commands.emplace_back(command::Show{"gallery", true});
     if (shown && !is_covered()) {
         ImGui::OpenPopup(title);
         state.focus.at = "gallery " + session.system();  // the keys walk from here
@@ -86,7 +86,8 @@ void show_gallery(const Session& session, PanelState& state, Commands& commands)
             ImGui::CloseCurrentPopup();
         else
             show_cards(session, state, commands);
-        if (shown && is_pressed(key::escape, false)) commands.emplace_back(command::Show{"gallery", false});
+        if (shown && (takes_key(state, key::escape, false) || is_shortcut()))
+            commands.emplace_back(command::Show{"gallery", false});
         ImGui::EndPopup();
     }
     ImGui::PopStyleVar();

@@ -98,7 +98,7 @@ void column(const char* name, const ImVec2& size, const Content& content) {
 
 void show_help(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("help");
-    if (is_pressed(key::f1, false)) commands.emplace_back(command::Show{"help", !shown});
+    if (!shown && takes_key(state, key::f1, false)) commands.emplace_back(command::Show{"help", true});
     if (shown && !is_covered()) ImGui::OpenPopup(title);
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({std::floor(0.5F * all.x), std::floor(0.5F * all.y)}, ImGuiCond_Always, {0.5F, 0.5F});
@@ -113,8 +113,8 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     column("keys", {units(keys_width), height}, show_keys);
     ImGui::SameLine(0.0F, units(24.0F));
     column("words", {0.0F, height}, show_words);
-    if (ImGui::Button("Close", {units(96.0F), 0.0F}) || is_pressed(key::escape, false))
-        commands.emplace_back(command::Show{"help", false});
+    const bool is_closed = takes_key(state, key::escape, false) || takes_key(state, key::f1, false);
+    if (ImGui::Button("Close", {units(96.0F), 0.0F}) || is_closed) commands.emplace_back(command::Show{"help", false});
     remember(state, "Close the help");
     ImGui::EndPopup();
 }

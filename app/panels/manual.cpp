@@ -26,7 +26,7 @@ void show_page(PanelState& state) {
     ImGui::TextUnformatted(state.manual_text.data(), state.manual_text.data() + state.manual_text.size());
     ImGui::PopFont();
     ImGui::EndChild();
-    const bool escape = is_pressed(key::escape, false);
+    const bool escape = takes_key(state, key::escape, false);
     if (ImGui::Button("Close") || escape) ImGui::CloseCurrentPopup();
     remember(state, "Close the manual");
     ImGui::EndPopup();

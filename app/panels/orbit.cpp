@@ -77,7 +77,7 @@ void show_from(const Session& session, OrbitView& view, PanelState& state) {
     choice("from the start", "start", "the search begins where the present run does");
     choice("from the end", "end", "where the present run ends: what attracts has been nearly reached there");
     if (session.description().orbit) choice("from the file's guess", "", "what [orbit] of the system's file says");
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 
@@ -91,7 +91,7 @@ void show_closing(const Session& session, OrbitView& view, PanelState& state) {
         "a coordinate that has moved on by so much after a period, as {}=2*pi. Empty: as the file has it", first));
     view.asked.shifts.clear();
     if (!view.shift.empty()) view.asked.shifts.push_back(view.shift);
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 
@@ -126,7 +126,7 @@ void show_along(const Session& session, OrbitView& view, PanelState& state) {
         text_row("to", "orbit along to", view.high, 120.0F, state);
         take();
     }
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 

@@ -88,11 +88,12 @@ void take(const Found& found, const Session& session, PanelState& state, Command
     }
 }
 
-void choose(PaletteState& palette, int count) {
-    if (is_pressed(key::down)) ++palette.chosen;
-    if (is_pressed(key::up)) --palette.chosen;
-    if (is_pressed(key::page_down)) palette.chosen = std::min(palette.chosen + most_rows, count - 1);
-    if (is_pressed(key::page_up)) palette.chosen = std::max(palette.chosen - most_rows, 0);
+void choose(PanelState& state, int count) {
+    PaletteState& palette = state.palette;
+    if (takes_key(state, key::down)) ++palette.chosen;
+    if (takes_key(state, key::up)) --palette.chosen;
+    if (takes_key(state, key::page_down)) palette.chosen = std::min(palette.chosen + most_rows, count - 1);
+    if (takes_key(state, key::page_up)) palette.chosen = std::max(palette.chosen - most_rows, 0);
     if (count > 0) palette.chosen = (palette.chosen + count) % count;
 }
 
@@ -154,6 +155,11 @@ void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
     paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
 }
 
+bool is_shortcut(const PanelState& state) {
+    const ImGuiIO& io = ImGui::GetIO();
+    return io.KeyCtrl && io.KeyShift && takes_key(state, 'P', false);
+}
+
 void show_content(const Session& session, PanelState& state, Commands& commands) {
     PaletteState& palette = state.palette;
     if (ImGui::IsWindowAppearing()) {
@@ -170,7 +176,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
     }
     const bool entered = show_line(state);
     const std::vector<Found> found = find_commands(palette.text, completions(session, state));
-    choose(palette, static_cast<int>(found.size()));
+    choose(state, static_cast<int>(found.size()));
     const int clicked = show_rows(found, state);
     ImGui::Separator();
     show_answer(found, palette);
@@ -183,7 +189,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
         take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
     else if (entered)
         run(palette.text, session, state, commands);
-    else if (is_pressed(key::escape, false))
+    else if (takes_key(state, key::escape, false) || is_shortcut(state))
         commands.emplace_back(command::Show{"palette", false});
 }
 
@@ -192,7 +198,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
 void show_palette(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("palette");
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.KeyCtrl && io.KeyShift && is_pressed('P', false)) commands.emplace_back(command::Show{"palette", !shown});
+    if (!shown && is_shortcut(state)) commands.emplace_back(command::Show{"palette", true});
     if (shown && !is_covered()) ImGui::OpenPopup(title);
     const float width = std::min(units(wide), io.DisplaySize.x - units(24.0F));
     ImGui::SetNextWindowPos({std::floor(0.5F * (io.DisplaySize.x - width)), std::floor(0.1F * io.DisplaySize.y)});

@@ -28,9 +28,12 @@ struct SystemEntry {
 // The text as the hand types it, until it rests and the text becomes a command; and what is asked about files.
 struct EditorState {
     std::string text, known;  // as typed; as the session has it
+    std::string document;     // its name
     int revision = 0;         // counts the texts that came from elsewhere
+    int shown_revision = -1;  // in the last frame
     double resting = 0.0;     // s since the last letter
-    int go_to = 0;            // a line to scroll to; 0: none
+    int go_to = 0;            // a line that is to be seen; 0: any
+    float scroll = 0.0F;      // of the last frame: how many pixels of the text are above what is seen
     float height = 0.0F;      // of the text on the screen, pixels
     bool is_active = false;   // letters go here
 
@@ -62,9 +65,11 @@ struct RecoveryQuestion {
 struct TakeAwayForm {
     int plot = 0;  // from 1; 0: all of them
     enum class What { plots, mechanism, film } what = What::plots;
-    double width = 0.0, height = 0.0, font = 8.0, dpi = 300.0;  // mm, pt; a width of 0: 1200 x 800 pixels
-    double fps = 30.0, speed = 0.0;                             // of a film; 0: as the player's
-    int pixels = 1280;                                          // its width
+    std::string ending = "svg";                                  // of the file, also where its path has none yet
+    bool on_paper = false;                                       // measured in mm; else 1200 x 800 pixels
+    double width = 85.0, height = 0.0, font = 8.0, dpi = 300.0;  // mm, pt; a height of 0: what fits the plots
+    double fps = 30.0, speed = 0.0;                              // of a film; a speed of 0: the player's
+    int pixels = 1280;                                           // its width
     bool dark = false;
 };
 
@@ -254,6 +259,10 @@ void use_view_keys(const Session& session, PanelState& state, Commands& commands
 void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
+// What the run has otherwise than the system's file or text (`of`), at most so many lines, in the order of the controls; a click
+// puts it back. Nothing where nothing differs.
+void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,
+                  Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);
 // What can be taken away, and the tours: lines of a menu.
 void show_take_away_items(const Session& session, PanelState& state, Commands& commands);
@@ -278,8 +287,14 @@ struct Browsed {
 Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool entered);
 // What is taken away and how large, above the path; below it what will be written. While the scene shows "export", too.
 void show_take_away_form(const Session& session, PanelState& state);
-std::string take_away_note(const Session& session, const PanelState& state);
-command::Export take_away_command(const PanelState& state, const std::string& file, bool overwrite);
+struct TakeAwayNote {
+    std::string text;
+    bool is_wrong = false;  // nothing can be written so
+};
+TakeAwayNote take_away_note(const Session& session, const TakeAwayForm& form);
+command::Export take_away_command(const TakeAwayForm& form, const std::string& file, bool overwrite);
+// The file that is written: the path, with the form's ending where it has none.
+std::string take_away_file(const TakeAwayForm& form, const std::string& path);
 // A film on its way.
 void show_film(PanelState& state);
 // The systems in pictures (Ctrl+G), above everything else, while the scene shows "gallery".
@@ -364,6 +379,7 @@ bool request_close(const Session& session, PanelState& state);
 // Begin to ask for a path. Saving asks where the text has no file yet.
 void ask_to_open(PanelState& state);
 void ask_to_save(const Session& session, PanelState& state);
+// `ending`: "svg", as ending_of() has it.
 void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot = 0);
 void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 

@@ -62,7 +62,7 @@ void show_menu(const Session& session, PanelState& state, Commands& commands) {
     if (typed) commands.emplace_back(command::ShowPlane{plane.x, plane.y});
     plane.was_entered = typed;
     if (was_entered && !plane.is_wrong) ImGui::CloseCurrentPopup();
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 

@@ -145,11 +145,11 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     }
     ImGui::Separator();
     if (ImGui::MenuItem("Save figure\u2026", nullptr, false, session.under_way() == nullptr))
-        ask_to_take_away(session, state, ".svg", number);
+        ask_to_take_away(session, state, "svg", number);
     remember(state, "menu Save figure\u2026");
     tooltip("this plot alone, for print: SVG, or PNG or PDF by the ending of the name");
     if (was_entered && !menu.is_wrong) ImGui::CloseCurrentPopup();
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 

@@ -263,7 +263,7 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
     show_field(slider, state, width);
     const bool is_entered = ImGui::IsItemDeactivated(), is_active = ImGui::IsItemActive();
     if (ImGui::IsItemEdited()) typed.wrong.clear();
-    const bool gives_up = !is_active && is_pressed(key::escape);
+    const bool gives_up = !is_active && takes_key(state, key::escape);
     if (gives_up || (is_entered && typed.text == typed.as_it_was)) {
         typed.id.clear();
         return false;

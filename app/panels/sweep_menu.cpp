@@ -113,7 +113,7 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
             commands.emplace_back(showing(sweep, description));
         if (!session.error().empty()) show_message(session.error(), units(240.0F));
     }
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 
@@ -171,7 +171,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     ImGui::Separator();
     show_moments(sweep, session, state, commands);
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndPopup();
 }
 

@@ -43,13 +43,13 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
         const char *name, *ending, *about;
     };
     constexpr Kind kinds[] = {
-        {"Film as MP4\u2026", ".mp4",
+        {"Film as MP4\u2026", "mp4",
          "the mechanism in motion beside the plots; joined by ffmpeg, where it is installed"},
-        {"Figure as SVG\u2026", ".svg", "the plots for print, with their origin: achilles reproduce makes them again"},
-        {"Figure as PNG\u2026", ".png", "the same in pixels"},
-        {"Run as JSON\u2026", ".json", "phases, events and certificates"},
-        {"Run as CSV\u2026", ".csv", "a row an instant"},
-        {"Session as journal\u2026", ".journal", "the commands that lead here, to be replayed anywhere"}};
+        {"Figure as SVG\u2026", "svg", "the plots for print, with their origin: achilles reproduce makes them again"},
+        {"Figure as PNG\u2026", "png", "the same in pixels"},
+        {"Run as JSON\u2026", "json", "phases, events and certificates"},
+        {"Run as CSV\u2026", "csv", "a row an instant"},
+        {"Session as journal\u2026", "journal", "the commands that lead here, to be replayed anywhere"}};
     const bool is_there = session.under_way() == nullptr;
     for (const Kind& kind : kinds)
         if (item(kind.name, kind.about, state, is_there)) ask_to_take_away(session, state, kind.ending);
@@ -99,7 +99,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
     const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_said > 1;
     if (word_button("next", "go on at once (Enter)", state) ||
-        (keys && !has_keys(state) && is_pressed(key::enter, false)))
+        (keys && !has_keys(state) && takes_key(state, key::enter, false)))
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||
@@ -108,7 +108,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     // Below the others: beside them the words would have less room.
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
     if (word_button("back", "to the sentence before (Backspace)", state, has_before) ||
-        (keys && has_before && !has_keys(state) && is_pressed(key::backspace, false)))
+        (keys && has_before && !has_keys(state) && takes_key(state, key::backspace, false)))
         state.tour_wants = PanelState::OnTour::back;
     if (state.tour_said == 0) return;
     const std::string how_far = fmt::format("{}/{}", state.tour_said, state.tour_sentences);

@@ -8,6 +8,7 @@
 
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
+#include "pictures/film.hpp"
 #include "pictures/find_program.hpp"
 #include "pictures/picture_ending.hpp"
 #include "pictures/take_away.hpp"
@@ -38,23 +39,44 @@ bool word(const std::string& name, bool is_down, PanelState& state, const std::s
     return pressed;
 }
 
-void number_field(const char* name, double& value, const char* unit, PanelState& state) {
+// True when another number was typed.
+bool number_field(const char* name, double& value, const char* unit, PanelState& state) {
     ImGui::SetNextItemWidth(units(58.0F));
-    ImGui::InputDouble((std::string("##") + name).c_str(), &value, 0.0, 0.0, "%.4g");
+    const bool typed = ImGui::InputDouble((std::string("##") + name).c_str(), &value, 0.0, 0.0, "%.4g");
     remember(state, std::string("take field ") + name);
     ImGui::SameLine(0.0F, units(5.0F));
     ImGui::TextUnformatted(unit);
     ImGui::SameLine(0.0F, units(14.0F));
+    return typed;
+}
+
+// A second name in a row, at the same place in every row.
+void column(const char* name) {
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width + 120.0F));
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width + 206.0F));
 }
 
 std::string name_of(const Session& session, int plot) {
     return fmt::format("plot {}: {}", plot, session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
 }
 
-// The path ends as what is chosen says.
+bool is_data(const std::string& ending) { return ending == "json" || ending == "csv" || ending == "journal"; }
+
+// Whether what is chosen can be written with this ending.
+bool fits(const TakeAwayForm& form, const std::string& ending) {
+    const std::string name = "a." + ending;
+    if (form.what == What::film) return is_film(name);
+    return !ending_of_picture(name).empty() || (form.what == What::plots && form.plot == 0 && is_data(ending));
+}
+
+// The path ends as what is chosen says, in place of an ending that a file may have.
 void end_in(PanelState& state, const std::string& ending) {
     std::filesystem::path path(state.editor.path);
-    use_path(state, path.replace_extension("." + ending).string());
+    const std::string before = ending_of(state.editor.path), name = "a." + before;
+    if (is_film(name) || !ending_of_picture(name).empty() || is_data(before)) path.replace_extension();
+    use_path(state, path.string() + "." + ending);
+    state.take_away.ending = ending;
 }
 
 void choose_what(const Session& session, PanelState& state) {
@@ -75,20 +97,20 @@ void choose_what(const Session& session, PanelState& state) {
         const bool chosen = ImGui::Selectable(name.c_str(), form.what == what && form.plot == plot);
         remember(state, "take " + name);
         if (!chosen) return;
-        if ((what == What::film) != (form.what == What::film)) end_in(state, what == What::film ? "mp4" : "svg");
         form.what = what;
         form.plot = plot;
+        if (!fits(form, form.ending)) end_in(state, what == What::film ? "mp4" : "svg");
     };
     take("all plots", What::plots, 0);
     for (int plot = 1; count > 1 && plot <= count; ++plot) take(name_of(session, plot), What::plots, plot);
     if (!session.mechanism().is_empty()) take("the mechanism as it is now", What::mechanism, 0);
     take("a film: the mechanism in motion beside the plots", What::film, 0);
-    close_by_escape();
+    close_by_escape(state);
     ImGui::EndCombo();
 }
 
 void choose_kind(PanelState& state) {
-    const std::string ending = ending_of(state.editor.path);
+    const std::string& ending = state.take_away.ending;
     row("kind");
     if (state.take_away.what == What::film) {
         const std::string by = find_program("ffmpeg").empty()
@@ -108,44 +130,61 @@ void choose_kind(PanelState& state) {
     tooltip("light on dark, for a screen; paper is white");
 }
 
-void choose_page(PanelState& state) {
+// The width over the height of what is chosen.
+double chosen_shape(const Session& session, const TakeAwayForm& form) {
+    const Plots& plots = session.plotted();
+    return form.what == What::mechanism ? shape_of(session.limits())
+           : form.plot > 0              ? shape_of(1, 1)
+                                        : shape_of(static_cast<int>(plots.list().size()), plots.columns());
+}
+
+void choose_size(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("width");
+    number_field("width", form.width, "mm", state);
+    column("height");
+    // Until somebody types another: what fits.
+    double height =
+        form.height == 0.0 ? height_of({form.width, 0.0, 0.0, 0.0}, chosen_shape(session, form)) : form.height;
+    if (number_field("height", height, "mm", state)) form.height = height;
+    if (word("fits", form.height == 0.0, state, "as high as the plots are drawn best")) form.height = 0.0;
+    ImGui::NewLine();
+    row("text");
+    number_field("font", form.font, "pt", state);
+    if (form.ending == "png") {
+        column("resolution");
+        number_field("dpi", form.dpi, "dpi", state);
+    }
+    ImGui::NewLine();
+}
+
+void choose_page(const Session& session, PanelState& state) {
     TakeAwayForm& form = state.take_away;
     row("for");
     const auto widths = column_widths();
     const auto chosen =
         std::find_if(widths.begin(), widths.end(), [&](const ColumnWidth& one) { return one.width == form.width; });
+    const bool is_other = form.on_paper && chosen == widths.end();
     const std::string pixels = "a screen (1200 \u00d7 800 pixels)";
-    const std::string now = form.width == 0.0        ? pixels
-                            : chosen == widths.end() ? "another width"
-                                                     : std::string(chosen->name);
+    const std::string now = !form.on_paper ? pixels : is_other ? "another width" : std::string(chosen->name);
     ImGui::SetNextItemWidth(-1.0F);
     const bool open = ImGui::BeginCombo("##page", now.c_str());
     remember(state, "take page");
     if (open) {
-        if (ImGui::Selectable(pixels.c_str(), form.width == 0.0)) form.width = form.height = 0.0;
+        if (ImGui::Selectable(pixels.c_str(), !form.on_paper)) form.on_paper = false;
         remember(state, "take screen");
         for (const ColumnWidth& one : widths) {
             const std::string name(one.name);
-            if (ImGui::Selectable(name.c_str(), form.width == one.width))
-                form.width = one.width, form.height = 0.0, form.font = one.font;
+            if (ImGui::Selectable(name.c_str(), form.on_paper && form.width == one.width))
+                form.on_paper = true, form.width = one.width, form.height = 0.0, form.font = one.font;
             remember(state, "take " + name);
         }
-        if (ImGui::Selectable("another width", chosen == widths.end() && form.width != 0.0)) form.width = 100.0;
+        if (ImGui::Selectable("another width", is_other)) form.on_paper = true, form.width = 100.0;
         remember(state, "take another width");
-        close_by_escape();
+        close_by_escape(state);
         ImGui::EndCombo();
     }
-    if (form.width == 0.0) return;
-    row("width");
-    number_field("width", form.width, "mm", state);
-    ImGui::TextUnformatted("height");
-    ImGui::SameLine(0.0F, units(5.0F));
-    number_field("height", form.height, form.height == 0.0 ? "fits" : "mm", state);
-    ImGui::TextUnformatted("text");
-    ImGui::SameLine(0.0F, units(5.0F));
-    number_field("font", form.font, "pt", state);
-    if (ending_of(state.editor.path) == "png") number_field("dpi", form.dpi, "dpi", state);
-    ImGui::NewLine();
+    if (form.on_paper) choose_size(session, state);
 }
 
 void choose_film(const Session& session, PanelState& state) {
@@ -172,25 +211,27 @@ void use_path(PanelState& state, const std::string& path) {
 }
 
 void show_take_away_form(const Session& session, PanelState& state) {
-    const std::string ending = ending_of(state.editor.path);
-    if (ending == "json" || ending == "csv" || ending == "journal") return;
+    TakeAwayForm& form = state.take_away;
+    if (const std::string typed = ending_of(state.editor.path); fits(form, typed)) form.ending = typed;
+    if (is_data(form.ending)) return;
     choose_what(session, state);
     choose_kind(state);
-    if (state.take_away.what == What::film)
+    if (form.what == What::film)
         choose_film(session, state);
     else
-        choose_page(state);
-    const std::string note = take_away_note(session, state);
+        choose_page(session, state);
+    const TakeAwayNote note = take_away_note(session, form);
     row("comes to");
-    const bool is_wrong = note.starts_with("! ");
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(is_wrong ? error_color() : text_color()));
-    ImGui::TextUnformatted(fitted(is_wrong ? note.substr(2) : note, remaining().width).c_str());
-    ImGui::PopStyleColor();
+    paragraph(note.text, remaining().width, note.is_wrong ? error_color() : text_color());
     ImGui::Dummy({0.0F, units(4.0F)});
 }
 
-command::Export take_away_command(const PanelState& state, const std::string& file, bool overwrite) {
-    const TakeAwayForm& form = state.take_away;
+std::string take_away_file(const TakeAwayForm& form, const std::string& path) {
+    const std::filesystem::path file(path);
+    return file.has_filename() && file.extension().empty() ? path + "." + form.ending : path;
+}
+
+command::Export take_away_command(const TakeAwayForm& form, const std::string& file, bool overwrite) {
     command::Export what{file, overwrite, 0};
     if (form.what == What::film) {
         what.fps = form.fps == 30.0 ? 0.0 : form.fps;
@@ -203,7 +244,7 @@ command::Export take_away_command(const PanelState& state, const std::string& fi
     what.plot = form.plot;
     what.mechanism = form.what == What::mechanism;
     what.dark = form.dark;
-    if (!(form.width > 0.0)) return what;
+    if (!form.on_paper) return what;
     what.width = form.width;
     what.height = form.height;
     what.font = form.font == default_font ? 0.0 : form.font;
@@ -211,36 +252,43 @@ command::Export take_away_command(const PanelState& state, const std::string& fi
     return what;
 }
 
-std::string take_away_note(const Session& session, const PanelState& state) {
-    const command::Export what = take_away_command(state, state.editor.path, false);
-    if (state.take_away.what == What::film) {
-        const FilmExtent extent = extent_of(session, what);
-        const double fps = what.fps > 0.0 ? what.fps : 30.0;
-        if (!(extent.frames <= most_film_frames) || !(fps > 0.0)) return "! more pictures than a film may have";
-        if (extent.width < 320 || extent.width > 3840) return "! a film is 320 to 3840 pixels wide";
-        return fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s{}", extent.width, extent.height, extent.frames,
-                           extent.frames / fps,
-                           find_program("ffmpeg").empty() ? "; no ffmpeg here: the pictures stay" : "");
-    }
-    const std::string format = ending_of_picture(state.editor.path);
-    const PaperSize page{what.width, what.height, what.font, what.dpi};
-    if (page.width == 0.0) {
-        if (state.take_away.width != 0.0) return "! a width is above 0";
-        return format == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)
-                               : "1200 \u00d7 800 px";
-    }
+namespace {
+
+TakeAwayNote note_on_film(const Session& session, const TakeAwayForm& form) {
+    if (!(form.fps > 0.0)) return {fmt::format("pictures a second: a number above 0, not {:g}", form.fps), true};
+    const FilmExtent extent = extent_of(session, take_away_command(form, "a.mp4", false));
+    if (!(extent.frames <= most_film_frames))
+        return {fmt::format("more than {:.0f} pictures: raise the speed, or take fewer a second", most_film_frames),
+                true};
+    const bool stay = find_program("ffmpeg").empty();
+    return {fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s{}", extent.width, extent.height, extent.frames,
+                        extent.frames / form.fps, stay ? "; ffmpeg is not installed: the pictures stay in a folder" : "")};
+}
+
+TakeAwayNote note_on_page(const Session& session, const TakeAwayForm& form) {
+    const bool has_dots = form.ending == "png";
+    const PaperSize page{form.width, form.height, form.font, has_dots ? form.dpi : default_dpi};
+    // To a page 0 is what follows from the rest; here the fields of the others show that.
+    for (const auto& [name, value] :
+         {std::pair{"width", page.width}, std::pair{"text", page.font}, std::pair{"resolution", page.dpi}})
+        if (!(value > 0.0)) return {fmt::format("{}: a number above 0, not {:g}", name, value), true};
     try {
         check(page, "");
-        const Plots& plots = session.plotted();
-        const double shape = what.mechanism  ? shape_of(session.limits())
-                             : what.plot > 0 ? shape_of(1, 1)
-                                             : shape_of(static_cast<int>(plots.list().size()), plots.columns());
-        on_page(page, format, 1.0, shape);
-        return fmt::format("{}, text of {:.3g} pt", told(page, format, shape),
-                           page.font > 0.0 ? page.font : default_font);
+        const double shape = chosen_shape(session, form);
+        on_page(page, form.ending, 1.0, shape);
+        return {fmt::format("{}, text of {:.3g} pt", told(page, form.ending, shape), page.font)};
     } catch (const InputError& problem) {
-        return "! " + problem.message;
+        return {problem.message + (problem.hint.empty() ? "" : ": " + problem.hint), true};
     }
+}
+
+}  // namespace
+
+TakeAwayNote take_away_note(const Session& session, const TakeAwayForm& form) {
+    if (form.what == What::film) return note_on_film(session, form);
+    if (form.on_paper) return note_on_page(session, form);
+    return {form.ending == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)
+                                 : "1200 \u00d7 800 px"};
 }
 
 void show_film(PanelState& state) {

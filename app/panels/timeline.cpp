@@ -96,7 +96,7 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
                                 packed(text_color()));
     }
-    const bool space_pressed = !ImGui::GetIO().WantTextInput && !has_keys(state) && is_pressed(' ', false);
+    const bool space_pressed = !ImGui::GetIO().WantTextInput && !has_keys(state) && takes_key(state, ' ', false);
     if (!pressed && !space_pressed) return;
     if (session.playing())
         commands.insert(commands.end(), {command::Pause{}, command::Seek{session.time()}});
@@ -169,10 +169,10 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
 // Left and right step from event to event, Home and End go to the ends.
 void use_keys(const Session& session, const PanelState& state, Commands& commands) {
     if (has_keys(state) || ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
-    if (is_pressed(key::left)) commands.emplace_back(command::Step{-1});
-    if (is_pressed(key::right)) commands.emplace_back(command::Step{1});
-    if (is_pressed(key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
-    if (is_pressed(key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
+    if (takes_key(state, key::left)) commands.emplace_back(command::Step{-1});
+    if (takes_key(state, key::right)) commands.emplace_back(command::Step{1});
+    if (takes_key(state, key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
+    if (takes_key(state, key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
 // The event whose sign is under the mouse.

@@ -137,8 +137,8 @@ bool menu_item(const char* name, PanelState& state, bool ticked, bool enabled) {
     return chosen;
 }
 
-void close_by_escape() {
-    if (is_pressed(key::escape, false)) ImGui::CloseCurrentPopup();
+void close_by_escape(const PanelState& state) {
+    if (takes_key(state, key::escape, false)) ImGui::CloseCurrentPopup();
 }
 
 Rectangle remaining() {

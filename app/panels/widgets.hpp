@@ -38,12 +38,16 @@ void tooltip(const std::string& text);
 void tooltip(const std::string& text, const Rectangle& clear);
 // Whether a menu or a dialog stands before the panels.
 bool is_covered();
+// Whether the keys of this frame belong to the current window: no menu or dialog stood before it when they were pressed.
+bool is_in_front(const PanelState& state);
+// The same of one key: whether it went down for the current window, or with `repeat` is held so long that it does so again.
+bool takes_key(const PanelState& state, int code, bool repeat = true);
 // Whether Escape was pressed for what asks first, and for nothing in front of it: a menu, a dialog, a text field.
 bool take_escape(PanelState& state);
 // A line of a menu, with the keys that do the same; true when it is chosen.
 bool menu_item(const char* name, PanelState& state, bool ticked = false, bool enabled = true);
 // Within a menu: Escape closes it.
-void close_by_escape();
+void close_by_escape(const PanelState& state);
 // What is left to draw on in the current window.
 Rectangle remaining();
 // Where the last item is, under this name; what can be pressed there can have the keys.
@@ -60,7 +64,8 @@ void add_stop(PanelState& state, const std::string& name, const Rectangle& area)
 void use_path(PanelState& state, const std::string& path);
 // The instant under the mouse, while the last item is dragged.
 bool dragged_to(double low, double high, float left, float width, double& value);
-// What is wrong with an input, as the command line says it, and how high that is; the colour behind it.
+// What is wrong with an input, as the command line says it but without the folder of a file, and how high that is; the colour
+// behind it.
 void show_message(const std::string& message, float width);
 float message_height(const std::string& message, float width);
 void paint_error_card(const Rectangle& area);

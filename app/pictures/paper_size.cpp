@@ -20,17 +20,12 @@ constexpr int most_pixels = 16384;                  // along a side, as --size h
 void need(bool is_good, const std::string& what, const char* name, double value, double low, double high,
           const char* unit) {
     if (is_good) return;
-    throw InputError(what, {}, fmt::format("a {} of {} {} is none for a picture", name, value, unit),
+    throw InputError(what, {}, fmt::format("a picture cannot have a {} of {} {}", name, value, unit),
                      fmt::format("it may be {} to {} {}", low, high, unit));
 }
 
 double pixels_per_mm(const PaperSize& page, const std::string& format) {
     return format == "png" ? (page.dpi > 0.0 ? page.dpi : default_dpi) / inch : 1.0 / page_mm(1);
-}
-
-// No picture is a strip.
-double height_of(const PaperSize& page, double shape) {
-    return page.height > 0.0 ? page.height : page.width / std::clamp(shape, 0.7, 3.0);
 }
 
 double shape_of_grid(std::size_t rows, int columns) {
@@ -47,6 +42,11 @@ void check(const PaperSize& page, const std::string& what) {
     need(within(page.dpi, least_dpi, most_dpi), what, "resolution", page.dpi, least_dpi, most_dpi, "dpi");
     if (page.width == 0.0 && (page.height != 0.0 || page.font != 0.0 || page.dpi != 0.0))
         throw InputError(what, {}, "a height, a font and a resolution belong to a width in mm");
+}
+
+// No picture is a strip.
+double height_of(const PaperSize& page, double shape) {
+    return page.height > 0.0 ? page.height : page.width / std::clamp(shape, 0.7, 3.0);
 }
 
 PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape) {

@@ -30,6 +30,9 @@ PictureSize on_page(const PaperSize& page, const std::string& format, double tex
 // The page as such a picture has it: a resolution is for pixels alone.
 PaperSize page_for(PaperSize page, const std::string& format);
 
+// mm: the page's own, or where that is 0 what its width and this shape make.
+double height_of(const PaperSize& page, double shape);
+
 // "85 × 57 mm, 1004 × 669 px at 300 dpi".
 std::string told(const PaperSize& page, const std::string& format, double shape);
 

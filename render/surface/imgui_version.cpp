@@ -255,6 +255,11 @@ void scroll_to_item() {
     if (item.Min.y < window->InnerRect.Min.y || item.Max.y > window->InnerRect.Max.y) ImGui::SetScrollHereY(0.5F);
 }
 
+void scroll_next_window(float y, float content_height) {
+    ImGui::SetNextWindowContentSize({0.0F, content_height});
+    ImGui::SetNextWindowScroll({-1.0F, y});
+}
+
 unsigned active_item() { return GImGui->ActiveId; }
 
 void let_go_of_item() { ImGui::ClearActiveID(); }
@@ -269,6 +274,19 @@ unsigned front_dialog() {
     if (open.Size == 0) return 0;
     const ImGuiWindow* front = open.back().Window;
     return front != nullptr && (front->Flags & ImGuiWindowFlags_Modal) != 0 ? front->ID : 0;
+}
+
+unsigned front_popup() {
+    const auto& open = GImGui->OpenPopupStack;
+    if (open.Size == 0) return 0;
+    return open.back().Window == nullptr ? unseen_popup : open.back().Window->ID;
+}
+
+unsigned popup_of_window() {
+    const ImGuiWindow* window = GImGui->CurrentWindow;
+    while (window != nullptr && (window->Flags & ImGuiWindowFlags_Popup) == 0)
+        window = window->ParentWindowInBeginStack;
+    return window == nullptr ? 0 : window->ID;
 }
 
 void walk_menus_by_keys(bool walk) {

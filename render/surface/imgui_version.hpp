@@ -83,6 +83,9 @@ unsigned item_id();
 bool item_is_enabled();
 unsigned window_of_item();
 void scroll_to_item();
+// The window that begins next, whose content is `content_height` pixels high, is scrolled down by `y` pixels from its first
+// frame on.
+void scroll_next_window(float y, float content_height);
 // The item that is held or typed in, 0: none; lets go of it.
 unsigned active_item();
 void let_go_of_item();
@@ -90,6 +93,11 @@ void let_go_of_item();
 void press_item(unsigned id, bool takes_letters);
 // The dialog in front of everything that can be reached, the number of its window; 0: there is none, or a menu before it.
 unsigned front_dialog();
+// The menu or dialog in front, the number of its window; 0: there is none. `unseen_popup` for one that has opened and has not
+// been drawn yet. And the one that the current window is, or is part of; 0: it is part of a panel.
+constexpr unsigned unseen_popup = ~0U;
+unsigned front_popup();
+unsigned popup_of_window();
 // Whether ImGui's own keys walk through what is open: arrows, Enter. Once a frame.
 void walk_menus_by_keys(bool walk);
 

@@ -50,15 +50,132 @@ TEST(TakeAway, a_size_that_is_none_is_told_and_nothing_is_written) {
     test::Hands hands("ball_on_sine");
     hands.session.apply(parse_command("show export"));
     hands.rest(3);
+    hands.state.take_away.on_paper = true;
     hands.state.take_away.width = 5.0;
     hands.state.editor.path = (folder.path() / "a.svg").string();
     hands.rest(2);
-    EXPECT_TRUE(hands.says("a width of 5 mm is none"));
+    EXPECT_TRUE(hands.says("a picture cannot have a width of 5 mm: it may be 20 to 1200 mm"));
     hands.click("dialog Export");
     EXPECT_TRUE(hands.session.scene().shows("export"));
     hands.press(key::escape);
     EXPECT_FALSE(hands.session.scene().shows("export"));
     EXPECT_TRUE(folder.files().empty());
+}
+
+// Whether a button of the dialog can be pressed.
+bool can_press(const test::Hands& hands, const std::string& name) {
+    const auto& stops = hands.state.focus.stops;
+    return std::any_of(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.name == name; });
+}
+
+// Every entry of the menu opens a dialog that is ready: Enter alone writes what it says.
+TEST(TakeAway, EntryOfTheMenuIsReady) {
+    const std::pair<const char*, const char*> entries[] = {
+        {"Film as MP4\u2026", "mp4"},  {"Figure as SVG\u2026", "svg"}, {"Figure as PNG\u2026", "png"},
+        {"Run as JSON\u2026", "json"}, {"Run as CSV\u2026", "csv"},    {"Session as journal\u2026", "journal"}};
+    for (const auto& [entry, ending] : entries) {
+        test::Hands hands("ball_on_sine");
+        hands.click("menu File");
+        hands.click(std::string("menu ") + entry);
+        hands.rest(3);
+        EXPECT_EQ(hands.state.editor.path, std::string("ball_on_sine.") + ending);
+        EXPECT_TRUE(can_press(hands, "dialog Export")) << entry;
+        EXPECT_TRUE(hands.says(std::string("ball_on_sine.") + ending)) << entry;
+        const bool is_film = std::string(ending) == "mp4";
+        EXPECT_EQ(hands.state.take_away.what == TakeAwayForm::What::film, is_film);
+        EXPECT_EQ(hands.says("1280 \u00d7 800 px"), is_film) << entry;
+    }
+}
+
+// What is typed takes the place of the whole name, and what has no ending gets the kind's.
+TEST(TakeAway, NameIsTypedOverAndEndsAsTheKindSays) {
+    const test::Folder folder;
+    test::Hands hands("ball_on_sine");
+    hands.click("menu File");
+    hands.click("menu Figure as PNG\u2026");
+    hands.rest(3);
+    hands.type((folder.path() / "short").string());
+    hands.rest(2);
+    EXPECT_EQ(hands.state.editor.path, (folder.path() / "short").string()) << "the rest of the proposed name stays";
+    EXPECT_TRUE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.says("1200 \u00d7 800 px"));
+    EXPECT_TRUE(hands.says((folder.path() / "short.png").string()));
+    // An ending that no file has is refused, without a word about the size.
+    hands.type(".pn");
+    hands.rest(2);
+    EXPECT_FALSE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.says("1200 \u00d7 800 px"));
+    EXPECT_FALSE(hands.says("above 0"));
+    hands.type("g");
+    hands.press(key::enter);
+    hands.rest(2);
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"short.png"}) << hands.session.error();
+}
+
+// A width in mm and an ending that has none: nothing is wrong with the width.
+TEST(TakeAway, WidthIsWrongOnlyWhereItIs) {
+    test::Hands hands("ball_on_sine");
+    hands.session.apply(parse_command("show export"));
+    hands.rest(3);
+    hands.click("take page");
+    hands.click("take a column of two (85 mm)");
+    hands.click("path");
+    hands.press_with_control('A');
+    for (const char* path : {"a", "a.s", "a.csv", "a.5", "a.svg"}) {
+        hands.press_with_control('A');
+        hands.type(path);
+        hands.rest(2);
+        EXPECT_FALSE(hands.says("above 0")) << path;
+    }
+    hands.state.take_away.width = 0.0;
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("width: a number above 0, not 0"));
+    EXPECT_FALSE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.state.places.contains("take field width")) << "its field is there to be mended";
+}
+
+// Every number of the size and its unit lie within the dialog, and the height is the one that is drawn.
+TEST(TakeAway, SizeIsReadWhole) {
+    for (const double scale : {1.0, 1.5}) {
+        test::Hands hands("ball_on_sine",
+                          test::surface(static_cast<int>(1280 * scale), static_cast<int>(800 * scale), scale));
+        hands.click("menu File");
+        hands.click("menu Figure as PNG\u2026");
+        hands.rest(3);
+        hands.click("take page");
+        hands.click("take a column of two (85 mm)");
+        hands.rest(3);
+        const double right = scale * (640.0 + 280.0 - 16.0), unit = scale * 32.0;
+        for (const char* field : {"width", "height", "font", "dpi"}) {
+            const Rectangle& area = hands.state.places.at(std::string("take field ") + field);
+            EXPECT_LT(area.x + area.width + unit, right) << field;
+        }
+        EXPECT_TRUE(hands.says("300dpi")) << hands.letters();
+        EXPECT_TRUE(hands.says("56.67mm")) << "the height of the field: " << hands.letters();
+        // Another height is typed, and "fits" takes it back.
+        hands.click("take field height");
+        hands.press_with_control('A');
+        hands.type("40");
+        hands.press(key::enter);
+        EXPECT_EQ(hands.state.take_away.height, 40.0);
+        EXPECT_TRUE(hands.says("85 \u00d7 40 mm"));
+        hands.click("take fits");
+        EXPECT_EQ(hands.state.take_away.height, 0.0);
+        EXPECT_TRUE(hands.says("85 \u00d7 56.67 mm"));
+    }
+}
+
+TEST(TakeAway, FilmNeedsANumberOfPicturesASecond) {
+    test::Hands hands("ball_on_sine");
+    hands.click("menu File");
+    hands.click("menu Film as MP4\u2026");
+    hands.rest(3);
+    hands.click("take field fps");
+    hands.press_with_control('A');
+    hands.type("-5");
+    hands.press(key::enter);
+    EXPECT_FALSE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.says("pictures a second: a number above 0, not -5"));
 }
 
 }  // namespace
