@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "panels/widgets.hpp"
+#include "session/recipe.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 #include "system/input_error.hpp"
@@ -36,15 +38,18 @@ int first_difference(const std::string& a, const std::string& b) {
     return 1 + static_cast<int>(std::count(a.begin(), at, '\n'));
 }
 
-// Another text than the one that was typed: opened, new, or from a journal.
+// Another text than the one that was typed: opened, new, from a journal, or undone. Of the same document what has changed is
+// to be seen, of another one its beginning.
 void follow_session(const Session& session, EditorState& editor) {
-    if (session.document().text == editor.known) return;
-    if (!editor.known.empty()) editor.go_to = first_difference(editor.known, session.document().text);
-    editor.text = editor.known = session.document().text;
+    const Document& document = session.document();
+    const bool is_same = std::exchange(editor.document, document.name) == document.name;
+    if (document.text == editor.known) return;
+    editor.go_to = is_same ? first_difference(editor.known, document.text) : 0;
+    if (!is_same) editor.scroll = 0.0F;
+    editor.text = editor.known = document.text;
     editor.resting = 0.0;
     ++editor.revision;  // the widget begins anew: its cursor and its undo belong to the old text
-    const auto& problems = session.document().problems;
-    if (!problems.empty()) editor.go_to = problems.front().at.line;
+    if (!document.problems.empty()) editor.go_to = document.problems.front().at.line;
 }
 
 // What the text looks like on the screen: where the first letter of a line stands.
@@ -97,6 +102,13 @@ void paint_problem(const Page& page, const std::string& text, Location at, ImDra
     list->PopClipRect();
 }
 
+// Where a text is scrolled to so that a line of it is seen: as it is, or with the line in the upper half.
+float scroll_to(int line, const EditorState& editor, float line_height, float height) {
+    const float y = static_cast<float>(line - 1) * line_height;
+    const bool is_seen = y >= editor.scroll && y + line_height <= editor.scroll + height;
+    return is_seen ? editor.scroll : std::max(0.0F, y - std::floor(0.4F * height / line_height - 1.0F) * line_height);
+}
+
 // The widget itself, without its frame: the page is painted behind it. True if a letter was typed. It takes letters back
 // one by one, unless the text is no system: then undo is the session's.
 bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
@@ -135,6 +147,9 @@ void show_text(const Session& session, PanelState& state, float height) {
     ImGuiInputTextFlags more = ImGuiInputTextFlags_None;
     if (reason_against_editing(editor.text) != nullptr) more |= ImGuiInputTextFlags_ReadOnly;
     if (!session.document().problems.empty()) more |= ImGuiInputTextFlags_NoUndoRedo;
+    // A widget that begins anew is a new window, which would begin at the top.
+    if (std::exchange(editor.shown_revision, editor.revision) != editor.revision)
+        scroll_next_window(editor.scroll, static_cast<float>(lines) * font + 2.0F * ImGui::GetStyle().FramePadding.y);
     const bool has_typed = typed(editor, {all.width - gutter, height}, more);
     remember(state, "text");
     const bool was_left = ImGui::IsItemDeactivated();
@@ -146,11 +161,8 @@ void show_text(const Session& session, PanelState& state, float height) {
         fmt::format("{}/{}_{:08X}", ImGui::GetCurrentWindow()->Name, text_id, ImGui::GetID(text_id));
     ImGuiWindow* child = ImGui::FindWindowByName(name.c_str());
     const float line = ImGui::GetFontSize();
-    if (child != nullptr && editor.go_to > 0 && child->ScrollMax.y > 0.0F) {
-        const float above = std::floor(0.4F * height / line);  // whole lines
-        ImGui::SetScrollY(child, std::max(0.0F, (static_cast<float>(editor.go_to) - above) * line));
-        editor.go_to = 0;
-    }
+    if (child != nullptr && editor.go_to > 0)
+        ImGui::SetScrollY(child, scroll_to(std::exchange(editor.go_to, 0), editor, line, height));
     // A message that appears takes room from the text: the line under the hand stays in sight.
     if (child != nullptr && input != nullptr && height < editor.height) {
         const float below = static_cast<float>(line_of_cursor(*input, editor.text)) * line + paddings - height;
@@ -158,6 +170,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     }
     editor.height = height;
     const float scroll = child != nullptr ? child->Scroll.y : 0.0F;
+    editor.scroll = scroll;
     const Page page{all.x + gutter + padding.x - sideways,
                     all.y + padding.y - scroll,
                     line,
@@ -244,7 +257,7 @@ void show_file(const Session& session, const EditorState& editor) {
     const bool is_new = document.file.empty() && document.name == document.source;
     const std::string name = is_new                  ? "a new system, in no file yet"
                              : document.file.empty() ? document.name + ", from the list"
-                                                     : document.file;
+                                                     : std::filesystem::path(document.file).filename().string();
     ImGui::TextUnformatted(fitted(name, room).c_str());
     tooltip(document.source);
     if (is_changed) {
@@ -253,6 +266,24 @@ void show_file(const Session& session, const EditorState& editor) {
         ImGui::TextUnformatted(status.c_str());
         ImGui::PopStyleColor();
     }
+}
+
+// What of this text does not hold in the run, which sliders and options have changed.
+void show_run(const Session& session, PanelState& state, Commands& commands) {
+    constexpr std::size_t lines = 4;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});
+    show_changes(session, "text", lines, state, commands);
+    const std::size_t all = differences(session.description(), session.run(), session.file_run()).size();
+    if (all > lines) {
+        const Rectangle row = remaining();
+        if (ImGui::InvisibleButton("reset all", {std::max(row.width, 1.0F), ImGui::GetTextLineHeight()}))
+            commands.emplace_back(command::Reset{});
+        remember(state, "reset all");
+        tooltip("every value as the text has it");
+        cell({row.x, row.y}, fmt::format("and {} more: put all back", all - lines), row.width, current_theme().accent);
+    }
+    ImGui::PopStyleVar();
+    if (all > 0) ImGui::Dummy({0.0F, units(1.0F)});
 }
 
 }  // namespace
@@ -275,6 +306,7 @@ void show_editor(const Session& session, PanelState& state, Commands& commands) 
     follow_session(session, editor);
     show_buttons(session, state, commands);
     show_file(session, editor);
+    show_run(session, state, commands);
     const Rectangle room = remaining();
     const float below = problems_height(session, room.width, room.height);
     const char* against = reason_against_editing(editor.text);

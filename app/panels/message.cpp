@@ -18,6 +18,13 @@ struct MessageLine {
     std::optional<std::size_t> caret;  // how many letters stand before it
 };
 
+// "/home/me/a.toml:3:1: wrong" without the folder: a panel has no room for it, and knows which file is meant.
+std::string without_folder(const std::string& line) {
+    const std::size_t end = line.find(':'), name = line.rfind('/', end);
+    const bool has_path = end != std::string::npos && name != std::string::npos && line[0] == '/' && line[1] != ' ';
+    return has_path ? line.substr(name + 1) : line;
+}
+
 std::vector<MessageLine> lines_of(const std::string& message) {
     std::vector<MessageLine> lines;
     std::istringstream stream(message);
@@ -26,7 +33,7 @@ std::vector<MessageLine> lines_of(const std::string& message) {
         if (!lines.empty() && lines.back().quoted && first != std::string::npos && line.substr(first) == "^")
             lines.back().caret = first;
         else
-            lines.push_back({line, line.rfind("    ", 0) == 0, {}});
+            lines.push_back({without_folder(line), line.rfind("    ", 0) == 0, {}});
     }
     return lines;
 }

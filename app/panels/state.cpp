@@ -3,6 +3,7 @@
 #include <string>
 
 #include "figure/label.hpp"
+#include "figure/stage.hpp"
 #include "number/angle.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
@@ -68,11 +69,11 @@ void show_state(const Session& session, const Rectangle& panel) {
     const bool narrow = is_narrow(width);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
-    const Phase::Kind phase = session.now().phase;
-    const Color color = phase_color(session.theme(), phase);
+    const PhaseLabel phase = phase_label(session.now());
+    const Color color = phase_color(session.theme(), phase.color);
     list->AddRectFilled({at.x, at.y + 0.25F * size}, {at.x + units(10.0F), at.y + 0.25F * size + units(10.0F)},
                         packed(color), units(2.0F));
-    paint_label(list, at.x + units(16.0F), at.y, legend_text(phase), text_color(), size);
+    paint_label(list, at.x + units(16.0F), at.y, phase.text, text_color(), size);
     const std::size_t count = session.description().coordinates.size(), columns = columns_of_state(session, width);
     const float column = narrow ? 0.5F * (width - units(16.0F)) : column_of_state(session, width);
     for (std::size_t i = 0; i < count; ++i) {

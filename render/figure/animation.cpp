@@ -206,8 +206,9 @@ Still Animation::at(double t) {
         TextRun{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
     // Left of the longest clock.
     const float clock_room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
-    still.heading.emplace_back(TextRun{width - text - clock_room, 0.5F * text, 1.0F, legend_text(now.phase),
-                                       phase_color(theme, now.phase), text});
+    const PhaseLabel phase = phase_label(now);
+    still.heading.emplace_back(
+        TextRun{width - text - clock_room, 0.5F * text, 1.0F, phase.text, phase_color(theme, phase.color), text});
     return still;
 }
 

@@ -142,6 +142,11 @@ std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
     return all;
 }
 
+PhaseLabel phase_label(const Sample& now) {
+    if (now.contact && now.phase == Phase::Kind::hybrid) return {Phase::Kind::constrained, "cut, in contact"};
+    return {now.phase, legend_text(now.phase)};
+}
+
 Drawing Stage::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {
     const auto& parameters = trajectory_.run.parameters;
     Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.held);

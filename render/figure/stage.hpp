@@ -18,6 +18,14 @@ struct Layers {
     bool strobe = false;  // the poses at the events that have passed, as far as they can be told apart
 };
 
+// The phase at an instant as a line beside the picture says it, and whose color it has. Between a cut and its Zeno point the
+// hybrid phase goes on, but the motion is the restarted one in contact, and the picture shows that.
+struct PhaseLabel {
+    Phase::Kind color = Phase::Kind::hybrid;
+    std::string text;
+};
+PhaseLabel phase_label(const Sample& now);
+
 class Stage {
  public:
     // Refers to what it is given.

@@ -5,6 +5,7 @@
 #include "app/program.hpp"
 #include "journal/journal.hpp"
 #include "output/output.hpp"
+#include "session/recipe.hpp"
 
 namespace achilles {
 namespace {
@@ -313,6 +314,99 @@ TEST(Editor, draws_the_same_bytes_every_time_in_any_size) {
         }
         EXPECT_EQ(a.picture(), b.picture());
     }
+}
+
+// How far the text is scrolled, pixels.
+float scroll_of(Writer& hands) {
+    float scroll = -1.0F;
+    hands.surface.step(
+        [&] {
+            for (const Command& command : explorer(hands.session, hands.state)) hands.session.apply(command);
+            for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+                if (window->Active && std::string_view(window->Name).find("##text") != std::string_view::npos)
+                    scroll = window->Scroll.y;
+        },
+        hands.hand);
+    return scroll;
+}
+
+// The text stays where it is when a change in sight is undone, in every frame; a change out of sight is brought into it.
+TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
+    Writer hands;
+    hands.click("text");
+    hands.press_with_control(key::end);
+    for (const char* letters : {"# one", "\n[[", "\n"}) {
+        hands.type(letters);
+        hands.rest(frames_of_a_pause + 2);
+    }
+    ASSERT_FALSE(hands.session.document().problems.empty());
+    hands.rest(3);
+    const float before = scroll_of(hands);
+    ASSERT_GT(before, 300.0F) << "the end of the text";
+    hands.hand.keys = {key::left_control, 'Z'};
+    std::vector<float> after;
+    for (int i = 0; i < 6; ++i) after.push_back(scroll_of(hands));
+    hands.hand.keys.clear();
+    for (int i = 0; i < 3; ++i) after.push_back(scroll_of(hands));
+    EXPECT_TRUE(hands.session.document().problems.empty());
+    ASSERT_EQ(hands.session.document().text, ball() + "# one");
+    // Without its message the text has more lines on the screen, and two less in all.
+    for (const float scroll : after) EXPECT_NEAR(scroll, before, 12.0F * 14.0F);
+    EXPECT_GT(after.back(), 300.0F);
+    hands.session.apply(command::Text{replaced(hands.session.document().text, "Or & Ames 2009", "Or and Ames 2009")});
+    hands.rest(3);
+    EXPECT_LT(scroll_of(hands), 100.0F) << "line 7 is in sight";
+}
+
+// Another document begins at its top.
+TEST(Editor, AnotherTextBeginsAtItsTop) {
+    Writer hands;
+    hands.click("text");
+    hands.press_with_control(key::end);
+    hands.rest(3);
+    ASSERT_GT(scroll_of(hands), 300.0F);
+    hands.session.apply(command::Open{"double_pendulum"});
+    hands.rest(3);
+    EXPECT_EQ(scroll_of(hands), 0.0F);
+}
+
+// A value that a slider has put over that of the text is told beside the text, and is put back there.
+TEST(Editor, TellsWhatTheRunHasOtherwiseThanTheText) {
+    Writer hands;
+    EXPECT_FALSE(hands.says("Differs from the text"));
+    hands.session.apply(command::Set{"e", 0.7});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("Differs from the text"));
+    EXPECT_TRUE(hands.says("e = 0.7")) << hands.letters();
+    EXPECT_TRUE(hands.says("text: 0.5"));
+    const auto all = differences(hands.session.description(), hands.session.run(), hands.session.file_run());
+    ASSERT_EQ(all.size(), 1U);
+    hands.click("put back " + all[0].name);
+    EXPECT_EQ(*hands.session.value("e"), 0.5);
+    EXPECT_FALSE(hands.says("Differs from the text"));
+    for (const auto& [name, value] : {std::pair{"m", 2.0}, {"g", 2.0}, {"e", 0.6}, {"x", 1.0}, {"y", 3.0}, {"x'", 1.0}})
+        hands.session.apply(command::Set{name, value});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("and 2 more: put all back")) << hands.letters();
+    hands.click("reset all");
+    EXPECT_EQ(hands.session.run(), hands.session.file_run());
+}
+
+// A message begins with the name of the file; its folder has no room there.
+TEST(Editor, MessagesBeginWithTheNameOfTheFile) {
+    const Folder folder;
+    folder.put("mine.toml", replaced(ball(), "x'^2 + y'^2", "x'^2 + yy'^2"));
+    const std::string path = (folder.path() / "mine.toml").string();
+    Writer hands;
+    hands.session.apply(command::Open{path});
+    hands.rest(3);
+    EXPECT_EQ(std::string(hands.session.document().problems.at(0).what()).find(path + ":46:26: "), 0U);
+    EXPECT_TRUE(hands.says("mine.toml:46:26: "));
+    EXPECT_FALSE(hands.says(path + ":46")) << hands.letters();
+    hands.session.apply(command::Show{"editor", false});
+    hands.rest(3);
+    EXPECT_TRUE(hands.says("mine.toml:46:26: ")) << "on the card above the picture";
+    EXPECT_FALSE(hands.says(path + ":46")) << hands.letters();
 }
 
 }  // namespace

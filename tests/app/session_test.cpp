@@ -2,6 +2,7 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
+#include "figure/stage.hpp"
 #include "output/output.hpp"
 #include "panels/turns.hpp"
 #include "session/recipe.hpp"
@@ -349,6 +350,21 @@ TEST(Session, knows_where_the_present_stands_in_a_plot) {
     const std::vector<double> values = session.values(0, session.now());
     EXPECT_EQ(values[0], 2.0);
     EXPECT_NEAR(values[1], session.now().state.q[0] * 57.29577951308232, 1e-9);
+}
+
+// At the impact where a bouncing is cut the picture shows the restarted motion in contact: the line beside it does, too.
+TEST(Session, SaysAtACutWhatThePictureShows) {
+    Session session = test::session("ball_on_sine");
+    const Event& zeno = session.trajectory().events.at(9);
+    ASSERT_TRUE(zeno.truncation);
+    const double cut = zeno.truncation->t;
+    ASSERT_LT(cut, zeno.t);
+    for (const double t : {0.0, 0.5 * cut, cut, 0.5 * (cut + zeno.t), zeno.t, zeno.t + 0.1}) {
+        const Sample now = session.at(t);
+        const PhaseLabel label = phase_label(now);
+        EXPECT_EQ(label.color == Phase::Kind::constrained, now.contact) << t;
+        EXPECT_EQ(label.text, t < cut ? "hybrid" : t < zeno.t ? "cut, in contact" : "constrained") << t;
+    }
 }
 
 }  // namespace
