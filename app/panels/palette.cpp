@@ -155,9 +155,11 @@ void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
     paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
 }
 
+// Also on the card of keys and in the gallery, whose place the palette takes.
 bool is_shortcut(const PanelState& state) {
     const ImGuiIO& io = ImGui::GetIO();
-    return io.KeyCtrl && io.KeyShift && takes_key(state, 'P', false);
+    const bool is_card = ImGui::IsPopupOpen("Keys and words") || ImGui::IsPopupOpen("Gallery");
+    return io.KeyCtrl && io.KeyShift && is_pressed('P', false) && (is_card || is_in_front(state));
 }
 
 void show_content(const Session& session, PanelState& state, Commands& commands) {
