@@ -82,7 +82,8 @@ Vector ContactForces::generalised() {
     return Q;
 }
 
-void ContactForces::run_view(Evaluator<double>& view, const Sample& sample) {
+void ContactForces::run_view(Evaluator<double>& view, const Sample& sample, const std::vector<bool>& reads) {
+    const auto is_read = [&](std::size_t slot) { return reads.empty() || reads[slot]; };
     const Layout& layout = model_->layout();
     set_state(view, sample.state);
     view.input(layout.work()) = sample.work;
@@ -92,8 +93,8 @@ void ContactForces::run_view(Evaluator<double>& view, const Sample& sample) {
     } else {
         set(sample);
         for (std::size_t i = 0; i < layout.contacts; ++i) {
-            view.input(layout.acceleration(i)) = acceleration(i);
-            view.input(layout.force(i)) = force(i);
+            if (is_read(layout.acceleration(i))) view.input(layout.acceleration(i)) = acceleration(i);
+            if (is_read(layout.force(i))) view.input(layout.force(i)) = force(i);
         }
     }
     view.run();

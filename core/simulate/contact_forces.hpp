@@ -31,8 +31,9 @@ class ContactForces {
     // sum lambda_i g_i', as a generalised force.
     Vector generalised();
 
-    // Gives the program of a view all that it may ask for of a sample, and runs it.
-    void run_view(Evaluator<double>& view, const Sample& sample);
+    // Gives the program of a view all that it may ask for of a sample, and runs it. `reads`, by slot: the inputs that it depends
+    // on (Program::inputs_of); empty: all of them.
+    void run_view(Evaluator<double>& view, const Sample& sample, const std::vector<bool>& reads = {});
 
  private:
     const ContactTerms<Evaluator<double>>& surface(std::size_t contact);

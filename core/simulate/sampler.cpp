@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "model/model.hpp"
 #include "simulate/surfaces.hpp"
@@ -102,14 +104,45 @@ Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
     return sample;
 }
 
-std::vector<Sample> Sampler::all(int between) { return of_every(1, between, {}); }
+// With `between` instants inside each step.
+std::vector<Sample> Sampler::listed(const Selection& selection, int between) const {
+    std::vector<Sample> samples;
+    visit(selection, [&](const Sample& sample, const Piece* piece) {
+        for (int k = 1; k <= between && piece != nullptr; ++k) {
+            const double t = piece->start + (piece->end - piece->start) * k / (between + 1);
+            Sample inside = in(*piece, t);
+            inside.j = sample.j;
+            inside.phase = sample.phase;
+            samples.push_back(inside);
+        }
+        samples.push_back(sample);
+    });
+    return samples;
+}
+
+std::vector<Sample> Sampler::all(int between) { return listed(whole_run(), between); }
 
 std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {
     if (trajectory_.pieces.size() <= most_steps) return all(between);  // also of a run that ended before its first step
-    const std::size_t stride = 1 + (trajectory_.pieces.size() - 1) / most_steps;
-    std::vector<bool> whole = blocks_with_events(stride);
-    if (static_cast<std::size_t>(std::count(whole.begin(), whole.end(), true)) * stride > most_steps) whole.clear();
-    return of_every(stride, between, whole);
+    Selection selection = whole_run();
+    selection.stride = 1 + (trajectory_.pieces.size() - 1) / most_steps;
+    std::vector<bool>& whole = selection.whole;
+    whole = blocks_with_events(selection.stride);
+    if (static_cast<std::size_t>(std::count(whole.begin(), whole.end(), true)) * selection.stride > most_steps)
+        whole.clear();
+    return listed(selection, between);
+}
+
+void Sampler::walk(double from, double to, bool with_work, const Visitor& take) const {
+    Selection selection = whole_run();
+    selection.from = std::max(from, selection.from);
+    selection.to = std::min(to, selection.to);
+    selection.with_work = with_work;
+    visit(selection, take);
+}
+
+Sampler::Selection Sampler::whole_run() const {
+    return {trajectory_.run.options.start_time, trajectory_.end_time, true, 1, {}};
 }
 
 // Of the blocks of so many steps, those in which something happens, or at an end of which.
@@ -128,65 +161,74 @@ std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
 
 // One step of each `stride` that follow one another, and not always the same of them: a motion may have that period. Of a
 // block that is to be `whole` every step.
-std::vector<Sample> Sampler::of_every(std::size_t stride, int between, const std::vector<bool>& whole) {
-    std::vector<Sample> samples;
+void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
+    const std::size_t stride = selection.stride, count = trajectory_.pieces.size();
     const std::vector<Event>& events = trajectory_.events;
-    std::size_t j = 0, phase = 0;
+    const std::vector<Piece>& pieces = trajectory_.pieces;
+    const auto before = [](const Event& event, double t) { return event.t < t; };
+    auto j = static_cast<std::size_t>(std::lower_bound(events.begin(), events.end(), selection.from, before) -
+                                      events.begin());
     const auto kind = [&](double start) {
-        while (phase + 1 < trajectory_.phases.size() && trajectory_.phases[phase + 1].start <= start) ++phase;
-        return trajectory_.phases[phase].kind;
+        const auto later = [](double t, const Phase& phase) { return t < phase.start; };
+        const auto after = std::upper_bound(trajectory_.phases.begin(), trajectory_.phases.end(), start, later);
+        return after == trajectory_.phases.begin() ? after->kind : std::prev(after)->kind;
     };
-    const auto add = [&](double t, Phase::Kind in, ContactSet held, ContactSet carriers, const State& state,
-                         double work, double loss) {
-        samples.push_back({t, static_cast<int>(j), in, !held.empty(), held, state, work, loss, carriers});
+    std::optional<std::pair<double, std::size_t>> last;  // t and j of the last sample
+    const auto take = [&](const Sample& sample, const Piece* piece) {
+        visitor(sample, piece);
+        last = {sample.t, j};
     };
-    const auto add_from = [&](const Piece& piece, double t, Phase::Kind in) {
-        add(t, in, piece.held, piece.carriers, state(piece, t), work(piece, t), piece.loss);
+    const auto sample_in = [&](const Piece& piece, double t, Phase::Kind phase) {
+        Sample sample = in(piece, t, selection.with_work);
+        sample.j = static_cast<int>(j);
+        sample.phase = phase;
+        return sample;
     };
     // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
     const auto pass_events = [&](double until) {
         bool any = false;
         for (; j < events.size() && events[j].t <= until; any = true) {
             const Event& event = events[j];
-            const bool shown =
-                !samples.empty() && samples.back().t == event.t && samples.back().j == static_cast<int>(j);
+            const bool shown = last && last->first == event.t && last->second == j;
             const bool is_left_out = stride > 1 && event.t < until;
             if (event.kind == Event::Kind::impact && !shown && !is_left_out) {
-                const ContactSet before = held_before(trajectory_, j);
-                add(event.t, before.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained, before,
-                    carriers_of(trajectory_, before, event.t), {event.q, event.v_before, event.t},
-                    j == 0 ? 0.0 : events[j - 1].work, j == 0 ? 0.0 : events[j - 1].loss);
+                const ContactSet held = held_before(trajectory_, j);
+                take({event.t, static_cast<int>(j), held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained,
+                      !held.empty(), held, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
+                      j == 0 ? 0.0 : events[j - 1].loss, carriers_of(trajectory_, held, event.t)},
+                     nullptr);
             }
             ++j;
         }
         return any;
     };
     ContactSet held;
-    const std::size_t count = trajectory_.pieces.size();
-    const auto take = [&](const Piece& piece) {
-        const bool fresh = pass_events(piece.start) || samples.empty() || piece.held != held ||
-                           (stride > 1 && samples.back().t != piece.start);
+    const auto take_step = [&](const Piece& piece) {
+        const double start = std::max(piece.start, selection.from), end = std::min(piece.end, selection.to);
+        const bool fresh = pass_events(start) || !last || piece.held != held || (stride > 1 && last->first != start);
         held = piece.held;
-        const Phase::Kind in = kind(piece.start);
-        if (fresh) add_from(piece, piece.start, in);
-        for (int k = 1; k <= between; ++k) {
-            const double t = piece.start + (piece.end - piece.start) * k / (between + 1);
-            add_from(piece, t, in);
-        }
-        add_from(piece, piece.end, in);
+        const Phase::Kind phase = kind(piece.start);
+        if (fresh) take(sample_in(piece, start, phase), nullptr);
+        take(sample_in(piece, end, phase), &piece);
     };
-    for (std::size_t block = 0; block * stride < count; ++block) {
-        const std::size_t first = block * stride, last = std::min(first + stride, count);
-        if (block < whole.size() && whole[block])
-            std::for_each(trajectory_.pieces.begin() + static_cast<std::ptrdiff_t>(first),
-                          trajectory_.pieces.begin() + static_cast<std::ptrdiff_t>(last), take);
+    const auto is_before = [](double t, const Piece& piece) { return t < piece.start; };
+    const auto first_step = std::upper_bound(pieces.begin(), pieces.end(), selection.from, is_before);
+    const auto begin = static_cast<std::size_t>(first_step - pieces.begin());
+    for (std::size_t block = (begin > 0 ? begin - 1 : 0) / stride; block * stride < count; ++block) {
+        const std::size_t first = block * stride, end = std::min(first + stride, count);
+        if (pieces[first].start > selection.to) break;
+        if (block < selection.whole.size() && selection.whole[block])
+            std::for_each(pieces.begin() + static_cast<std::ptrdiff_t>(first),
+                          pieces.begin() + static_cast<std::ptrdiff_t>(end), take_step);
         else
-            take(trajectory_.pieces[std::min(first + block * 7919 % stride, count - 1)]);
+            take_step(pieces[std::min(first + block * 7919 % stride, count - 1)]);
     }
-    if (pass_events(trajectory_.end_time) || samples.empty())
-        add(trajectory_.end_time, trajectory_.end_phase, trajectory_.end_held, trajectory_.phases.back().carriers,
-            trajectory_.end, trajectory_.work, trajectory_.loss);
-    return samples;
+    if (selection.to < trajectory_.end_time && last) return;
+    if (pass_events(trajectory_.end_time) || !last)
+        take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_held.empty(),
+              trajectory_.end_held, trajectory_.end, trajectory_.work, trajectory_.loss,
+              trajectory_.phases.back().carriers},
+             nullptr);
 }
 
 }  // namespace achilles

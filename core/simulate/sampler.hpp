@@ -1,6 +1,7 @@
 // The states of a trajectory between its step ends.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -41,12 +42,25 @@ class Sampler {
     // The same of at most so many steps, spread over the run, and of the events that border on them; where events are few as
     // many steps again around them.
     std::vector<Sample> some(std::size_t most_steps, int between);
+    // The step ends and events of [from, to] one by one, in time, and the states at both ends. `piece` is the step that leads
+    // to a sample from the one before it; null where no step does: at the start, and before and after an event.
+    using Visitor = std::function<void(const Sample& sample, const Piece* piece)>;
+    void walk(double from, double to, bool with_work, const Visitor& take) const;
 
  private:
+    // Which steps are visited.
+    struct Selection {
+        double from = 0.0, to = 0.0;
+        bool with_work = true;
+        std::size_t stride = 1;
+        std::vector<bool> whole{};
+    };
+    Selection whole_run() const;
+    void visit(const Selection& selection, const Visitor& visitor) const;
+    std::vector<Sample> listed(const Selection& selection, int between) const;
     struct Projection;
     State state(const Piece& piece, double t) const;
     double work(const Piece& piece, double t) const;
-    std::vector<Sample> of_every(std::size_t stride, int between, const std::vector<bool>& whole);
     std::vector<bool> blocks_with_events(std::size_t stride) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
