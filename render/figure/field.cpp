@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
+#include <utility>
 
 namespace achilles {
 
@@ -24,7 +27,7 @@ bool crosses(const Corner& a, const Corner& b) {
 }  // namespace
 
 Field::Field(const Drawing& limits, const PlaneFunction& value, int columns, int rows)
-    : limits_(limits), columns_(columns), rows_(rows) {
+    : value_(value), limits_(limits), columns_(columns), rows_(rows) {
     limits_.shapes.clear();
     values_.resize(static_cast<std::size_t>((columns_ + 1) * (rows_ + 1)));
     for (int j = 0; j <= rows_; ++j)
@@ -43,7 +46,93 @@ Field Field::least(std::span<const Field> fields) {
     for (const Field& field : fields)
         for (std::size_t i = 0; i < field.values_.size(); ++i)
             result.values_[i] = std::min(result.values_[i], field.values_[i]);
+    std::vector<PlaneFunction> all;
+    for (const Field& field : fields) all.push_back(field.value_);
+    result.value_ = [all](const Point& p) {
+        double least = all[0](p);
+        for (std::size_t i = 1; i < all.size(); ++i) least = std::min(least, all[i](p));
+        return least;
+    };
     return result;
+}
+
+Field::Square Field::cell(int column, int row) const {
+    return {corner(column, row), corner(column + 1, row), corner(column + 1, row + 1), corner(column, row + 1)};
+}
+
+// Whether zero is crossed between the corners of a cell, or as far from it as the values bend in the length of a cell, so that
+// a crest may reach into the cell.
+bool Field::may_be_crossed(int column, int row) const {
+    const auto at = [&](int i, int j) { return values_[static_cast<std::size_t>(j * (columns_ + 1) + i)]; };
+    double low = std::numeric_limits<double>::infinity(), high = -low, bend = 0.0;
+    for (int j = row; j <= row + 1; ++j)
+        for (int i = column; i <= column + 1; ++i) {
+            const double here = at(i, j);
+            if (!std::isfinite(here)) return true;
+            low = std::min(low, here), high = std::max(high, here);
+            const double across = i > 0 && i < columns_ ? std::abs(at(i - 1, j) - 2.0 * here + at(i + 1, j)) : 0.0;
+            const double upwards = j > 0 && j < rows_ ? std::abs(at(i, j - 1) - 2.0 * here + at(i, j + 1)) : 0.0;
+            bend = std::max(bend, across + upwards);
+        }
+    constexpr double share = 0.25;  // an eighth in a parabola
+    return low <= share * bend && high >= -share * bend;
+}
+
+std::vector<Field::Square> Field::parts_of(const Square& cell) const {
+    constexpr int n = 4;
+    std::array<std::array<Corner, n + 1>, n + 1> grid;
+    const Point &from = cell[0].at, &to = cell[2].at;
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            // The corners themselves, so that what is in cells side by side meets.
+            const bool is_corner = (i == 0 || i == n) && (j == 0 || j == n);
+            const std::size_t which = j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2);
+            Corner& corner = grid[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
+            corner = is_corner ? cell[which]
+                               : corner_at({i == n ? to.x : from.x + (to.x - from.x) * i / n,
+                                            j == n ? to.y : from.y + (to.y - from.y) * j / n});
+        }
+    std::vector<Square> parts;
+    for (std::size_t j = 0; j < n; ++j)
+        for (std::size_t i = 0; i < n; ++i)
+            parts.push_back({grid[j][i], grid[j][i + 1], grid[j + 1][i + 1], grid[j + 1][i]});
+    return parts;
+}
+
+// On the edge between two corners of different signs. By regula falsi, as Illinois has it; from the same end in both cells.
+Point Field::zero_between(const Corner& a, const Corner& b) const {
+    constexpr int rounds = 6;
+    const bool turned = a.at.x > b.at.x || (a.at.x == b.at.x && a.at.y > b.at.y);
+    Corner low = turned ? b : a, high = turned ? a : b;
+    const double small = 1e-9 * (std::abs(a.value) + std::abs(b.value));
+    Point at = crossing(low, high);
+    for (int round = 0; round < rounds; ++round) {
+        const Corner middle = corner_at(at);
+        if (!std::isfinite(middle.value) || std::abs(middle.value) <= small) break;
+        Corner& other = crosses(low, middle) ? low : high;
+        (crosses(low, middle) ? high : low) = middle;
+        other.value *= 0.5;
+        at = crossing(low, high);
+    }
+    return at;
+}
+
+std::vector<Point> Field::zero_line() const {
+    std::vector<Point> line;
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    for (int j = 0; j < rows_; ++j)
+        for (int i = 0; i < columns_; ++i) {
+            if (!may_be_crossed(i, j)) continue;
+            for (const Square& part : parts_of(cell(i, j))) {
+                std::vector<Point> zeros;
+                for (std::size_t k = 0; k < 4; ++k)
+                    if (crosses(part[k], part[(k + 1) % 4])) zeros.push_back(zero_between(part[k], part[(k + 1) % 4]));
+                // Two of them, or four in a saddle, which is two segments.
+                for (std::size_t k = 0; k + 1 < zeros.size(); k += 2)
+                    line.insert(line.end(), {zeros[k], zeros[k + 1], {nothing, nothing}});
+            }
+        }
+    return line;
 }
 
 std::vector<Point> Field::level_line(double level) const {
@@ -71,28 +160,46 @@ std::vector<Point> Field::level_line(double level) const {
 
 std::vector<std::vector<Point>> Field::not_negative() const {
     std::vector<std::vector<Point>> parts;
-    for (int j = 0; j < rows_; ++j) {
-        int begin = 0;  // of whole cells side by side, which are one rectangle
-        const auto close = [&](int end) {
-            if (begin < end)
-                parts.push_back(
-                    {corner(begin, j).at, corner(end, j).at, corner(end, j + 1).at, corner(begin, j + 1).at});
-        };
-        for (int i = 0; i < columns_; ++i) {
-            const std::array cell{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
-            std::vector<Point> part;
-            int inside = 0;
-            for (std::size_t k = 0; k < 4; ++k) {
-                const Corner &a = cell[k], &b = cell[(k + 1) % 4];
-                if (a.value >= 0.0) part.push_back(a.at), ++inside;
-                if (crosses(a, b)) part.push_back(crossing(a, b));
-            }
-            if (inside == 4) continue;
-            close(i);
-            begin = i + 1;
-            if (part.size() >= 3) parts.push_back(part);
+    // Squares side by side of which all is inside are one rectangle.
+    std::optional<std::pair<Square, Square>> run;  // the first and the last
+    const auto close = [&] {
+        if (run) parts.push_back({run->first[0].at, run->second[1].at, run->second[2].at, run->first[3].at});
+        run.reset();
+    };
+    const auto add = [&](const Square& square) {
+        std::vector<Point> part;
+        int inside = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const Corner &a = square[k], &b = square[(k + 1) % 4];
+            if (a.value >= 0.0) part.push_back(a.at), ++inside;
+            if (crosses(a, b)) part.push_back(zero_between(a, b));
         }
-        close(columns_);
+        if (inside == 4) {
+            run = std::pair{run ? run->first : square, square};
+            return;
+        }
+        close();
+        if (part.size() >= 3) parts.push_back(part);
+    };
+    const auto is_inside = [](const Square& square) {
+        return std::all_of(square.begin(), square.end(), [](const Corner& c) { return c.value >= 0.0; });
+    };
+    for (int j = 0; j < rows_; ++j) {
+        for (int i = 0; i < columns_; ++i) {
+            const Square square = cell(i, j);
+            const std::vector<Square> fine = may_be_crossed(i, j) ? parts_of(square) : std::vector<Square>{};
+            if (std::all_of(fine.begin(), fine.end(), is_inside)) {
+                add(square);
+                continue;
+            }
+            close();
+            const std::size_t side = fine.size() / 4;
+            for (std::size_t k = 0; k < fine.size(); ++k) {
+                add(fine[k]);
+                if ((k + 1) % side == 0) close();
+            }
+        }
+        close();
     }
     return parts;
 }
@@ -137,13 +244,62 @@ std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span
                 all[i].insert(all[i].end(), line.begin() + static_cast<std::ptrdiff_t>(k),
                               line.begin() + static_cast<std::ptrdiff_t>(k + 3));
         }
+        all[i] = joined(all[i]);
     }
     return all;
 }
 
-std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions) {
+namespace {
+
+// Segments by their ends.
+class Chains {
+ public:
+    explicit Chains(const std::vector<Point>& segments) {
+        for (std::size_t k = 0; k + 1 < segments.size(); k += 3) {
+            for (const std::size_t end : {k, k + 1}) at_[key(segments[end])].push_back(ends_.size());
+            ends_.push_back({segments[k], segments[k + 1]});
+        }
+        used_.assign(ends_.size(), false);
+    }
+    std::vector<Point> lines() {
+        for (std::size_t i = 0; i < ends_.size(); ++i)  // from where a line begins
+            for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
+                if (!used_[i] && at_[key(ends_[i][end])].size() != 2) follow(i, end);
+        for (std::size_t i = 0; i < ends_.size(); ++i)
+            if (!used_[i]) follow(i, 0);
+        return std::move(lines_);
+    }
+
+ private:
+    static std::pair<double, double> key(const Point& p) { return {p.x, p.y}; }
+    void follow(std::size_t segment, std::size_t from) {
+        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+        lines_.push_back(ends_[segment][from]);
+        for (;;) {
+            used_[segment] = true;
+            const Point& end = ends_[segment][1 - from];
+            lines_.push_back(end);
+            const std::vector<std::size_t>& here = at_[key(end)];
+            const auto next = std::find_if(here.begin(), here.end(), [&](std::size_t i) { return !used_[i]; });
+            if (here.size() != 2 || next == here.end()) break;
+            segment = *next;
+            from = key(ends_[segment][0]) == key(end) ? 0 : 1;
+        }
+        lines_.push_back({nothing, nothing});
+    }
+    std::vector<std::array<Point, 2>> ends_;
+    std::map<std::pair<double, double>, std::vector<std::size_t>> at_;
+    std::vector<bool> used_;
+    std::vector<Point> lines_;
+};
+
+}  // namespace
+
+std::vector<Point> joined(const std::vector<Point>& segments) { return Chains(segments).lines(); }
+
+std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions, int columns, int rows) {
     std::vector<Field> fields;
-    for (const PlaneFunction& function : functions) fields.emplace_back(limits, function);
+    for (const PlaneFunction& function : functions) fields.emplace_back(limits, function, columns, rows);
     std::vector<Point> all;
     for (const std::vector<Point>& line : borders(fields, functions)) all.insert(all.end(), line.begin(), line.end());
     return all;

@@ -20,9 +20,10 @@ class Field {
     // The least of several over the same part, of which there is one at least.
     static Field least(std::span<const Field> fields);
 
-    // By marching squares: segments, separated by NaN points.
+    // By marching squares on the grid: segments, separated by NaN points.
     std::vector<Point> level_line(double level) const;
-    std::vector<Point> zero_line() const { return level_line(0.0); }
+    // The same for zero, with a finer grid wherever the line may be and its points on the zero itself.
+    std::vector<Point> zero_line() const;
     // Convex polygons that fill the part where the function is zero or above; none covers another.
     std::vector<std::vector<Point>> not_negative() const;
     double largest() const;  // size of a value
@@ -33,17 +34,28 @@ class Field {
  private:
     struct Corner {
         Point at;
-        double value;
+        double value = 0.0;
     };
     Corner corner(int column, int row) const;
+    using Square = std::array<Corner, 4>;  // against the clock, from the lower left
+    Square cell(int column, int row) const;
+    Corner corner_at(const Point& at) const { return {at, value_(at)}; }
+    bool may_be_crossed(int column, int row) const;
+    std::vector<Square> parts_of(const Square& cell) const;
+    Point zero_between(const Corner& a, const Corner& b) const;
 
+    PlaneFunction value_;
     Drawing limits_;
     int columns_, rows_;
     std::vector<double> values_;  // row by row
 };
 
-// The border of where none of several functions is negative: the zero line of each, less where another is negative.
+// The border of where none of several functions is negative: the zero line of each, less where another is negative. Lines,
+// separated by NaN points.
 std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> functions);
-std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions);
+std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions, int columns = 160,
+                          int rows = 120);
+// Segments, separated by NaN points, as lines: those that share an end follow one another.
+std::vector<Point> joined(const std::vector<Point>& segments);
 
 }  // namespace achilles
