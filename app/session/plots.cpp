@@ -237,25 +237,16 @@ void Plots::perform(const command::Link& command) {
 std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
                                   Medium medium) const {
     std::vector<Panel> panels;
-    // Plots over the same part of time share their samples.
-    Framing::Limits part;
-    std::vector<Sample> close;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
         // What belongs to the differences is none of the quantities' own.
         if (framing.difference) framing.x.reset(), framing.y.reset();
         framing.legend = false;
         framing.for_print = medium == Medium::print;
-        std::span<const Sample> own = samples;
-        if (plot.over_time() && framing.x) {
-            if (part != framing.x) {
-                part = framing.x;
-                const double low = std::clamp((*part)[0], trajectory.run.options.start_time, trajectory.end_time);
-                close = plot_samples(trajectory, low, std::clamp((*part)[1], low, trajectory.end_time));
-            }
-            own = close;
-        }
-        panels.push_back(achilles::compose(trajectory, own, *plot.prepared, theme, framing));
+        // On a large screen the grid is about as wide as a page; a plot has its part of it.
+        framing.size.width /= std::sqrt(columns_);
+        framing.size.height /= std::sqrt(rows_);
+        panels.push_back(achilles::compose(trajectory, samples, *plot.prepared, theme, framing));
         if (medium == Medium::screen) panels.back().title.clear();
     }
     return panels;

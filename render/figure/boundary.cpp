@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "figure/field.hpp"
 #include "simulate/contact_forces.hpp"
@@ -105,6 +106,56 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
     return is_place ? std::optional(part) : std::nullopt;
 }
 
+// The line h = 0 between two of its points, less the first, until its chords are straight in the picture.
+class Straightener {
+ public:
+    Straightener(PlaneFunction gap, Place& place, const Panel& panel)
+        : gap_(std::move(gap)), place_(place), panel_(panel) {}
+    void add(const Point& a, const Point& b, std::vector<Point>& line, int halvings = 0) {
+        constexpr int most = 8;
+        constexpr double flat = 1e-4;  // of the picture: a tenth of a pixel
+        const auto middle = zero_near(a, b);
+        if (middle && halvings < most) {
+            const Point p = in_picture(a), q = in_picture(*middle), r = in_picture(b);
+            const double x = r.x - p.x, y = r.y - p.y, length = std::hypot(x, y);
+            const double off = length > 0.0 ? std::abs(x * (q.y - p.y) - y * (q.x - p.x)) / length : 0.0;
+            if (off > flat && off < 1.0) {
+                add(a, *middle, line, halvings + 1);
+                return add(*middle, b, line, halvings + 1);
+            }
+        }
+        line.push_back(place_(b));
+    }
+
+ private:
+    Point in_picture(const Point& q) {
+        const Point p = place_(q);
+        return {(p.x - panel_.x.low) / (panel_.x.high - panel_.x.low),
+                (p.y - panel_.y.low) / (panel_.y.high - panel_.y.low)};
+    }
+    // Straight aside from the middle, no farther than the ends are apart; nothing where it is not there.
+    std::optional<Point> zero_near(const Point& a, const Point& b) {
+        const Point middle{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)}, aside{a.y - b.y, b.x - a.x};
+        const auto at = [&](double s) { return Point{middle.x + s * aside.x, middle.y + s * aside.y}; };
+        constexpr int rounds = 20;
+        constexpr double near = 1e-6;
+        double s = 0.0, before = 1e-2, h = gap_(at(s)), h_before = gap_(at(before));
+        for (int round = 0; round < rounds; ++round) {  // secants
+            const double step = -h * (s - before) / (h - h_before);
+            if (!std::isfinite(step)) return h == 0.0 ? std::optional(at(s)) : std::nullopt;
+            before = s, h_before = h;
+            s += step;
+            if (std::abs(s) > 1.0) return std::nullopt;
+            h = gap_(at(s));
+            if (std::abs(step) < near) return at(s);
+        }
+        return std::nullopt;
+    }
+    PlaneFunction gap_;
+    Place& place_;
+    const Panel& panel_;
+};
+
 }  // namespace
 
 bool has_moving_gap(const Model& model) {
@@ -114,7 +165,7 @@ bool has_moving_gap(const Model& model) {
 }
 
 std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-                            const Panel& panel, std::optional<double> t) {
+                            const Panel& panel, std::optional<double> t, const Resolution& size) {
     const auto part = part_of(trajectory, samples, view, panel);
     if (!part) return {};
     const Model& model = *trajectory.model;
@@ -131,10 +182,29 @@ std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample
             return gap.output(0);
         });
     }
-    std::vector<Point> line = border(part->box, gaps);
+    // A crest that is narrower than a few cells would be cut off.
+    constexpr double cell = 2.5;  // pixels
+    constexpr int least_columns = 160, least_rows = 120, most = 640;
+    const int columns = std::clamp(static_cast<int>(size.width / cell), least_columns, most),
+              rows = std::clamp(static_cast<int>(size.height / cell), least_rows, most);
+    std::vector<Field> fields;
+    for (const PlaneFunction& gap : gaps) fields.emplace_back(part->box, gap, columns, rows);
+    const std::vector<std::vector<Point>> lines = borders(fields, gaps);
     Place place(trajectory, view, part->pair);
-    for (Point& point : line)
-        if (std::isfinite(point.x)) point = place(point);
+    std::vector<Point> line;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        Straightener straightener(gaps[i], place, panel);
+        const Point* before = nullptr;
+        for (const Point& point : lines[i]) {
+            if (!std::isfinite(point.x))
+                line.push_back(point);
+            else if (before == nullptr || !std::isfinite(before->x))
+                line.push_back(place(point));
+            else
+                straightener.add(*before, point, line);
+            before = &point;
+        }
+    }
     return line;
 }
 

@@ -45,33 +45,11 @@ Sample sample_at(const Trajectory& trajectory, const Event& event) {
 }
 
 std::vector<Sample> plot_samples(const Trajectory& trajectory) {
-    // A few thousand points fill any screen; between the step ends of a short run there is room for more. Where there
-    // are more flights than that each has its middle, lest a run of very many bounces lie flat on the ground.
-    constexpr std::size_t wanted = 4000;
+    constexpr std::size_t wanted = 2000, most_steps = 20000;
     const std::size_t steps = std::max<std::size_t>(1, trajectory.pieces.size());
-    const int between = static_cast<int>(std::clamp<std::size_t>(wanted / steps, 1, 400));
-    // Of a run that took far more steps than a screen has columns, some: more would be drawn over one another.
-    constexpr std::size_t most_steps = 100000;
+    const int between = static_cast<int>(std::clamp<std::size_t>(wanted / steps, 1, 200));
     Sampler sampler(trajectory);
-    return steps > most_steps ? sampler.some(most_steps / 4, between) : sampler.all(between);
-}
-
-std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to) {
-    constexpr int wanted = 2400;
-    Sampler sampler(trajectory);
-    std::vector<Sample> samples;
-    auto event = std::lower_bound(trajectory.events.begin(), trajectory.events.end(), from,
-                                  [](const Event& e, double t) { return e.t < t; });
-    for (int i = 0; i <= wanted; ++i) {
-        const double t = i == wanted ? to : from + (to - from) * i / wanted;
-        // An event between two samples is one of its own, seen from both sides.
-        for (; event != trajectory.events.end() && event->t <= t; ++event) {
-            samples.push_back(sampler.at(std::nextafter(event->t, from)));
-            samples.push_back(sampler.at(event->t));
-        }
-        samples.push_back(sampler.at(t));
-    }
-    return samples;
+    return steps > most_steps ? sampler.some(most_steps / 2, between) : sampler.all(between);
 }
 
 std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view) {
@@ -105,40 +83,45 @@ Point point_of(double x, double y) {
     return std::isfinite(x) && std::isfinite(y) ? Point{x, y} : Point{nothing, nothing};
 }
 
-// Fills the curves. Where the phase changes one breaks and the other goes on from the same point.
-void trace(Panel& panel, std::span<const Sample> samples, Values& values, const Framing& framing, Range& x_range,
-           Range& y_range) {
-    const std::size_t curves = panel.curves.size() / 2;
-    std::vector<double> last(curves + 1), now(curves + 1);
-    const Sample* previous = nullptr;
+// Some instants of a part of a run, and some of its events.
+std::vector<Sample> some_samples(const Trajectory& trajectory, double from, double to) {
+    constexpr int evenly = 200;
+    Sampler sampler(trajectory);
+    std::vector<Sample> samples;
+    for (int i = 0; i <= evenly; ++i) samples.push_back(sampler.at(i == evenly ? to : from + (to - from) * i / evenly));
+    const auto before = [](const Event& event, double t) { return event.t < t; };
+    const auto& events = trajectory.events;
+    const auto first = std::lower_bound(events.begin(), events.end(), from, before),
+               last = std::lower_bound(first, events.end(), to, before);
+    for (auto event = first; event < last; event += 1 + (last - first) / evenly)
+        for (const Vector* v : {&event->v_before, &event->v_after}) {
+            samples.push_back(sample_at(trajectory, *event));
+            samples.back().state.v = *v;
+        }
+    return samples;
+}
+
+// The ranges of x and of all y that are shown.
+void include(std::span<const Sample> samples, Values& values, std::size_t curves, const Framing& framing,
+             Range& x_range, Range& y_range) {
     for (const Sample& sample : samples) {
         values.set(sample);
-        for (std::size_t i = 0; i < now.size(); ++i) now[i] = values[i];
-        const bool changed = previous == nullptr || previous->phase != sample.phase;
-        for (std::size_t i = 0; i < curves; ++i) {
-            if (framing.hidden.contains(i)) continue;
-            std::vector<Point>& points = panel.curves[2 * i + (sample.phase == Phase::Kind::hybrid ? 0 : 1)].points;
-            if (changed && !points.empty()) points.push_back({nothing, nothing});
-            if (changed && previous != nullptr) points.push_back(point_of(last[0], last[i + 1]));
-            points.push_back(point_of(now[0], now[i + 1]));
-            x_range.include(points.back().x);
-            y_range.include(points.back().y);
-        }
-        previous = &sample;
-        std::swap(last, now);
+        x_range.include(values[0]);
+        for (std::size_t i = 0; i < curves; ++i)
+            if (!framing.hidden.contains(i)) y_range.include(values[i + 1]);
     }
 }
 
-// Of the events until `end`.
-void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values& values, const Framing& framing,
-                 const Theme& theme) {
+// Of some of the events.
+void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
+                 const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
     for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         const Trajectory* const run = &trajectory;
         markers.label = events_name({&run, 1}, kind);
-        for (const Event& event : trajectory.events) {
-            if (event.kind != kind || event.t > end) continue;
+        for (const Event& event : events) {
+            if (event.kind != kind) continue;
             values.set(sample_at(trajectory, event));
             for (std::size_t i = 0; i < curves; ++i) {
                 if (framing.hidden.contains(i)) continue;
@@ -150,36 +133,17 @@ void add_markers(Panel& panel, const Trajectory& trajectory, double end, Values&
 }
 
 // Where a held contact was opened, above the impact that did it.
-void add_opened(Panel& panel, const Trajectory& trajectory, double end, Values& values, const Framing& framing,
-                const Theme& theme) {
+void add_opened(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
+                const Framing& framing, const Theme& theme) {
     Markers& markers = panel.markers.emplace_back(opened_markers(theme));
-    for (const Event& event : trajectory.events) {
-        if (event.opened.empty() || event.t > end) continue;
+    for (const Event& event : events) {
+        if (event.opened.empty()) continue;
         values.set(sample_at(trajectory, event));
         for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
             const Point point = point_of(values[0], values[i + 1]);
             if (!framing.hidden.contains(i) && !std::isnan(point.x)) markers.points.push_back(point);
         }
     }
-}
-
-// What lies in one of `columns` columns of the panel shows as a vertical line there: the first point, the lowest, the
-// highest and the last draw the same.
-std::vector<Point> thinned(const std::vector<Point>& points, const Axis& x, double columns) {
-    std::vector<Point> result;
-    const auto column = [&](const Point& p) { return std::floor((p.x - x.low) / (x.high - x.low) * columns); };
-    for (std::size_t begin = 0, end = 0; begin < points.size(); begin = end) {
-        std::size_t low = begin, high = begin;
-        // A NaN is in no column, not even its own: it ends one and is kept.
-        for (end = begin + 1; end < points.size() && column(points[end]) == column(points[begin]); ++end) {
-            if (points[end].y < points[low].y) low = end;
-            if (points[end].y > points[high].y) high = end;
-        }
-        std::array<std::size_t, 4> kept{begin, std::min(low, high), std::max(low, high), end - 1};
-        for (std::size_t i = 0; i < kept.size(); ++i)
-            if (i == 0 || kept[i] != kept[i - 1]) result.push_back(points[kept[i]]);
-    }
-    return result;
 }
 
 // A curve of several is named where it is drawn: one that is in contact all the time is not dashed in the legend.
@@ -219,21 +183,17 @@ double noise_of(const Trajectory& trajectory, std::span<const Sample> samples, V
     return most;
 }
 
-// A run of very many impacts has more points than a screen shows; short runs keep every one. Even where a plot is wider than
-// that many pixels strokes are wider than a column.
-void thin(Panel& panel) {
-    constexpr std::size_t many_points = 20000, many_markers = 8000;
-    for (Curve& curve : panel.curves) {
-        if (curve.points.size() <= many_points) continue;
-        curve.points = thinned(curve.points, panel.x, 1000.0);
-        // Strokes so close together show no dashes, and half a million of these take long to draw.
-        curve.stroke.dash.clear();
-    }
-    for (Markers& markers : panel.markers) {
-        if (markers.points.size() <= many_markers) continue;
-        markers.points = thinned(markers.points, panel.x, 1000.0);
-        markers.edge.a = 0;  // side by side their edges would be all that is seen
-    }
+// Of markers of which there are very many, one in each place that can be told apart.
+void thin(Markers& markers, const Panel& panel, const Resolution& size) {
+    constexpr std::size_t many = 4000;
+    if (markers.points.size() <= many) return;
+    const PanelMap map(panel, {0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)});
+    std::set<std::array<long, 2>> taken;
+    std::erase_if(markers.points, [&](const Point& point) {
+        const Point at = map(point);
+        return !std::isfinite(at.x) || !std::isfinite(at.y) ||
+               !taken.insert({std::lround(at.x), std::lround(at.y)}).second;
+    });
 }
 
 void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, double margin) {
@@ -241,6 +201,82 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
         set_ticks(axis, (*limits)[0], (*limits)[1], 0.0);
     else
         set_ticks(axis, range.low, range.high, margin);
+}
+
+void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& view, const Framing& framing,
+              Range x_range, Range y_range, double unseen) {
+    if (y_range.high - y_range.low <= unseen) {
+        const double middle = 0.5 * (y_range.low + y_range.high);
+        y_range.low = y_range.high = std::abs(middle) <= unseen ? 0.0 : middle;
+    }
+    const bool whole_run = view.quantities()[0].is_time && !framing.log_x;
+    if (whole_run) x_range.low = trajectory.run.options.start_time, x_range.high = trajectory.end_time;
+    set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
+    set_limits(panel.y, framing.y, y_range, 0.07);
+}
+
+// The part of a run that a panel shows, and samples that show where it goes.
+struct Extent {
+    double from = 0.0, to = 0.0;
+    std::vector<Sample> close{};        // of a part
+    std::span<const Sample> samples{};  // those, or of the whole run
+};
+
+Extent extent_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                 const Framing& framing) {
+    Extent extent{trajectory.run.options.start_time, samples.back().t, {}, samples};
+    if (!view.quantities()[0].is_time || !framing.x) return extent;
+    const double factor = view.quantities()[0].factor;
+    extent.from = std::clamp((*framing.x)[0] / factor, extent.from, extent.to);
+    extent.to = std::clamp((*framing.x)[1] / factor, extent.from, extent.to);
+    extent.close = some_samples(trajectory, extent.from, extent.to);
+    extent.samples = extent.close;
+    return extent;
+}
+
+std::span<const Event> events_within(const Trajectory& trajectory, double from, double to) {
+    const auto& events = trajectory.events;
+    const auto first = std::lower_bound(events.begin(), events.end(), from,
+                                        [](const Event&event, double t) { return event.t < t; }),
+               last =
+                   std::upper_bound(first, events.end(), to, [](double t, const Event&event) { return t < event.t; });
+    return {first, last};
+}
+
+// Fills the curves and sets the axes. The samples say about how large the picture is; the curves, exactly.
+void add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent, const PreparedView& view,
+                 Values& values, const Framing& framing) {
+    const std::size_t curves = panel.curves.size() / 2;
+    Range x_range, y_range;
+    x_range.positive = framing.log_x;
+    y_range.positive = framing.log_y;
+    include(extent.samples, values, curves, framing, x_range, y_range);
+    const double unseen = noise_of(trajectory, extent.samples, values, curves);
+    set_axes(panel, trajectory, view, framing, x_range, y_range, unseen);
+    TraceRequest request;
+    request.from = extent.from, request.to = extent.to;
+    request.quantities = curves;
+    for (std::size_t i = 0; i < curves; ++i)
+        if (!framing.hidden.contains(i)) request.shown.push_back(i);
+    request.over_time = view.quantities()[0].is_time;
+    request.with_work = values.reads(trajectory.model->layout().work());
+    request.noise.assign(curves + 1, unseen);
+    request.noise[0] = 0.0;
+    request.size = framing.size;
+    const PanelMap map(panel,
+                       {0.0F, 0.0F, static_cast<float>(framing.size.width), static_cast<float>(framing.size.height)});
+    request.map = &map;
+    Trace traced = trace(trajectory, request, [&](const Sample& sample, std::span<double> all) {
+        values.set(sample);
+        for (std::size_t i = 0; i < all.size(); ++i) all[i] = values[i];
+    });
+    for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+        panel.curves[i].points = std::move(traced.courses[i].points);
+        if (traced.courses[i].is_crowded) panel.curves[i].stroke.dash.clear();
+    }
+    for (std::size_t i = 0; i < traced.ranges.size(); ++i)
+        for (const double x : traced.ranges[i]) (i == 0 ? x_range : y_range).include(x);
+    set_axes(panel, trajectory, view, framing, x_range, y_range, unseen);
 }
 
 // Widens an axis about its middle until it is at least a part of the other one: what is true to shape is no thread.
@@ -287,7 +323,7 @@ void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sa
         if (!curve.stroke.dash.empty() && !framing.log_x && !framing.log_y)
             curve.points = without_retraced(curve.points, panel.x, panel.y);
     panel.boundary.stroke = {theme.surface, 1.0, {}};
-    panel.boundary.points = boundary(trajectory, samples, view, panel);
+    panel.boundary.points = boundary(trajectory, samples, view, panel, {}, framing.size);
     if (panel.equal_axes && !framing.x && !framing.y && !panel.boundary.points.empty())
         show_whole(panel, panel.boundary.points);
 }
@@ -303,25 +339,19 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     Values values(view, trajectory);
     panel.x.logarithmic = framing.log_x;
     panel.y.logarithmic = framing.log_y;
-    Range x_range, y_range;
-    x_range.positive = framing.log_x;
-    y_range.positive = framing.log_y;
     add_curves(panel, view, theme);
-    trace(panel, samples, values, framing, x_range, y_range);
-    if (!single) name_drawn(panel);
-    if (const double unseen = noise_of(trajectory, samples, values, quantities.size() - 1);
-        y_range.high - y_range.low <= unseen) {
-        const double middle = 0.5 * (y_range.low + y_range.high);
-        y_range.low = y_range.high = std::abs(middle) <= unseen ? 0.0 : middle;
-    }
     const bool several = trajectory.model->contacts() > 1 && !samples.empty();
-    if (!samples.empty()) add_markers(panel, trajectory, samples.back().t, values, framing, theme);
-    if (several) add_opened(panel, trajectory, samples.back().t, values, framing, theme);
-    const bool whole_run = over_time && !framing.log_x;
-    if (whole_run) x_range.low = trajectory.run.options.start_time, x_range.high = trajectory.end_time;
-    set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
-    set_limits(panel.y, framing.y, y_range, 0.07);
-    thin(panel);
+    if (!samples.empty()) {
+        const Extent extent = extent_of(trajectory, samples, view, framing);
+        add_courses(panel, trajectory, extent, view, values, framing);
+        const std::span<const Event> events = events_within(trajectory, extent.from, extent.to);
+        add_markers(panel, trajectory, events, values, framing, theme);
+        if (several) add_opened(panel, trajectory, events, values, framing, theme);
+        for (Markers& markers : panel.markers) thin(markers, panel, framing.size);
+    } else {
+        set_axes(panel, trajectory, view, framing, Range{}, Range{}, 0.0);
+    }
+    if (!single) name_drawn(panel);
     if (several && over_time) panel.time_bars = contact_bars(trajectory, samples.back().t, panel.x, theme);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
     panel.y.label = view.label().empty() ? view.unit() : with_unit(view.label(), view.unit());

@@ -8,6 +8,7 @@
 
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
+#include "figure/trace.hpp"
 #include "model/model.hpp"
 #include "simulate/sampler.hpp"
 
@@ -48,11 +49,9 @@ std::string name_of(const ViewDescription& view);
 // What stands over its plot: its name, set as a formula where that is what is plotted.
 std::string title_of(const ViewDescription& view);
 
-// The samples a plot needs: dense enough to look smooth, bounded for any number of impacts. All panels share them.
+// Samples that show where a run goes: its steps, of a short run with more between them, of a very long one some of them.
+// Curves are sampled by themselves (trace.hpp).
 std::vector<Sample> plot_samples(const Trajectory& trajectory);
-
-// The same for a part of the run: as dense as a plot of it needs, however short it is.
-std::vector<Sample> plot_samples(const Trajectory& trajectory, double from, double to);
 
 // How a panel is looked at. Limits are in the units that are shown; without them the data fits. On a logarithmic axis
 // only what is positive is seen.
@@ -67,6 +66,7 @@ struct Framing {
     bool for_print = false;
     // Not the quantities but how far those of other runs are from them, over time (difference.hpp).
     bool difference = false;
+    Resolution size{};  // of the plot area, about
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 

@@ -177,6 +177,7 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
     framing.for_print = true;
+    framing.size = style.size;
     std::vector<Panel> panels;
     for (const ViewDescription& view : views) {
         const PreparedView prepared(*trajectory.model, view);

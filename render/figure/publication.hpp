@@ -12,6 +12,7 @@ struct PublicationStyle {
     bool ordered = false;      // the panels stay in their order, even where a path would stand better as the first
     double shape = 1.5;        // of the picture: its width over its height
     bool dark = false;         // for a screen in a dark room, not for paper
+    Resolution size{};         // of the picture, pixels: how fine its curves are
 };
 
 // Throws InputError for a view that cannot be evaluated. With a proof of the run where there is one.

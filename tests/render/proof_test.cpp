@@ -90,9 +90,8 @@ TEST(ProofTube, IsDrawnWhereItIsSeen) {
     Panel panel;
     {
         const PreparedView prepared(*ball.run.model, over_time({"x"}));
-        panel = with_proof(
-            compose(ball.run, plot_samples(ball.run, 3.5 - reach, 3.5 + reach), prepared, light_theme(), close),
-            ball.run, ball.proof, prepared, close, light_theme());
+        panel = with_proof(compose(ball.run, plot_samples(ball.run), prepared, light_theme(), close), ball.run,
+                           ball.proof, prepared, close, light_theme());
     }
     ASSERT_EQ(panel.tubes.size(), 1U);
     int inside = 0;

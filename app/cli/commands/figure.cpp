@@ -135,7 +135,13 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     const Trajectory trajectory = simulate(model, run);
     PublicationStyle style = arguments.style;
     style.ordered = !arguments.views.empty();
+    const PictureSize size = arguments.page.width > 0.0
+                                 ? on_page(page_for(arguments.page, format), format, 1.0, style.shape)
+                                 : arguments.size;
     style.shape = double{1} * arguments.size.width / arguments.size.height;
+    // A printer tells more apart than the points that a page in a vector format is measured in.
+    const double fineness = arguments.page.width > 0.0 && format != "png" ? 4.0 : 1.0;
+    style.size = {fineness * size.width, fineness * size.height};
     std::optional<Proof> proof;
     if (spread) proof = proof_of(trajectory, *spread);
     const Proof* const drawn = proof ? &*proof : nullptr;

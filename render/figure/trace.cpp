@@ -1,0 +1,401 @@
+#include "figure/trace.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <optional>
+
+namespace achilles {
+
+namespace {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double flat = 0.1;  // pixels: a chord that is off by less is the curve
+
+bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
+
+struct PlacedPoint {
+    Point data, pixel;
+    double t = 0.0;
+};
+
+// Takes the points of one curve in time and keeps those that are needed.
+class Thinner {
+ public:
+    virtual ~Thinner() = default;
+    Thinner() = default;
+    Thinner(const Thinner&) = delete;
+    Thinner& operator=(const Thinner&) = delete;
+    virtual void add(const PlacedPoint& point) = 0;
+    // The curve goes on from another point.
+    virtual void lift() = 0;
+    virtual Course take() = 0;
+    // Whether these add nothing to the picture; false where that is not known.
+    virtual bool covers(double, double, double, double) const { return false; }
+
+ protected:
+    void keep(const PlacedPoint& point) {
+        course_.points.push_back(point.data);
+        course_.times.push_back(point.t);
+    }
+    void keep_break(double t) {
+        if (course_.points.empty() || !is_finite(course_.points.back())) return;
+        course_.points.push_back({nothing, nothing});
+        course_.times.push_back(t);
+    }
+    Course course_;
+};
+
+// Over time: what lies in one column of a fraction of a pixel shows as a vertical line there. The first point, the lowest, the
+// highest and the last draw the same.
+class ColumnThinner : public Thinner {
+ public:
+    void add(const PlacedPoint& point) override {
+        const double column = std::floor(point.pixel.x * columns_per_pixel);
+        if (count_ > 0 && column != column_) flush();
+        if (count_ == 0 && is_lifted_) keep_break(point.t);
+        is_lifted_ = false;
+        column_ = column;
+        watch_crowding(point.pixel);
+        if (count_ == 0) first_ = lowest_ = highest_ = {point, 0};
+        last_ = {point, count_++};
+        if (point.data.y < lowest_.point.data.y) lowest_ = last_;
+        if (point.data.y > highest_.point.data.y) highest_ = last_;
+    }
+    // A break inside a column is not seen: of very many short phases none has points of its own.
+    void lift() override {
+        is_lifted_ = true;
+        before_.reset();
+    }
+    Course take() override {
+        flush();
+        close_window();
+        course_.is_crowded = crowded_ > 0.3 * windows_;
+        return std::move(course_);
+    }
+    // x from the column of the last point only, low to high.
+    bool covers(double x_low, double x_high, double y_low, double y_high) const override {
+        constexpr double slack = 0.5 * flat;
+        return count_ > 0 && std::floor(x_low * columns_per_pixel) == column_ &&
+               std::floor(x_high * columns_per_pixel) == column_ &&
+               std::min(lowest_.point.pixel.y, highest_.point.pixel.y) - slack <= y_low &&
+               std::max(lowest_.point.pixel.y, highest_.point.pixel.y) + slack >= y_high;
+    }
+
+ private:
+    static constexpr double columns_per_pixel = 4.0;
+    struct Numbered {
+        PlacedPoint point;
+        std::size_t number = 0;
+    };
+    void flush() {
+        if (count_ == 0) return;
+        std::array<const Numbered*, 4> kept{&first_, &lowest_, &highest_, &last_};
+        std::sort(kept.begin(), kept.end(), [](auto* a, auto* b) { return a->number < b->number; });
+        for (std::size_t i = 0; i < kept.size(); ++i)
+            if (i == 0 || kept[i]->number != kept[i - 1]->number) keep(kept[i]->point);
+        count_ = 0;
+    }
+    // Where a curve goes up and down the same way several times in the length of a dash.
+    void watch_crowding(const Point& pixel) {
+        constexpr double window = 8.0;
+        if (const double here = std::floor(pixel.x / window); here != window_) {
+            close_window();
+            window_ = here;
+            before_.reset();
+        }
+        if (before_) way_ += std::abs(pixel.y - before_->y);
+        before_ = pixel;
+        low_ = std::min(low_, pixel.y), high_ = std::max(high_, pixel.y);
+    }
+    void close_window() {
+        constexpr double ways = 4.0, least = 6.0;
+        if (high_ >= low_) windows_ += 1.0;
+        if (way_ > ways * std::max(high_ - low_, least)) crowded_ += 1.0;
+        way_ = 0.0;
+        low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+    }
+    double column_ = 0.0;
+    std::size_t count_ = 0;  // points in the column
+    bool is_lifted_ = false;
+    Numbered first_, lowest_, highest_, last_;
+    std::optional<Point> before_;
+    double window_ = -1.0, windows_ = 0.0, crowded_ = 0.0, way_ = 0.0;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
+// In a plane: once there are more points than a picture needs of most paths, what lies in cells through which the curve has
+// gone already is left out.
+class PathThinner : public Thinner {
+ public:
+    explicit PathThinner(const Resolution& size)
+        : columns_(static_cast<std::size_t>(size.width / cell) + 1),
+          rows_(static_cast<std::size_t>(size.height / cell) + 1) {}
+    void add(const PlacedPoint& point) override {
+        if (!cells_.empty()) return add_if_new(point);
+        pixels_.push_back(point.pixel);
+        keep(point);
+        if (pixels_.size() >= most_points) start_covering();
+        last_ = point;
+    }
+    void lift() override {
+        if (last_) keep_break(last_->t);
+        if (cells_.empty()) pixels_.resize(course_.points.size(), {nothing, nothing});
+        last_.reset();
+        is_drawn_ = false;
+    }
+    Course take() override {
+        course_.is_crowded = !cells_.empty();
+        return std::move(course_);
+    }
+
+ private:
+    static constexpr double cell = 0.45;  // pixels: its diagonal is 0.64
+    static constexpr std::size_t most_points = 20000;
+
+    void start_covering() {
+        cells_.assign(columns_ * rows_, false);
+        for (std::size_t i = 1; i < pixels_.size(); ++i)
+            if (is_finite(pixels_[i - 1]) && is_finite(pixels_[i])) cover(pixels_[i - 1], pixels_[i]);
+        pixels_ = {};
+        is_drawn_ = true;
+    }
+    // Whether the way between two points leads through a new cell; marks all of its cells.
+    bool cover(const Point& a, const Point& b) {
+        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        const double longest = 4.0 * static_cast<double>(columns_ + rows_);
+        const int parts = 1 + static_cast<int>(std::min(2.0 * length / cell, longest));
+        bool is_new = false;
+        for (int k = 0; k <= parts; ++k) {
+            const double s = static_cast<double>(k) / parts;
+            const double x = (a.x + s * (b.x - a.x)) / cell, y = (a.y + s * (b.y - a.y)) / cell;
+            if (!(x >= 0.0 && y >= 0.0 && x < static_cast<double>(columns_) && y < static_cast<double>(rows_)))
+                continue;
+            const std::size_t at = static_cast<std::size_t>(y) * columns_ + static_cast<std::size_t>(x);
+            is_new = is_new || !cells_[at];
+            cells_[at] = true;
+        }
+        return is_new;
+    }
+    void add_if_new(const PlacedPoint& point) {
+        const bool is_new =
+            !last_ || (is_finite(last_->pixel) && is_finite(point.pixel) && cover(last_->pixel, point.pixel));
+        if (is_new && last_) {
+            if (!is_drawn_) keep_break(last_->t), keep(*last_);
+            keep(point);
+        }
+        is_drawn_ = is_new && last_.has_value();
+        last_ = point;
+    }
+    std::size_t columns_, rows_;
+    std::vector<Point> pixels_;  // of the points kept, until there are too many
+    std::vector<bool> cells_;    // row by row: the curve has gone through; empty until then
+    std::optional<PlacedPoint> last_;
+    bool is_drawn_ = false;  // the last point is the last one kept
+};
+
+// Quantities at an instant.
+struct Node {
+    double t = 0.0;
+    Phase::Kind phase = Phase::Kind::hybrid;
+    std::vector<double> values;  // x, then each y
+    std::vector<Point> pixels;   // of each y
+};
+
+double distance_to_chord(const Point& p, const Point& a, const Point& b) {
+    const double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
+    const double s = square > 0.0 ? std::clamp(((p.x - a.x) * x + (p.y - a.y) * y) / square, 0.0, 1.0) : 0.0;
+    return std::hypot(p.x - a.x - s * x, p.y - a.y - s * y);
+}
+
+class Tracer {
+ public:
+    Tracer(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read)
+        : request_(request), read_(read), sampler_(trajectory), levels_(most_halvings + 1) {
+        for (std::size_t i = 0; i < 2 * request.quantities; ++i) {
+            if (request.over_time)
+                thinners_.push_back(std::make_unique<ColumnThinner>());
+            else
+                thinners_.push_back(std::make_unique<PathThinner>(request.size));
+        }
+        constexpr double infinite = std::numeric_limits<double>::infinity();
+        result_.ranges.assign(request.quantities + 1, {infinite, -infinite});
+        const auto off = [&](std::size_t quantity) {
+            if (request.noise.empty()) return flat;
+            const PanelMap& map = *request.map;
+            const double at = quantity == 0 ? map.x.value(0.0) : map.y.value(0.0), more = 2.0 * request.noise[quantity];
+            const double moved = quantity == 0 ? map.x(at + more) : map.y(at + more);
+            return std::isfinite(moved) ? std::max(flat, std::abs(moved)) : flat;
+        };
+        for (std::size_t i = 0; i < request.quantities; ++i)
+            tolerances_.push_back(request.over_time ? off(i + 1) : std::max(off(0), off(i + 1)));
+    }
+    Trace run() {
+        sampler_.walk(request_.from, request_.to, request_.with_work, [&](const Sample& sample, const Piece* piece) {
+            read_node(sample, next_);
+            if (piece != nullptr && has_last_)
+                step(*piece);
+            else
+                take(next_);
+            std::swap(last_, next_);
+            has_last_ = true;
+        });
+        for (const auto& thinner : thinners_) result_.courses.push_back(thinner->take());
+        return std::move(result_);
+    }
+
+ private:
+    static constexpr int most_halvings = 24;
+    static constexpr int most_of_step = 20000;  // samples of one step
+
+    void read_node(const Sample& sample, Node& node) {
+        node.t = sample.t;
+        node.phase = sample.phase;
+        node.values.resize(request_.quantities + 1);
+        node.pixels.resize(request_.quantities);
+        read_(sample, node.values);
+        const double x = request_.map->x(node.values[0]);
+        include(0, node.values[0], x);
+        for (const std::size_t i : request_.shown) {
+            node.pixels[i] = {x, request_.map->y(node.values[i + 1])};
+            include(i + 1, node.values[i + 1], node.pixels[i].y);
+        }
+    }
+    // What has a place on the axis.
+    void include(std::size_t quantity, double value, double pixel) {
+        if (!std::isfinite(pixel)) return;
+        auto& [low, high] = result_.ranges[quantity];
+        low = std::min(low, value), high = std::max(high, value);
+    }
+    void read_at(const Piece& piece, double t, Node& node) {
+        Sample sample = sampler_.in(piece, t, request_.with_work);
+        sample.phase = next_.phase;
+        ++samples_of_step_;
+        read_node(sample, node);
+    }
+
+    // How far the curves are off the chord between a and b at m, in units of what they may be.
+    double deviation(const Node& a, const Node& m, const Node& b) const {
+        double most = 0.0;
+        for (const std::size_t i : request_.shown) {
+            const Point p = visible(a.pixels[i]), q = visible(m.pixels[i]), r = visible(b.pixels[i]);
+            const int finite = int{is_finite(p)} + int{is_finite(q)} + int{is_finite(r)};
+            if (finite == 0) continue;
+            if (finite < 3) return std::numeric_limits<double>::infinity();
+            double off = 0.0;
+            if (request_.over_time) {
+                const double s = r.x > p.x ? (q.x - p.x) / (r.x - p.x) : 0.5;
+                off = std::abs(q.y - p.y - s * (r.y - p.y));
+            } else {
+                off = distance_to_chord(q, p, r);
+            }
+            most = std::max(most, off / tolerances_[i]);
+        }
+        return most;
+    }
+    // Far outside the picture nothing is seen.
+    Point visible(const Point& p) const {
+        const Resolution& size = request_.size;
+        if (!is_finite(p)) return p;
+        return {std::clamp(p.x, -size.width, 2.0 * size.width), std::clamp(p.y, -size.height, 2.0 * size.height)};
+    }
+
+    // From the last node to the next one inside a step. Two instants that are not evenly spaced tell a motion that repeats
+    // itself from one that is at rest.
+    void step(const Piece& piece) {
+        const double a = last_.t, b = next_.t;
+        samples_of_step_ = 0;
+        if (!(b > a)) return take(next_);
+        constexpr double first = 0.37, second = 0.69;
+        read_at(piece, a + first * (b - a), third_[0]);
+        read_at(piece, a + second * (b - a), third_[1]);
+        const double off = std::max(deviation(last_, third_[0], next_), deviation(last_, third_[1], next_));
+        constexpr double straight = 0.25, beyond = 0.25;  // of the deviation, that a curve may go beyond these four
+        if (off <= straight) return take(next_);
+        if (is_covered({&last_, &third_[0], &third_[1], &next_}, beyond * off)) return take(next_);
+        refine(piece, last_, third_[0], off, 0);
+        refine(piece, third_[0], third_[1], off, 0);
+        refine(piece, third_[1], next_, off, 0);
+    }
+    // Whether all of these, and what goes so far beyond them (in units of what the curves may be off), lies in a column in which
+    // the curves have been as low and as high.
+    bool is_covered(std::initializer_list<const Node*> nodes, double beyond) const {
+        return std::all_of(request_.shown.begin(), request_.shown.end(), [&](std::size_t i) {
+            double low = std::numeric_limits<double>::infinity(), high = -low;
+            for (const Node* node : nodes) {
+                if (!is_finite(node->pixels[i])) return false;
+                low = std::min(low, node->pixels[i].y), high = std::max(high, node->pixels[i].y);
+            }
+            const double more = beyond * tolerances_[i];
+            return thinner(i, next_.phase)
+                .covers((*nodes.begin())->pixels[i].x, (*std::prev(nodes.end()))->pixels[i].x, low - more, high + more);
+        });
+    }
+    // What is between two nodes, less the first. Halving makes a smooth curve's deviation a quarter: where it has been small
+    // before, too, both halves are near enough.
+    void refine(const Piece& piece, const Node& a, const Node& b, double before, int halvings) {
+        const double t = 0.5 * (a.t + b.t);
+        if (halvings >= most_halvings || samples_of_step_ > most_of_step || !(t > a.t && t < b.t)) return take(b);
+        Node& middle = levels_[static_cast<std::size_t>(halvings)];
+        read_at(piece, t, middle);
+        const double off = deviation(a, middle, b);
+        constexpr double near = 4.0, smooth = 16.0;
+        if (off <= near && before <= smooth * near) {
+            if (off > 0.5) take(middle);
+            return take(b);
+        }
+        constexpr double beyond = 0.5;
+        if (is_covered({&a, &middle, &b}, beyond * off)) return take(b);
+        constexpr int most_to_an_edge = 12;  // of where a quantity is defined
+        if (!std::isfinite(off) && halvings >= most_to_an_edge) return take(middle), take(b);
+        refine(piece, a, middle, off, halvings + 1);
+        refine(piece, middle, b, off, halvings + 1);
+    }
+
+    Thinner& thinner(std::size_t quantity, Phase::Kind phase) const {
+        return *thinners_[2 * quantity + (phase == Phase::Kind::hybrid ? 0 : 1)];
+    }
+    // Where the phase changes one curve ends and the other goes on from the same point.
+    void take(const Node& node) {
+        const bool changed = !has_taken_ || taken_.phase != node.phase;
+        for (const std::size_t i : request_.shown) {
+            Thinner& curve = thinner(i, node.phase);
+            if (changed) curve.lift();
+            if (changed && has_taken_) put(curve, taken_, i);
+            put(curve, node, i);
+        }
+        taken_ = node;
+        has_taken_ = true;
+    }
+    static void put(Thinner& curve, const Node& node, std::size_t i) {
+        const PlacedPoint point{{node.values[0], node.values[i + 1]}, node.pixels[i], node.t};
+        if (is_finite(point.data) && is_finite(point.pixel))
+            curve.add(point);
+        else
+            curve.lift();
+    }
+
+    const TraceRequest& request_;
+    const ReadQuantities& read_;
+    Sampler sampler_;
+    std::vector<std::unique_ptr<Thinner>> thinners_;
+    std::vector<double> tolerances_;  // pixels, of each y
+    Trace result_;
+    Node last_, next_, taken_;
+    std::array<Node, 2> third_;
+    std::vector<Node> levels_;
+    bool has_last_ = false, has_taken_ = false;
+    int samples_of_step_ = 0;
+};
+
+}  // namespace
+
+Trace trace(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read) {
+    return Tracer(trajectory, request, read).run();
+}
+
+}  // namespace achilles
