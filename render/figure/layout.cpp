@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "figure/grid.hpp"
+#include "figure/marks.hpp"
 #include "figure/tiles.hpp"
 
 namespace achilles {
@@ -43,34 +44,6 @@ void lay_bars(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelM
         if (!(x >= plot.x && x <= plot.x + plot.width)) continue;
         const float at = static_cast<float>(std::round(x - m.line / 2.0));
         sheet.emplace_back(Fill{{at, plot.y, m.line, plot.height}, markers.fill});
-    }
-}
-
-Mark mark(const Markers& markers, const Point& at, const Metrics& m) {
-    return {markers.shape, at, markers.fill, markers.edge, markers.size * m.scale, m.scale};
-}
-
-void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
-    // Whole or not at all, lest half a marker at the rim be another shape; what is on the rim may miss it by rounding.
-    constexpr double slack = 0.5;
-    const auto is_inside = [&](const Point& p) {
-        return p.x >= plot.x - slack && p.x <= plot.x + plot.width + slack && p.y >= plot.y - slack &&
-               p.y <= plot.y + plot.height + slack;
-    };
-    // Impacts crowd before a Zeno point; of the last ones on every curve of the panel those that stand apart are drawn.
-    constexpr std::size_t remembered = 32;
-    std::vector<Point> laid;
-    for (const Point& point : markers.points) {
-        Point at = map(point);
-        at.y -= markers.lift * m.scale;
-        if (!is_inside(at)) continue;
-        const auto recent = laid.end() - static_cast<std::ptrdiff_t>(std::min(laid.size(), remembered));
-        if (std::any_of(recent, laid.end(), [&](const Point& other) {
-                return std::hypot(at.x - other.x, at.y - other.y) < markers.apart * m.scale;
-            }))
-            continue;
-        sheet.emplace_back(mark(markers, at, m));
-        laid.push_back(at);
     }
 }
 
@@ -137,13 +110,14 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     for (const Tube& tube : panel.tubes) lay_tube(tube, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
-    const auto lay = [&](const Curve& curve) {
+    const auto lay = [&](const Curve& curve, double least_width = 0.0) {
         Path path{{}, scaled(curve.stroke, m.scale), plot};
+        path.stroke.width = std::max(path.stroke.width, least_width);
         path.points.reserve(curve.points.size());
         for (const Point& point : curve.points) path.points.push_back(map(point));
         sheet.emplace_back(std::move(path));
     };
-    if (!panel.boundary.points.empty()) lay(panel.boundary);
+    if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is not seen on a screen
     for (const Curve& curve : panel.curves) lay(curve);
 }
 
@@ -194,7 +168,7 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
         sheet.emplace_back(
             Fill{{std::round(x + (length - m.line) / 2.0F), y - m.text * 0.45F, m.line, m.text * 0.9F}, markers.fill});
     else
-        sheet.emplace_back(mark(markers, {x + length / 2.0F, y}, m));
+        sheet.emplace_back(mark_of(markers, {x + length / 2.0F, y}, m));
 }
 
 // A legend in the corner that the panel names.
