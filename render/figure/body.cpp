@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "figure/trace.hpp"
 #include "simulate/contact_forces.hpp"
 
 namespace achilles {
@@ -98,10 +99,52 @@ Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
     return forces.generalised();
 }
 
-Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples) {
+std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
+                             const PlaceOf& place) {
+    Panel world;
+    world.x.low = seen.x_low, world.x.high = seen.x_high;
+    world.y.low = seen.y_low, world.y.high = seen.y_high;
+    TraceRequest request;
+    request.from = from, request.to = to;
+    request.shown = {0};
+    request.over_time = false;
+    const double shape = (seen.y_high - seen.y_low) / (seen.x_high - seen.x_low);
+    (shape < 1.0 ? request.size.height : request.size.width) = request.size.width * (shape < 1.0 ? shape : 1.0 / shape);
+    if (shape >= 1.0) request.size.height = Resolution{}.width;
+    const PanelMap map(world,
+                       {0.0F, 0.0F, static_cast<float>(request.size.width), static_cast<float>(request.size.height)});
+    request.map = &map;
+    const Trace traced = trace(trajectory, request, [&](const Sample& sample, std::span<double> values) {
+        const Point at = place(sample);
+        values[0] = at.x, values[1] = at.y;
+    });
+    std::vector<WayPoint> way;
+    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+    for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
+        const Course& course = traced.courses[kind == Phase::Kind::hybrid ? 0 : 1];
+        if (!way.empty() && !course.points.empty()) way.push_back({to, kind, {nothing, nothing}});
+        for (std::size_t i = 0; i < course.points.size(); ++i) way.push_back({course.times[i], kind, course.points[i]});
+    }
+    return way;
+}
+
+void add_present(std::vector<WayPoint>& way, const WayPoint& now) {
+    const auto is_there = [](const WayPoint& point) { return std::isfinite(point.at.x) && std::isfinite(point.at.y); };
+    for (std::size_t i = 1; i < way.size(); ++i) {
+        const WayPoint &a = way[i - 1], &b = way[i];
+        if (b.phase != now.phase || !is_there(a) || !is_there(b) || !(a.t < now.t && now.t < b.t)) continue;
+        way.insert(way.begin() + static_cast<std::ptrdiff_t>(i), now);
+        return;
+    }
+}
+
+Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples,
+               const Drawing& limits) {
     Trail trail;
     auto grip = mechanism.grip(trajectory.run.parameters);
     if (!grip) return trail;
+    trail.way = way_of(trajectory, trajectory.run.options.start_time, trajectory.end_time, limits,
+                       [&](const Sample& sample) { return grip->at(sample.t, sample.state).at; });
     const std::size_t stride = 1 + samples.size() / 300;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const double t = samples[i].t;
@@ -127,9 +170,13 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
 void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
     constexpr std::uint8_t passed = 150, to_come = 60;
     std::vector<Shape> lines;
-    const WayPoint* before = nullptr;
+    const WayPoint* before = nullptr;  // null after a break
     for (const WayPoint& here : way) {
         const bool is_passed = here.t <= t;
+        if (!std::isfinite(here.at.x) || !std::isfinite(here.at.y)) {
+            before = nullptr;
+            continue;
+        }
         if (before == nullptr || here.phase != before->phase || is_passed != (before->t <= t)) {
             Shape& line = lines.emplace_back();
             line.stroke = phase_stroke(theme, here.phase, 0, 1);

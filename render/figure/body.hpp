@@ -2,6 +2,7 @@
 // drawn, and where a hand takes hold.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -37,9 +38,23 @@ class Body {
 // where the body moves on a line. Nothing where it does not get there.
 std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& place);
 
+// A place on the way of the body. One that is not finite breaks the way.
+struct WayPoint {
+    double t = 0.0;
+    Phase::Kind phase = Phase::Kind::hybrid;
+    Point at;
+};
+// Where a sample of a run is in a plane.
+using PlaceOf = std::function<Point(const Sample&)>;
+// The way of a place during [from, to] (s), as fine as a picture of `seen` needs (trace.hpp): in hybrid phases, then in
+// constrained ones, each in time.
+std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
+                             const PlaceOf& place);
+
 // The body along a whole run.
 struct Trail {
     std::vector<Point> points;  // one a sample; none where the mechanism has no body
+    std::vector<WayPoint> way;  // as it is drawn
     double fastest = 0.0;       // largest speed of the body
     double strongest = 0.0;     // largest contact force at it
     struct Arrows {             // of some of the samples, as shares of the two above
@@ -47,14 +62,12 @@ struct Trail {
     };
     std::vector<Arrows> arrows;
 };
-Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
+// `limits`: the world that the run needs.
+Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples,
+               const Drawing& limits);
 
-// A place on the way of the body.
-struct WayPoint {
-    double t = 0.0;
-    Phase::Kind phase = Phase::Kind::hybrid;
-    Point at;
-};
+// Puts the present into a way: in its phase, between the points before and after it.
+void add_present(std::vector<WayPoint>& way, const WayPoint& now);
 // Puts the way of the body among a mechanism's shapes, each phase in its colour, what is to come after t faintly: over the
 // world, where a motion in contact would be hidden by the surface, and under what moves.
 void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);

@@ -103,11 +103,15 @@ Drawing Sides::draw(std::size_t side, const Sample& now, const Drawing& seen, co
     disc.stroke.width = 0.0;
     disc.fill_color = theme.body;
     if (!with_way) return drawing;
+    // Every frame asks for it: of a run of very many steps the samples will do.
+    constexpr std::size_t most_steps = 2000;
     std::vector<WayPoint> way;
-    for (const Sample& sample : samples_) {
-        if (!way.empty() && way.back().t < now.t && sample.t >= now.t) way.push_back({now.t, now.phase, here});
-        way.push_back({sample.t, sample.phase, projected(sample.state, pair)});
-    }
+    if (trajectory_.pieces.size() <= most_steps)
+        way = way_of(trajectory_, trajectory_.run.options.start_time, trajectory_.end_time, seen,
+                     [&](const Sample& sample) { return projected(sample.state, pair); });
+    else
+        for (const Sample& sample : samples_) way.push_back({sample.t, sample.phase, projected(sample.state, pair)});
+    add_present(way, {now.t, now.phase, here});
     add_way(drawing.shapes, way, now.t, theme);
     return drawing;
 }

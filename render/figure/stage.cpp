@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace achilles {
 
@@ -41,10 +42,9 @@ void thin_out_large(std::vector<Shape>& shapes, const Drawing& seen) {
 Stage::Stage(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples)
     : mechanism_(mechanism),
       trajectory_(trajectory),
-      samples_(samples),
       sampler_(trajectory),
       limits_(mechanism.limits(trajectory, samples)),
-      trail_(trail_of(mechanism, trajectory, samples)),
+      trail_(trail_of(mechanism, trajectory, samples, limits_)),
       touch_(mechanism, trajectory, limits_.size),
       camera_(mechanism, touch_, trajectory, samples, trail_, limits_),
       unit_(length_unit(trajectory.model->description())) {
@@ -85,59 +85,31 @@ std::vector<double> Stage::poses() const {
     return times;
 }
 
-// A point a sample; where little of the world is seen, as many as make it smooth around the present.
+// As the run's picture needs it; where little of the world is seen, around the present as that needs it.
 std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
-    std::vector<WayPoint> all;
-    const auto add = [&](std::size_t i) { all.push_back({samples_[i].t, samples_[i].phase, trail_.points[i]}); };
     auto grip = mechanism_.grip(trajectory_.run.parameters);
-    if (trail_.points.empty() || !grip) return all;
-    const double size = std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+    if (trail_.way.empty() || !grip) return {};
     const auto body = Body::of(*grip, now.t, now.state);
-    constexpr double close = 0.3;
-    double low = now.t, high = now.t;
-    if (body && size < close * limits_.size) {
-        const Point v = body->velocity(now.state.v);
-        const double start = trajectory_.run.options.start_time, run = trajectory_.end_time - start;
-        const double reach = std::min(0.02 * run, 2.0 * size / std::max(std::hypot(v.x, v.y), 1e-3 * trail_.fastest));
-        low = std::max(start, now.t - reach), high = std::min(trajectory_.end_time, now.t + reach);
-    }
-    // As near as within a disc its lowest point is followed: its centre is far outside.
-    Point aside;
-    if (body && size < body->radius())
-        for (std::size_t contact = 0; contact < trajectory_.model->contacts(); ++contact) {
-            const auto ground = touch_.ground_below(*grip, contact, now.t, now.state);
-            const auto near = touch_.nearness(*grip, contact, now.t, now.state);
-            if (ground && near && near->distance < size)
-                aside = {ground->foot.x - near->foot.x, ground->foot.y - near->foot.y};
+    std::vector<WayPoint> all;
+    if (const auto part = close_part(now, seen, body)) {
+        const auto [low, high] = *part;
+        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+        const PlaceOf place = [&](const Sample& sample) { return grip->at(sample.t, sample.state).at; };
+        for (const WayPoint& point : trail_.way) {
+            const bool is_near = point.t > low && point.t < high;
+            if (!is_near || all.empty() || std::isfinite(all.back().at.x)) all.push_back(point);
+            if (is_near) all.back().at = {nothing, nothing};
         }
-    std::size_t i = 0;
-    for (; i < samples_.size() && samples_[i].t < low; ++i) add(i);
-    const auto put = [&](double t) {
-        const Sample sample = sampler_.at(t);
-        all.push_back({t, sample.phase, grip->at(t, sample.state).at});
-    };
-    if (high > low) {
-        constexpr int fine = 240;
-        const auto& events = trajectory_.events;
-        auto event =
-            std::lower_bound(events.begin(), events.end(), low, [](const Event& e, double t) { return e.t < t; });
-        for (int k = 0; k <= fine; ++k) {
-            const double t = low + (high - low) * k / fine;
-            int corners = 0;
-            for (; event != events.end() && event->t < t && corners < 4; ++event, ++corners) put(event->t);
-            while (event != events.end() && event->t < t) ++event;
-            put(t);
+        for (const auto& [from, to] : {std::pair{low, now.t}, std::pair{now.t, high}}) {
+            all.push_back({from, Phase::Kind::hybrid, {nothing, nothing}});
+            const std::vector<WayPoint> fine = way_of(trajectory_, from, to, seen, place);
+            all.insert(all.end(), fine.begin(), fine.end());
         }
-        while (i < samples_.size() && samples_[i].t <= high) ++i;
     } else {
-        for (; i < samples_.size() && samples_[i].t <= now.t; ++i) add(i);
-        put(now.t);
+        all = trail_.way;
+        add_present(all, {now.t, now.phase, grip->at(now.t, now.state).at});
     }
-    // What is to come is faint: of very many points some will do.
-    constexpr std::size_t most_to_come = 3000;
-    const std::size_t stride = 1 + (samples_.size() - i) / most_to_come;
-    for (; i < samples_.size(); i += stride) add(i);
-    if (stride > 1) add(samples_.size() - 1);
+    const Point aside = rest_below(now, seen, *grip, body);
     for (WayPoint& point : all) point.at = {point.at.x + aside.x, point.at.y + aside.y};
     return all;
 }
@@ -145,6 +117,40 @@ std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
 PhaseLabel phase_label(const Sample& now) {
     if (now.contact && now.phase == Phase::Kind::hybrid) return {Phase::Kind::constrained, "cut, in contact"};
     return {now.phase, legend_text(now.phase)};
+}
+
+// The time around the present during which a part of the world is seen that is much smaller than what the run needs; of very
+// many steps not all.
+std::optional<std::pair<double, double>> Stage::close_part(const Sample& now, const Drawing& seen,
+                                                           const std::optional<Body>& body) const {
+    constexpr double close = 0.3;
+    constexpr std::ptrdiff_t most_steps = 300;
+    const double size = std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+    if (!body || !(size < close * limits_.size)) return std::nullopt;
+    const Point v = body->velocity(now.state.v);
+    const double start = trajectory_.run.options.start_time, run = trajectory_.end_time - start;
+    const double reach = std::min(0.02 * run, 2.0 * size / std::max(std::hypot(v.x, v.y), 1e-3 * trail_.fastest));
+    double low = std::max(start, now.t - reach), high = std::min(trajectory_.end_time, now.t + reach);
+    const auto& pieces = trajectory_.pieces;
+    const auto here = std::upper_bound(pieces.begin(), pieces.end(), now.t,
+                                       [](double t, const Piece& piece) { return t < piece.start; });
+    if (here - pieces.begin() > most_steps) low = std::max(low, (here - most_steps)->start);
+    if (pieces.end() - here > most_steps) high = std::min(high, (here + most_steps)->start);
+    return std::pair{low, high};
+}
+
+// As near as within a disc its lowest point is followed: its centre is far outside.
+Point Stage::rest_below(const Sample& now, const Drawing& seen, Grip& grip, const std::optional<Body>& body) const {
+    Point aside;
+    const double size = std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+    if (!body || !(size < body->radius())) return aside;
+    for (std::size_t contact = 0; contact < trajectory_.model->contacts(); ++contact) {
+        const auto ground = touch_.ground_below(grip, contact, now.t, now.state);
+        const auto near = touch_.nearness(grip, contact, now.t, now.state);
+        if (ground && near && near->distance < size)
+            aside = {ground->foot.x - near->foot.x, ground->foot.y - near->foot.y};
+    }
+    return aside;
 }
 
 Drawing Stage::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {

@@ -2,8 +2,10 @@
 // a run decides is found out once.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "figure/body.hpp"
@@ -48,10 +50,12 @@ class Stage {
  private:
     void find_poses();
     std::vector<WayPoint> way(const Sample& now, const Drawing& seen);
+    std::optional<std::pair<double, double>> close_part(const Sample& now, const Drawing& seen,
+                                                        const std::optional<Body>& body) const;
+    Point rest_below(const Sample& now, const Drawing& seen, Grip& grip, const std::optional<Body>& body) const;
 
     const Mechanism& mechanism_;
     const Trajectory& trajectory_;
-    std::span<const Sample> samples_;
     Sampler sampler_;
     Drawing limits_;
     Trail trail_;
