@@ -369,6 +369,26 @@ double share_of(const Axis& axis, double value) {
     return std::log(value / axis.low) / std::log(axis.high / axis.low);
 }
 
+// How many places evenly along a chord are nearer to a corner than that, in shares of the panel. Where the chord is broken,
+// of its end.
+std::size_t places_in_corner(const Panel& panel, const Point& a, const Point& b, const std::array<double, 2>& corner,
+                             double width, double height) {
+    constexpr double step = 0.02;
+    constexpr double most = 100.0;
+    const Point to{share_of(panel.x, b.x), share_of(panel.y, b.y)};
+    Point from{share_of(panel.x, a.x), share_of(panel.y, a.y)};
+    if (!std::isfinite(from.x) || !std::isfinite(from.y)) from = to;
+    const double longer = std::max(std::abs(to.x - from.x), std::abs(to.y - from.y));
+    const int parts = std::isfinite(longer) ? 1 + static_cast<int>(std::min(longer / step, most)) : 1;
+    std::size_t found = 0;
+    for (int k = 1; k <= parts; ++k) {
+        const double s = static_cast<double>(k) / parts;
+        const double x = from.x + s * (to.x - from.x), y = from.y + s * (to.y - from.y);
+        if (std::abs(x - corner[0]) < width && std::abs(y - corner[1]) < height) ++found;
+    }
+    return found;
+}
+
 }  // namespace
 
 void place_legend(Panel& panel) {
@@ -377,12 +397,10 @@ void place_legend(Panel& panel) {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (const std::array<double, 2> corner : {std::array{1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}, {0.0, 0.0}}) {
         std::size_t covered = 0;
-        for (const Curve& curve : panel.curves) {
-            for (const Point& point : curve.points) {
-                const double x = share_of(panel.x, point.x), y = share_of(panel.y, point.y);
-                if (std::abs(x - corner[0]) < width && std::abs(y - corner[1]) < height) ++covered;
-            }
-        }
+        for (const Curve& curve : panel.curves)
+            for (std::size_t i = 0; i < curve.points.size(); ++i)
+                covered +=
+                    places_in_corner(panel, curve.points[i > 0 ? i - 1 : i], curve.points[i], corner, width, height);
         if (covered >= least) continue;
         least = covered;
         panel.legend_at = corner;

@@ -134,8 +134,8 @@ TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
         EXPECT_FALSE(panel.curves[0].stroke.dash.empty());  // hybrid
         EXPECT_TRUE(panel.curves[1].stroke.dash.empty());   // constrained
         EXPECT_NE(panel.curves[0].stroke.color, panel.curves[1].stroke.color);
-        EXPECT_GT(panel.curves[0].points.size(), 100u);
-        EXPECT_GT(panel.curves[1].points.size(), 20u);
+        EXPECT_GE(panel.curves[0].points.size(), 2u);  // how many it needs: trace_test.cpp
+        EXPECT_GE(panel.curves[1].points.size(), 2u);
         ASSERT_EQ(panel.markers.size(), 3u);
         for (std::size_t k = 0; k < 3; ++k) {
             const Event::Kind kinds[] = {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release};
