@@ -22,8 +22,9 @@ namespace {
 constexpr std::uint64_t points = 512;
 constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
 
-// What most people ask of a run.
-std::vector<std::string> usual_prints(const SystemDescription& description, bool is_section) {
+// What most people ask of a run, and the derivative of the first by what varies along x.
+std::vector<std::string> usual_prints(const SystemDescription& description, const Sweep& sweep) {
+    const bool is_section = sweep.at.has_value();
     std::vector<std::string> prints;
     if (!is_section) prints = {"zeno_time(1)", "zeno_time(2)", "zeno_points", "impacts", "releases", "least_gap"};
     for (const CoordinateDescription& coordinate : description.coordinates) {
@@ -32,6 +33,10 @@ std::vector<std::string> usual_prints(const SystemDescription& description, bool
     }
     prints.emplace_back("energy");
     if (!is_section) prints.insert(prints.end(), {"held", "outcome"});
+    Run run = default_run(description);
+    const bool has_slope = !sweep.axes.empty() && find_value(description, run, sweep.axes.front().name) != nullptr &&
+                           (!is_section || sweep.at->kind != Section::Kind::zero);
+    if (has_slope) prints.push_back(fmt::format("d({}, {})", prints.front(), sweep.axes.front().name));
     return prints;
 }
 
@@ -156,7 +161,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
         if (is_alone && sweep.prints.front() != print) changed.prints = {sweep.prints.front(), print};
         commands.emplace_back(showing(changed, description));
     };
-    for (const std::string& print : usual_prints(description, sweep.at.has_value())) {
+    for (const std::string& print : usual_prints(description, sweep)) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         if (ImGui::Selectable(("##" + print).c_str(), sweep.prints.back() == print, 0, {units(230.0F), 0.0F}))
             ask(print);
@@ -166,8 +171,9 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
     std::string& typed = state.sweep.print;
     if (text_row("other", "sweep expression", typed, 150.0F, state) && !typed.empty()) ask(typed);
     tooltip(
-        "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
-        "Enter takes it");
+        "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k), "
+        "or "
+        "its derivative by a parameter or a start, d(zeno_time(1), e). Enter takes it");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     ImGui::Separator();
     show_moments(sweep, session, state, commands);

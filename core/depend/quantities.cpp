@@ -17,15 +17,33 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// What a program has as input at the end of a run, by slot: values, and a row of derivatives where it has any.
-class Inputs {
+}  // namespace
+
+// Where a run is asked: its end, or an event, so many events after its start.
+struct Quantities::Place {
+    State state;
+    ContactSet held, carriers;
+    double work = 0.0, loss = 0.0;
+    std::size_t events = 0;
+    // Of the state, coordinate by direction, and of the time, by direction; nothing where there are none.
+    std::optional<Derivatives::AtEnd> slopes{};
+    RowVectorXd time_slope{};
+};
+
+// What a program has as input there, by slot: values, and a row of derivatives where it has any.
+class Quantities::Inputs {
  public:
-    Inputs(const Trajectory& trajectory, const Derivatives& derivatives, const Model::MeasureProgram& measures)
-        : trajectory_(trajectory), derivatives_(derivatives), model_(*trajectory.model), layout_(model_.layout()) {
+    Inputs(const Trajectory& trajectory, const Derivatives& derivatives, const Model::MeasureProgram& measures,
+           const Place& place)
+        : trajectory_(trajectory),
+          derivatives_(derivatives),
+          place_(place),
+          model_(*trajectory.model),
+          layout_(model_.layout()) {
         K_ = static_cast<Index>(derivatives.refused.size());
         values_.assign(layout_.count() + measures.quantities.size(), 0.0);
         rows_.setZero(static_cast<Index>(values_.size()), K_);
-        set_end();
+        set_state();
         for (std::size_t i = 0; i < measures.quantities.size(); ++i)
             set_quantity(layout_.count() + i, measures.quantities[i]);
     }
@@ -40,58 +58,59 @@ class Inputs {
         rows_.row(static_cast<Index>(slot)) = row;
     }
 
-    void set_end() {
-        const Trajectory& run = trajectory_;
+    void set_state() {
         const std::size_t n = layout_.dof;
-        const auto& end = derivatives_.end;
+        const auto& slopes = place_.slopes;
         const RowVectorXd none = RowVectorXd::Constant(K_, nothing);
         for (std::size_t i = 0; i < n; ++i) {
             const auto k = static_cast<Index>(i);
-            set(layout_.q(i), run.end.q[k], end ? RowVectorXd(end->q.row(k)) : none);
-            set(layout_.v(i), run.end.v[k], end ? RowVectorXd(end->v.row(k)) : none);
+            set(layout_.q(i), place_.state.q[k], slopes ? RowVectorXd(slopes->q.row(k)) : none);
+            set(layout_.v(i), place_.state.v[k], slopes ? RowVectorXd(slopes->v.row(k)) : none);
         }
         for (std::size_t i = 0; i < layout_.p; ++i) {
-            set(layout_.parameter(i), run.run.parameters[i]);
+            set(layout_.parameter(i), trajectory_.run.parameters[i]);
             const auto column = static_cast<Index>(2 * n + i);
             rows_(static_cast<Index>(layout_.parameter(i)), column) = 1.0;
         }
-        set(layout_.t(), run.end_time);
-        set(layout_.work(), run.work, none);
-        set(layout_.loss(), run.loss, none);
-        if (layout_.contacts == 1) return set(layout_.contact(), run.end_held.empty() ? 0.0 : 1.0);
-        set_contacts(end, none);
+        set(layout_.t(), place_.state.t, place_.time_slope);
+        set(layout_.work(), place_.work, none);
+        set(layout_.loss(), place_.loss, none);
+        if (layout_.contacts == 1) return set(layout_.contact(), place_.held.empty() ? 0.0 : 1.0);
+        set_contacts(none);
     }
 
-    // hddot and lambda of each contact, at the end.
-    void set_contacts(const std::optional<Derivatives::AtEnd>& end, const RowVectorXd& none) {
-        const Trajectory& run = trajectory_;
-        ContactForces forces(model_, run.run.parameters);
-        forces.set(run.end, run.end_held, run.phases.back().carriers);
+    // hddot and lambda of each contact.
+    void set_contacts(const RowVectorXd& none) {
+        const auto& slopes = place_.slopes;
+        const std::vector<double>& parameters = trajectory_.run.parameters;
+        ContactForces forces(model_, parameters);
+        forces.set(place_.state, place_.held, place_.carriers);
         const Tangent tangent{layout_.dof, layout_.contacts, layout_.p};
         MatrixXd Z = MatrixXd::Zero(tangent.size(), K_);
-        if (end) {
-            Z.middleRows(tangent.q(0), static_cast<Index>(layout_.dof)) = end->q;
-            Z.middleRows(tangent.v(0), static_cast<Index>(layout_.dof)) = end->v;
+        if (slopes) {
+            Z.row(Tangent::t()) = place_.time_slope;
+            Z.middleRows(tangent.q(0), static_cast<Index>(layout_.dof)) = slopes->q;
+            Z.middleRows(tangent.v(0), static_cast<Index>(layout_.dof)) = slopes->v;
             for (std::size_t i = 0; i < layout_.p; ++i) Z(tangent.p(i), static_cast<Index>(2 * layout_.dof + i)) = 1.0;
         }
         const auto derivatives_of = [&](const Program& program, std::size_t output) {
-            Gradient gradient(model_, program, tangent, run.run.parameters);
-            gradient.at(run.end);
+            Gradient gradient(model_, program, tangent, parameters);
+            gradient.at(place_.state);
             return RowVectorXd(gradient.row(output) * Z);
         };
         for (std::size_t i = 0; i < layout_.contacts; ++i) {
-            const bool held = run.end_held.contains(i);
+            const bool held = place_.held.contains(i);
             const double a = forces.acceleration(i), f = forces.force(i);
-            if (!end) {
+            if (!slopes) {
                 set(layout_.acceleration(i), a, none);
                 set(layout_.force(i), f, none);
             } else if (held) {
                 set(layout_.acceleration(i), a);
-                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, run.end_held.without(i)).force, 0));
+                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, place_.held.without(i)).force, 0));
             } else {
                 set(layout_.force(i), f);
                 set(layout_.acceleration(i), a,
-                    derivatives_of(model_.motion(run.end_held).program, 2 * layout_.dof + i));
+                    derivatives_of(model_.motion(place_.held).program, 2 * layout_.dof + i));
             }
         }
     }
@@ -109,7 +128,7 @@ class Inputs {
         if (quantity.kind == Kind::least_gap) return set(slot, least_gap(trajectory_), none);
         int count = 0;
         std::optional<std::size_t> found;
-        for (std::size_t i = 0; i < events.size(); ++i)
+        for (std::size_t i = 0; i < place_.events; ++i)
             if (events[i].kind == kind_of && (++count == quantity.k || quantity.k == 0)) found = i;
         if (quantity.kind == Kind::zeno_points || quantity.kind == Kind::impacts || quantity.kind == Kind::releases)
             return set(slot, count);
@@ -123,12 +142,15 @@ class Inputs {
 
     const Trajectory& trajectory_;
     const Derivatives& derivatives_;
+    const Place& place_;
     const Model& model_;
     const Layout layout_;
     Index K_ = 0;
     std::vector<double> values_;
     MatrixXd rows_;
 };
+
+namespace {
 
 // Why an expression has no derivatives.
 std::string reason_of(const std::string& expression, const Derivatives& derivatives, double value) {
@@ -142,20 +164,45 @@ std::string reason_of(const std::string& expression, const Derivatives& derivati
 
 }  // namespace
 
-Quantities::Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions)
+Quantities::Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions, const char* option)
     : model_(std::move(model)), expressions_(std::move(expressions)) {
     std::vector<Text> texts;
     for (const std::string& expression : expressions_) {
-        behind("--of", expression, [&](std::span<const Text> one) { return model_->compile_measures(one); });
+        behind(option, expression, [&](std::span<const Text> one) { return model_->compile_measures(one); });
         texts.push_back({expression, {}});
     }
     if (!texts.empty()) measures_ = model_->compile_measures(texts);
 }
 
 std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivatives& derivatives) const {
+    const auto K = static_cast<Index>(derivatives.refused.size());
+    const Place end{{trajectory.end.q, trajectory.end.v, trajectory.end_time},
+                    trajectory.end_held,
+                    trajectory.phases.back().carriers,
+                    trajectory.work,
+                    trajectory.loss,
+                    trajectory.events.size(),
+                    derivatives.end,
+                    RowVectorXd::Zero(K)};
+    return evaluated({trajectory, derivatives, measures_, end}, derivatives);
+}
+
+std::vector<Quantity> Quantities::at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
+                                     ContactSet carriers) const {
+    const Event& now = trajectory.events[event];
+    Place place{{now.q, now.v_after, now.t}, now.held, carriers, now.work, now.loss, event + 1};
+    place.time_slope = RowVectorXd::Constant(static_cast<Index>(derivatives.refused.size()), nothing);
+    if (event < derivatives.events.size()) {
+        const Derivatives::AtEvent& slopes = derivatives.events[event];
+        place.slopes = Derivatives::AtEnd{slopes.q, slopes.v_after};
+        place.time_slope = slopes.t.transpose();
+    }
+    return evaluated({trajectory, derivatives, measures_, place}, derivatives);
+}
+
+std::vector<Quantity> Quantities::evaluated(const Inputs& inputs, const Derivatives& derivatives) const {
     std::vector<Quantity> result;
     if (expressions_.empty()) return result;
-    const Inputs inputs(trajectory, derivatives, measures_);
     constexpr std::size_t lanes = 8;
     using Number = Jet<double, lanes>;
     const auto K = static_cast<Index>(derivatives.refused.size());

@@ -1,4 +1,4 @@
-// Any quantity of a run, and on what it depends: an expression over its end and its events.
+// Any quantity of a run, and on what it depends: an expression over its end, or an event of it, and its events.
 #pragma once
 
 #include <memory>
@@ -27,12 +27,19 @@ struct Dependence {
 // least_gap there are no derivatives.
 class Quantities {
  public:
-    // Throws InputError with the place in the expression.
-    Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions);
+    // Throws InputError with the place in the expression, and the option that it stands behind.
+    Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions, const char* option = "--of");
     // Of a run of that model, and what differentiate() says of it.
     std::vector<Quantity> of(const Trajectory& trajectory, const Derivatives& derivatives) const;
+    // The same at an event, where `carriers` are the contacts that bear the motion after it: what has happened until then, and the
+    // state after it, whose derivatives follow the event as it moves in time.
+    std::vector<Quantity> at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
+                             ContactSet carriers) const;
 
  private:
+    struct Place;
+    class Inputs;
+    std::vector<Quantity> evaluated(const Inputs& inputs, const Derivatives& derivatives) const;
     std::shared_ptr<const Model> model_;
     std::vector<std::string> expressions_;
     Model::MeasureProgram measures_;

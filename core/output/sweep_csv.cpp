@@ -21,6 +21,14 @@ void append(std::string& text, double x) {
     if (std::isfinite(x)) fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), x + 0.0);
 }
 
+// A cell as RFC 4180 has it: in quotes where it holds a comma or a quote, which is doubled.
+std::string quoted_cell(const std::string& text) {
+    if (text.find_first_of(",\"") == text.npos) return text;
+    std::string cell = "\"";
+    for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
+    return cell + "\"";
+}
+
 }  // namespace
 
 std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
@@ -38,7 +46,7 @@ std::string sweep_csv_heading(const SweepTable& table, bool units) {
     std::string names, of_them;
     for (const SweepHeading& heading : sweep_headings(table)) {
         const char* const comma = names.empty() ? "" : ",";
-        names += comma + heading.name;
+        names += comma + quoted_cell(heading.name);
         of_them += comma + printable(heading.unit);
     }
     return names + "\n" + (units ? of_them + "\n" : "");

@@ -36,6 +36,85 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     return unit_of_expression(description, print);
 }
 
+// ---- derivatives ----
+
+// What a print asks the derivative of, and by what.
+struct AskedSlope {
+    std::string quantity, name;
+};
+
+InputError refused_slope(const std::string& print, const std::string& why, const std::string& hint) {
+    return {"--print " + shown(print), {}, why, hint};
+}
+
+constexpr const char* how_to_differentiate = "write d(QUANTITY, NAME), as in --print \"d(zeno_time(1), e)\"";
+
+std::string without_spaces(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(' ');
+    return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+// Of "d(QUANTITY, NAME)"; nothing of another print.
+std::optional<AskedSlope> read_slope(const std::string& print) {
+    const std::size_t open = print.find('(');
+    if (open == print.npos || without_spaces(print.substr(0, open)) != "d") return std::nullopt;
+    std::size_t depth = 0, comma = print.npos, close = print.npos;
+    for (std::size_t i = open; i < print.size() && close == print.npos; ++i) {
+        if (print[i] == '(') ++depth;
+        if (print[i] == ',' && depth == 1) comma = i;
+        if (print[i] == ')' && --depth == 0) close = i;
+    }
+    if (comma == print.npos || close == print.npos)
+        throw refused_slope(print, "a derivative is of a quantity by a name", how_to_differentiate);
+    if (!without_spaces(print.substr(close + 1)).empty())
+        throw refused_slope(print, "a derivative stands alone", "print it and what it is combined with one by one");
+    const AskedSlope asked{without_spaces(print.substr(open + 1, comma - open - 1)),
+                           without_spaces(print.substr(comma + 1, close - comma - 1))};
+    if (asked.quantity.empty() || asked.name.empty())
+        throw refused_slope(print, "a derivative is of a quantity by a name", how_to_differentiate);
+    return asked;
+}
+
+// Throws InputError where a quantity has no derivative in any run.
+void check_quantity(const SystemDescription& description, const std::string& print, const AskedSlope& asked) {
+    if (read_slope(asked.quantity))
+        throw refused_slope(print, "second derivatives are not computed", "differences of first ones approximate them");
+    for (const std::string& name : names_in(asked.quantity)) {
+        if (is_settable(description, name)) continue;
+        if (name == "held" || name == "outcome")
+            throw refused_slope(print, fmt::format("'{}' is a word, and has no derivative", name), "print it alone");
+        if (name == "impacts" || name == "zeno_points" || name == "releases")
+            throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
+                                "print it alone");
+        if (name == "least_gap" || name == "work" || name == "loss")
+            throw refused_slope(print, fmt::format("derivatives of '{}' are not computed", name),
+                                "print it alone; differences of its values approximate them");
+    }
+}
+
+// The direction of differentiate() that a name stands for. Throws InputError.
+std::size_t direction_of(const SystemDescription& description, const std::string& print, const std::string& name) {
+    std::vector<std::string> names;
+    for (const auto& coordinate : description.coordinates) names.push_back(coordinate.name);
+    for (const auto& coordinate : description.coordinates) names.push_back(coordinate.name + "'");
+    for (const auto& parameter : description.parameters) names.push_back(parameter.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    const bool is_option = !options_of_axis(name).empty();
+    throw refused_slope(print,
+                        is_option ? fmt::format("'{}' is an option, and nothing is differentiated by it", name)
+                                  : why_not_settable(description, name),
+                        "derivatives are by a start, a rate or a parameter");
+}
+
+// Throws InputError where no run of the sweep has derivatives.
+void check_slopes(const Sweep& sweep, const std::string& print) {
+    if (sweep.at && sweep.at->kind == Section::Kind::zero)
+        throw refused_slope(print, fmt::format("there are no derivatives where '{}' passes zero", sweep.at->expression),
+                            "--at impact, --at zeno and --at release have them, and the end");
+    Chain::check(sweep.base);
+}
+
 // Whether all runs end before anything is asked.
 void refuse_late(const Sweep& sweep) {
     const bool varies = std::any_of(sweep.axes.begin(), sweep.axes.end(),
@@ -51,14 +130,19 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
     refuse_late(sweep);
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
-    std::vector<std::string> names;
+    std::vector<std::string> names, quantities;
     for (const std::string& print : sweep.prints) {
+        if (const auto asked = read_slope(print)) {
+            add_slope(sweep, print, asked->quantity, asked->name, quantities);
+            continue;
+        }
         const bool is_word = (print == "held" || print == "outcome") && !is_settable(description, print);
         const Column::Kind kind = !is_word          ? Column::Kind::number
                                   : print == "held" ? Column::Kind::held
                                                     : Column::Kind::outcome;
         columns_.push_back({kind, print, kind == Column::Kind::number ? unit_of_print(description, print) : ""});
         if (kind != Column::Kind::number) continue;
+        slopes_.emplace_back();
         texts.push_back({print, {}});
         const std::vector<std::string> more = names_in(print);
         names.insert(names.end(), more.begin(), more.end());
@@ -66,6 +150,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
     for (const Text& text : texts)  // so that what is wrong is told of one
         behind("--print", text.text, [&](std::span<const Text> one) { return model_->compile_measures(one); });
     measures_ = model_->compile_measures(texts);
+    if (!quantities.empty()) quantities_.emplace(model_, quantities, "--print");
     if (sweep.at && sweep.at->kind == Section::Kind::zero) {
         const std::string& zero = sweep.at->expression;
         zero_ = behind("--at", zero, [&](std::span<const Text> one) { return model_->compile_view(one); });
@@ -79,8 +164,22 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
     needs_least_gap_ = asks("least_gap");
     const bool jumps_tell_no_loss =
         model_->contacts() > 1 || sweep.base.options.truncation.reinitialization == Reinitialization::euclidean;
-    needs_everything_ = sweep.at || needs_least_gap_ || (asks("work") && model_->equations().has_power()) ||
-                        (asks("loss") && jumps_tell_no_loss);
+    needs_everything_ = sweep.at || quantities_ || needs_least_gap_ ||
+                        (asks("work") && model_->equations().has_power()) || (asks("loss") && jumps_tell_no_loss);
+}
+
+void RunMeasures::add_slope(const Sweep& sweep, const std::string& print, const std::string& quantity,
+                            const std::string& name, std::vector<std::string>& quantities) {
+    const SystemDescription& description = model_->description();
+    check_quantity(description, print, {quantity, name});
+    const std::size_t direction = direction_of(description, print, name);
+    check_slopes(sweep, print);
+    const auto known = std::find(quantities.begin(), quantities.end(), quantity);
+    slopes_.push_back(Slope{static_cast<std::size_t>(known - quantities.begin()), direction});
+    if (known == quantities.end()) quantities.push_back(quantity);
+    columns_.push_back({Column::Kind::number, print,
+                        unit_of_quotient(unit_of_print(description, quantity), unit_of(description, name)), quantity,
+                        name});
 }
 
 Measuring::Measuring(const RunMeasures& measures) : measures_(&measures), numbers_(measures.measures_.program) {
@@ -107,7 +206,8 @@ void Measuring::begin(const Trajectory& trajectory) {
     if (measures_->needs_least_gap_) least_gap_ = least_gap(trajectory);
 }
 
-void Measuring::measure(const Sample& sample, std::span<const Passage> passed, std::vector<double>& numbers) {
+void Measuring::measure(const Sample& sample, std::span<const Passage> passed, std::span<const Quantity> differentiated,
+                        std::vector<double>& numbers) {
     using Kind = RunQuantity::Kind;
     using Of = Event::Kind;
     const std::size_t first = measures_->model_->layout().count();
@@ -135,8 +235,13 @@ void Measuring::measure(const Sample& sample, std::span<const Passage> passed, s
         if (quantities[i].kind == Kind::least_gap) input = least_gap_;
     }
     forces_->run_view(numbers_, sample);
-    for (std::size_t i = 0; i < numbers_.output_count(); ++i)
-        numbers.push_back(std::isfinite(numbers_.output(i)) ? numbers_.output(i) : nothing);
+    std::size_t next = 0;  // output
+    for (const auto& slope : measures_->slopes_) {
+        const double number =
+            slope ? differentiated[slope->quantity].derivatives[static_cast<Eigen::Index>(slope->direction)]
+                  : numbers_.output(next++);
+        numbers.push_back(std::isfinite(number) ? number : nothing);
+    }
 }
 
 void Measuring::at_end(const Trajectory& trajectory, std::vector<double>& numbers) {
@@ -152,12 +257,20 @@ void Measuring::at_end(const Trajectory& trajectory, std::vector<double>& number
     sample.loss = trajectory.loss;
     const bool has_events = !trajectory.events.empty();
     if (has_events) sequence_ = sequence_of(trajectory);
-    measure(sample, has_events ? sequence_ : trajectory.passages, numbers);
+    std::vector<Quantity> differentiated;
+    if (measures_->quantities_) {
+        derivatives_ = differentiate(trajectory);
+        // When a run stops early depends on everything.
+        if (trajectory.outcome.kind != Outcome::Kind::end_time) derivatives_->end.reset();
+        differentiated = measures_->quantities_->of(trajectory, *derivatives_);
+    }
+    measure(sample, has_events ? sequence_ : trajectory.passages, differentiated, numbers);
 }
 
 std::vector<Moment> Measuring::moments(const Trajectory& trajectory, const Section& section) {
     begin(trajectory);
     sequence_ = sequence_of(trajectory);
+    if (measures_->quantities_) derivatives_ = differentiate(trajectory);
     if (!zero_) return events_of(trajectory, section);
     const auto value = [&](const Sample& sample) {
         forces_->run_view(*zero_, sample);
@@ -166,8 +279,12 @@ std::vector<Moment> Measuring::moments(const Trajectory& trajectory, const Secti
     return zeros_of(trajectory, section, {value, measures_->zero_has_work_, zero_bounds_ ? &*zero_bounds_ : nullptr});
 }
 
-void Measuring::at(const Trajectory&, const Moment& moment, std::vector<double>& numbers) {
-    measure(moment.sample, std::span(sequence_).first(moment.events), numbers);
+void Measuring::at(const Trajectory& trajectory, const Moment& moment, std::vector<double>& numbers) {
+    std::vector<Quantity> differentiated;
+    if (measures_->quantities_)
+        differentiated =
+            measures_->quantities_->at(trajectory, *derivatives_, moment.events - 1, moment.sample.carriers);
+    measure(moment.sample, std::span(sequence_).first(moment.events), differentiated, numbers);
 }
 
 }  // namespace achilles

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/many.hpp"
@@ -16,6 +17,10 @@ namespace achilles {
 // The prints of a sweep, compiled. An expression may have what a view may (t, coordinates, rates, parameters, gaps, lambda,
 // energy, power, work, loss), zeno_time(k), impact_time(k), impact_speed(k) and release_time(k) with k from 1 on (without
 // (k): of the last one), zeno_points, impacts, releases, and least_gap. What does not exist is not a number.
+//
+// d(QUANTITY, NAME) is the derivative of such a quantity by a start x, a rate x' or a parameter, through all impacts and Zeno
+// points (theory-derivatives.md): at the end at fixed time, at an event following it as it moves. A run that stopped early has
+// no derivatives of its end.
 class RunMeasures {
  public:
     // Throws InputError with the place in the expression.
@@ -24,12 +29,13 @@ class RunMeasures {
     struct Column {
         enum class Kind { number, held, outcome };
         Kind kind;
-        std::string name;  // as typed
-        std::string unit;  // "" where it is not known
+        std::string name;              // as typed
+        std::string unit;              // "" where it is not known
+        std::string quantity{}, by{};  // of a derivative; else empty
     };
     const std::vector<Column>& columns() const { return columns_; }
     // Of the columns, those with numbers.
-    std::size_t numbers() const { return measures_.program.output_count(); }
+    std::size_t numbers() const { return slopes_.size(); }
     // Whether the ends of runs and their sequences of events do not tell: for sections, the least gap, and what work and
     // impacts have done where only whole trajectories know it.
     bool needs_everything() const { return needs_everything_; }
@@ -37,9 +43,18 @@ class RunMeasures {
 
  private:
     friend class Measuring;
+    void add_slope(const Sweep& sweep, const std::string& print, const std::string& quantity, const std::string& name,
+                   std::vector<std::string>& quantities);
     std::shared_ptr<const Model> model_;
     std::vector<Column> columns_;
     Model::MeasureProgram measures_;
+    // Of a number that is a derivative: of which quantity, by which direction of differentiate(). Nothing: the next output of the
+    // program.
+    struct Slope {
+        std::size_t quantity, direction;
+    };
+    std::vector<std::optional<Slope>> slopes_;
+    std::optional<Quantities> quantities_;      // those of the slopes; none where there are no slopes
     std::optional<Program> zero_, zero_along_;  // the expression of a section; with its derivatives
     bool needs_everything_ = false, needs_least_gap_ = false, zero_has_work_ = false;
 };
@@ -57,14 +72,17 @@ class Measuring {
 
  private:
     void begin(const Trajectory& trajectory);
-    void measure(const Sample& sample, std::span<const Passage> passed, std::vector<double>& numbers);
+    // `differentiated`: the quantities of the slopes, there.
+    void measure(const Sample& sample, std::span<const Passage> passed, std::span<const Quantity> differentiated,
+                 std::vector<double>& numbers);
     const RunMeasures* measures_;
     Evaluator<double> numbers_;
     std::optional<Evaluator<double>> zero_;
     std::optional<BoundsAlong> zero_bounds_;
     std::optional<ContactForces> forces_;
-    std::vector<double> parameters_;  // of both
-    std::vector<Passage> sequence_;   // of the run at whose moments it is asked
+    std::vector<double> parameters_;          // of both
+    std::vector<Passage> sequence_;           // of the run at whose moments it is asked
+    std::optional<Derivatives> derivatives_;  // of the same
     double least_gap_ = 0.0;
 };
 

@@ -210,4 +210,10 @@ std::string unit_of_expression(const SystemDescription& description, std::string
     return is_force && text == "J" ? "N*m" : text;
 }
 
+std::string unit_of_quotient(std::string_view above, std::string_view below) {
+    if (below.empty()) return std::string(above);
+    const MaybeUnit unit = product(read(above), read(below), -1.0);
+    return unit ? written(*unit) : "";
+}
+
 }  // namespace achilles

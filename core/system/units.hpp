@@ -15,4 +15,8 @@ namespace achilles {
 // An angle times a length is a length.
 std::string unit_of_expression(const SystemDescription& description, std::string_view expression);
 
+// The unit of a quotient: "s/m" of s over m; that above where nothing is said of what is below, and "" where the one above, or
+// their quotient, is not known.
+std::string unit_of_quotient(std::string_view above, std::string_view below);
+
 }  // namespace achilles

@@ -23,6 +23,8 @@ SweepColumn::SweepColumn(const SweepData& data, std::size_t column) : data_(&dat
     kind_ = one.kind == Of::number ? Kind::number : one.kind == Of::held ? Kind::held : Kind::outcome;
     name_ = one.name;
     unit_ = shown_unit(one.unit);
+    quantity_ = one.quantity;
+    by_ = one.by;
     if (kind_ != Kind::number) return;
     const auto before = data.columns.begin() + static_cast<std::ptrdiff_t>(column);
     number_ = static_cast<std::size_t>(
@@ -52,7 +54,10 @@ std::string words_of(const std::string& print) {
 
 }  // namespace
 
-std::string SweepColumn::name() const { return kind_ == Kind::number ? words_of(name_) : name_; }
+std::string SweepColumn::name() const {
+    if (!by_.empty()) return "\u2202(" + words_of(quantity_) + ")/\u2202" + typeset(by_);
+    return kind_ == Kind::number ? words_of(name_) : name_;
+}
 
 std::vector<double> SweepColumn::numbers() const {
     std::vector<double> all;

@@ -47,6 +47,7 @@ class SweepColumn {
     const SweepData* data_;
     Kind kind_;
     std::string name_;
+    std::string quantity_, by_;  // of a derivative
     ShownUnit unit_;
     std::optional<std::size_t> number_;
 };

@@ -62,6 +62,37 @@ TEST(SweepPanel, shows_what_single_runs_say) {
     }
 }
 
+// Typed, or from the menu, where it is by what varies.
+TEST(SweepPanel, ShowsDerivatives) {
+    const Session session =
+        swept("ball_on_sine", "--over e=0.2:0.8:7 --print \"d(zeno_time(1), e)\" --print \"zeno_time(1)\"");
+    const SweepData& data = *session.sweep_job().data();
+    ASSERT_EQ(data.count(), 7U);
+    for (std::size_t row = 1; row < 6; ++row) {
+        const double difference = (data.number(row + 1, 1) - data.number(row - 1, 1)) / 0.2;
+        EXPECT_NEAR(data.number(row, 0), difference, 0.1 * std::abs(difference)) << row;
+    }
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::ShowSweep{"--over e=0.2:0.8:7 --print \"zeno_time(1)\""});
+    hands.session.settle();
+    hands.rest(3);
+    hands.click("sweep print");
+    hands.click("sweep print d(zeno_time(1), e)");
+    hands.session.settle();
+    EXPECT_EQ(hands.session.error(), "");
+    EXPECT_EQ(hands.session.sweep_text(), "--over e=0.2:0.8:7 --print \"d(zeno_time(1), e)\"");
+    ASSERT_NE(hands.session.sweep_job().data(), nullptr);
+    EXPECT_EQ(hands.session.sweep_job().data()->number(3, 0), data.number(3, 0));
+}
+
+// More points than a picture has, and more rows.
+TEST(SweepPanel, RefusesMoreThanItDraws) {
+    Session session = test::session("ball_on_sine");
+    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points has no picture"),
+              std::string::npos)
+        << session.error();
+}
+
 TEST(SweepPanel, goes_from_coarse_to_fine) {
     const Session session = test::session("ball_on_sine");
     const auto counts = [&](const std::string& text) {

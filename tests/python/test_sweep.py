@@ -1,5 +1,6 @@
 """Sweeps as Python has them."""
 
+import csv
 import os
 import signal
 import threading
@@ -144,3 +145,19 @@ def test_what_is_wrong(over, asked, words, told):
 def test_what_is_of_a_wrong_kind(over, asked, words, told):
     with pytest.raises(TypeError, match=told):
         achilles.sweep("ball_on_sine", over, asked, **words)
+
+
+def test_derivatives_are_those_of_runs_and_of_the_program(program):
+    print = ["zeno_time(1)", "d(zeno_time(1), e)", "d(x, x')"]
+    curve = achilles.sweep("ball_on_sine", over={"e": (0.3, 0.5, 3)}, print=print, end=5)
+    text = program("sweep", "ball_on_sine", "--over", "e=0.3:0.5:3", *(w for p in print for w in ("--print", p)), "--end", "5")
+    rows = list(csv.reader(text.splitlines()))
+    assert rows[0] == ["e", *print, "outcome"]
+    for k, name in enumerate(print):
+        assert same(curve[name], [row[k + 1] for row in rows[1:]]), name
+    for e, slope in zip(curve["e"], curve["d(zeno_time(1), e)"]):
+        run = achilles.simulate("ball_on_sine", e=e, end=5)
+        assert run.derivatives_of("zeno_time(1)")[list(run.derivatives.directions).index("e")] == slope
+    assert curve.units["d(zeno_time(1), e)"] == "s" and curve.units["d(x, x')"] == "s"
+    with pytest.raises(achilles.InputError, match="'impacts' is a whole number, and has no derivative"):
+        achilles.sweep("ball_on_sine", over={"e": (0.3, 0.5, 3)}, print="d(impacts, e)")

@@ -101,7 +101,8 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
     `over` says what varies: {"e": (0, 0.95, 200)}, {"e": ("log", 1e-3, 0.9, 100)}, an array of equidistant values, or the
     command's own texts, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N, seed=S it is
     {"x": (-1, 1)}, and N points are drawn. `print` is what is asked of the runs: expressions over the end, zeno_time(k),
-    impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome. `at` asks at
+    impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; or the derivative
+    of one of these numbers by a start, a rate or a parameter, "d(zeno_time(1), e)". `at` asks at
     every "impact", "zeno" or "release", or where an expression passes zero upwards, from time `after` on. A failed run is
     a point with an outcome, and a warning counts them.
 
