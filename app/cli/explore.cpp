@@ -51,13 +51,14 @@ class Clock {
 // One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
 class Explorer {
  public:
-    Explorer(Session& session, Window& window, const ExploreOptions& options, FilmInHand& film, PanelState state)
+    Explorer(Session& session, Window& window, const ExploreOptions& options, FilmInHand& film, PanelState state,
+             Trust trust)
         : session_(session),
           window_(window),
           film_(film),
           state_(std::move(state)),
           scale_(options.scale),
-          trust_(trust_of(options.allow_files, {options.system.value_or(""), options.journal})) {
+          trust_(std::move(trust)) {
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
         for (const Command& command : preferences_.looks()) {
@@ -133,7 +134,12 @@ class Explorer {
         const auto* replay = std::get_if<command::Replay>(&command);
         if (replay == nullptr) {
             keep(command);  // first, for the case that it crashes
-            if (!session_.apply(command) && record_) record_->take_back();
+            try {
+                if (!session_.apply(command) && record_) record_->take_back();
+            } catch (const Forbidden& problem) {
+                if (record_) record_->take_back();
+                give_up(problem);
+            }
             return;
         }
         try {
@@ -177,6 +183,7 @@ class Explorer {
     // one no, and nothing of a journal is done. Those that one journal replays were named by it, and ask as well.
     void begin_replay(const std::string& name) {
         const std::string file = is_picture(name) ? name : find_journal(name).string();
+        if (trust_.budget) trust_.budget->limit();
         try {
             const std::vector<Command> journal =
                 is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
@@ -255,6 +262,7 @@ class Explorer {
 
     void stop_tour() {
         tour_.stop();
+        if (trust_.budget) trust_.budget->lift();
         session_.set_patience(frame_patience);
     }
 
@@ -299,8 +307,11 @@ int explore(const ExploreOptions& options) {
     }
     if (!options.record.empty()) refuse_record(options.record);
     const std::string name = options.system ? *options.system : first_system();
+    const Trust trust =
+        trust_of(options.allow_files, {options.system.value_or(""), options.journal}, work_options(options.overrides));
     SystemSource library;
     library.find = find_system;
+    library.budget = trust.budget;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
     FilmInHand film;
@@ -311,7 +322,7 @@ int explore(const ExploreOptions& options) {
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window(surface_options(options), "Achilles");
     // After everything that can fail: a journal that is there already is not lost to a missing display.
-    Explorer explorer(session, window, options, film, state.get());
+    Explorer explorer(session, window, options, film, state.get(), trust);
     session.set_patience(frame_patience);
     if (!journal.empty()) explorer.begin(journal);
     session.on_ready(Window::wake);

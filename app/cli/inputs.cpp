@@ -17,6 +17,17 @@ InputError not_carried(const std::string& name) {
 
 }  // namespace
 
+Inputs::Inputs(std::vector<Source> kept, const std::string& command)
+    : kept_(std::move(kept)),
+      from_picture_(true),
+      trust_{Trust::Files::imagined,
+             {},
+             {},
+             std::make_shared<Budget>("its command makes it without this limit:\n" + command)} {
+    trust_.budget->limit();
+    time_limit_.arm(trust_.budget->how_to_allow());
+}
+
 // Of a picture: what this name stood for when it was asked for so often; what came last stays.
 const Source& Inputs::next(const std::string& name, bool is_journal) {
     const std::size_t wanted = asked_[{name, is_journal}]++;
@@ -52,6 +63,7 @@ std::string Inputs::journal_text(const std::string& path) {
 }
 
 std::vector<Command> Inputs::journal(const std::string& path) {
+    if (trust_.budget) time_limit_.arm(trust_.budget->how_to_allow());
     std::vector<Command> commands = parse_trusted(journal_text(path), path, trust_);
     count(path, commands);
     return commands;

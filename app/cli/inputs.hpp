@@ -25,13 +25,19 @@ struct Source {
 class Inputs {
  public:
     Inputs() = default;
-    explicit Inputs(std::vector<Source> kept)
-        : kept_(std::move(kept)), from_picture_(true), trust_{Trust::Files::imagined, {}} {}
+    // Of a picture, which this command made.
+    Inputs(std::vector<Source> kept, const std::string& command);
 
     // What the journals may do with files: nothing, until this is said. A picture's have no file to lose.
     void trust(const Trust& trust) {
         if (!from_picture_) trust_ = trust;
     }
+
+    // Of the work that is done with these; null: it has no limits. A picture's begins at once, with the time limit, another one
+    // with the first journal that is not trusted.
+    const std::shared_ptr<Budget>& budget() const { return trust_.budget; }
+    // What follows is short, and must not be ended in the middle.
+    void end_time_limit() { time_limit_.disarm(); }
 
     // The text of a system by path or name, and read. What a name stands for may change while a journal saves files:
     // every time it is asked for counts. Throw InputError.
@@ -58,6 +64,7 @@ class Inputs {
     std::vector<std::filesystem::path> files_read_;
     bool from_picture_ = false;
     Trust trust_;
+    TimeLimit time_limit_;
     std::size_t replayed_ = 0, changes_ = 0;                     // commands, and those of them that make another run
     std::map<std::pair<std::string, bool>, std::size_t> asked_;  // how often, of a picture
 };

@@ -4,10 +4,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
 #include <filesystem>
+#include <iostream>
 #include <new>
+#include <system_error>
 #include <thread>
 
 #include "cli/assets.hpp"
@@ -18,6 +24,7 @@
 #include "mpi/ranks.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
+#include "surface/room.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -63,6 +70,30 @@ std::string told(const CLI::ParseError& error, const CLI::App& program) {
     return fmt::format("'{}' is not expected here{}{}", rest.front(), did_you_mean(rest.front(), options), hint);
 }
 
+// Throws InputError where standard output has not taken all that was printed.
+void finish_output() {
+    errno = 0;
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return;
+    throw InputError("standard output", {},
+                     fmt::format("not all of it could be written{}{}", errno == 0 ? "" : ": ",
+                                 errno == 0 ? "" : std::strerror(errno)));
+}
+
+// Where an exception finds nobody to catch it, as on a thread of a library: lack of memory is a sentence all the same.
+[[noreturn]] void end_in_words() {
+    try {
+        if (const std::exception_ptr problem = std::current_exception()) std::rethrow_exception(problem);
+    } catch (const std::bad_alloc&) {
+        std::fputs("achilles: there is not enough memory for this\n", stderr);
+        std::_Exit(stopped_early);
+    } catch (const std::exception& error) {
+        print_clean(stderr, "achilles: {}\n", error.what());
+    } catch (...) {
+    }
+    std::abort();
+}
+
 int run(std::vector<std::string> words, Messages* ranks) {
     CLI::App program("Lagrangian hybrid systems, simulated past their Zeno points", "achilles");
     program.set_version_flag("--version", "achilles " + version());
@@ -81,10 +112,14 @@ int run(std::vector<std::string> words, Messages* ranks) {
         put_default_command(program, words);
         std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
         program.parse(words);
-        if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
+        finish_output();
         return status;
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return program.exit(error);
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+            const int printed = program.exit(error);  // help, or the version
+            finish_output();
+            return printed;
+        }
         print_clean(stderr, "achilles: {}\n", told(error, program));
     }
     return bad_input;
@@ -117,13 +152,23 @@ int run(const std::vector<std::string>& words) {
 }  // namespace achilles
 
 int main(int argc, char** argv) {
+    std::set_terminate(achilles::end_in_words);
     try {
         return achilles::run({argv + 1, argv + argc});
     } catch (const achilles::InputError& error) {
         // A message about a place in a file starts with that place, so that editors find it.
         achilles::print_clean(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
+    } catch (const achilles::NotEnoughMemory& error) {
+        achilles::print_clean(stderr, "achilles: {}\n", error.what());
+        return achilles::stopped_early;
     } catch (const std::bad_alloc&) {
         std::fputs("achilles: there is not enough memory for this\n", stderr);
+        return achilles::stopped_early;
+    } catch (const std::system_error& error) {
+        achilles::print_clean(stderr, "achilles: {}\n", error.what());
+        if (error.code() == std::errc::resource_unavailable_try_again ||  // no thread, no process
+            error.code() == std::errc::not_enough_memory)
+            return achilles::stopped_early;
     } catch (const std::exception& error) {
         achilles::print_clean(stderr, "achilles: {}\n", error.what());
     }

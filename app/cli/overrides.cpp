@@ -76,6 +76,14 @@ void apply(const OptionOverrides& overrides, Options& options) {
             if (const auto fault = fault_of_times(options)) throw InputError(given->first, {}, *fault);
 }
 
+Options work_options(const OptionOverrides& overrides) {
+    Options options;
+    for (const char* key : {"memory", "max_steps"})
+        if (const auto* given = overrides.given(option(key)); given != nullptr && allows(option(key), given->second))
+            option(key).set(options, given->second);
+    return options;
+}
+
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides) {
     Run run = default_run(description);

@@ -35,6 +35,9 @@ OptionValue value_from(const Option& option, const std::string& flag, const std:
 // Puts them over the options of a file. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);
 
+// What a command line says of the work of one run: memory and max_steps; the defaults where it says nothing.
+Options work_options(const OptionOverrides& overrides);
+
 // The run of a system that a command line asks for: the file's own, with --set and the options over it. Throws
 // InputError.
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,

@@ -25,7 +25,8 @@ int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     }
     Inputs& inputs = job.inputs();
     std::vector<Command> journal;
-    inputs.trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal}));
+    inputs.trust(
+        trust_of(options.allow_files, {options.system.value_or(""), options.journal}, work_options(options.overrides)));
     if (!options.journal.empty()) journal = inputs.journal(options.journal);
     const std::string name = options.system     ? *options.system
                              : job.reproduces() ? inputs.first_system()

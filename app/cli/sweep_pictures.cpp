@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <stdexcept>
 
 #include "cli/terminal.hpp"
 #include "pictures/pdf.hpp"
@@ -29,6 +30,7 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
         if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
     }
     check(asked_.page, "--width-mm");
+    if (!job.reproduces()) try_to_draw();
     const PictureSize size = size_of(page_for(asked_.page, "svg"), asked_.size, Figure(), "svg");
     asked_.look.width = size.width / size.scale;
     if (has_height()) asked_.look.height = size.height / size.scale;
@@ -36,6 +38,20 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
     check_drawn(data, asked_.look);
     for (const std::string& word : left_out(data, asked_.look))
         print_clean(stderr, "achilles: warning: --print {}: words are not drawn in a section\n", word);
+}
+
+// Without its fonts, or what draws without a window, a picture fails: before the runs, not after them.
+void SweepPictures::try_to_draw() const {
+    for (const std::string& file : asked_.files) {
+        const std::string format = format_for(file, "");
+        try {
+            picture_of(Figure(), {64, 64}, {}, format == "png" ? format : "svg");
+        } catch (const InputError&) {
+            throw;
+        } catch (const std::runtime_error& problem) {
+            throw InputError("--out " + file, {}, problem.what());
+        }
+    }
 }
 
 Figure SweepPictures::figure(const EachRows& each_rows) const {
@@ -75,14 +91,17 @@ std::string SweepPictures::bytes(const Figure& figure, const std::string& file) 
 void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads) {
     const SweepPictures pictures(table, asked, job);
     const std::uint64_t points = table.sweep().count();
-    if (points > most_drawn_rows)
-        throw InputError({}, {}, fmt::format("a sweep of {} runs is too long to be made again", points),
-                         fmt::format("at most {} are done for a picture that may be anybody's", most_drawn_rows));
     const std::atomic<bool> stop{false};
     std::vector<Rows> all;
+    std::uint64_t row_count = 0;
     do_chunks(
         0, points, threads, [&](Chunk chunk) { return to_bytes(table.rows(chunk.first, chunk.count)); },
-        [&](Chunk, const std::string& bytes) { all.push_back(rows_from(bytes, table)); }, stop);
+        [&](Chunk, const std::string& bytes) {
+            all.push_back(rows_from(bytes, table));
+            row_count += all.back().count();
+            job.check_rows(row_count);
+        },
+        stop);
     const Figure figure = pictures.figure([&](const auto& take) {
         for (const Rows& rows : all) take(rows);
     });

@@ -31,6 +31,7 @@ class SweepPictures {
     std::string bytes(const Figure& figure, const std::string& file) const;
 
  private:
+    void try_to_draw() const;
     bool has_height() const { return asked_.page.width > 0.0 ? asked_.page.height > 0.0 : asked_.has_size; }
     PictureSize size_for(const Figure& figure, const std::string& format) const;
     const SweepTable& table_;

@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "cli/terminal.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -68,6 +69,17 @@ mode_t usual_mode() {
 }
 
 }  // namespace
+
+int open_in_place(const std::string& path) {
+    const int at_once = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK);
+    if (at_once >= 0) {
+        ::fcntl(at_once, F_SETFL, ::fcntl(at_once, F_GETFL) & ~O_NONBLOCK);
+        return at_once;
+    }
+    if (errno != ENXIO) return at_once;
+    print_clean(stderr, "achilles: {}: waiting for a program that reads this pipe\n", path);
+    return ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+}
 
 OutputFiles::~OutputFiles() {
     for (const File& file : files_) {
@@ -174,8 +186,7 @@ void OutputFiles::commit(Care care) {
     for (const File& file : files_) {
         if (!file.in_place) continue;
         const bool standard = file.path == "-";
-        write_all(standard ? STDOUT_FILENO : ::open(file.target.c_str(), O_WRONLY | O_CLOEXEC), file.path,
-                  file.content);
+        write_all(standard ? STDOUT_FILENO : open_in_place(file.target.string()), file.path, file.content);
     }
     std::set<fs::path> folders;
     try {

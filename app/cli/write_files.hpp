@@ -11,6 +11,10 @@
 
 namespace achilles {
 
+// Opens a device or a named pipe to write to it; negative, with errno, where it cannot be opened. Waits for a program that reads
+// the pipe, and says so on standard error.
+int open_in_place(const std::string& path);
+
 // A set of files. Whether each can be written is tried when it is added, before the work; nothing stays behind if the
 // work is interrupted. At the end all are written under temporary names, which no other process uses, are on disk, and
 // then get their own. A file that is replaced keeps its mode and, where that may be given away, its owner. "-" is

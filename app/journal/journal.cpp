@@ -63,6 +63,17 @@ bool would_overwrite(const FileUse& use, const Trust& trust) {
     return use.writes && trust.files != Trust::Files::imagined && fs::exists(use.path, problem);
 }
 
+// Throws Forbidden where the command sets an option beyond the budget.
+void check_work(const Command& command, const Budget* budget) {
+    const auto* use = std::get_if<command::UseOption>(&command);
+    if (use == nullptr || budget == nullptr) return;
+    Options options;
+    const std::span<const Option> rows = options_set_by(use->name);
+    for (std::size_t i = 0; i < use->values.size(); ++i)
+        if (allows(rows[i], use->values[i])) rows[i].set(options, use->values[i]);
+    budget->check(options);
+}
+
 void drop_overwrite(Command& command) {
     if (auto* save = std::get_if<command::Save>(&command)) save->overwrite = false;
     if (auto* taken = std::get_if<command::Export>(&command)) taken->overwrite = false;
@@ -77,8 +88,12 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
-Trust trust_of(bool allow_files, std::vector<fs::path> named) {
-    return {allow_files ? Trust::Files::allowed : Trust::Files::refused, std::move(named)};
+Trust trust_of(bool allow_files, std::vector<fs::path> named, const Options& typed) {
+    Trust trust{allow_files ? Trust::Files::allowed : Trust::Files::refused, std::move(named)};
+    if (allow_files) return trust;
+    trust.budget = std::make_shared<Budget>("if you trust it: --allow-files");
+    trust.budget->allow(typed);
+    return trust;
 }
 
 std::string want(const std::string& file, bool writes) {
@@ -95,6 +110,7 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
     std::vector<Command> commands;
     std::optional<Forbidden> refused;
     std::set<std::string> wanted;
+    if (trust.budget) trust.budget->limit();
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
         if (commands.size() == most_replayed)
@@ -110,6 +126,11 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
         } else if (would_overwrite(use, trust)) {
             refuse(fmt::format("there is a file {} already, and a journal overwrites nothing", use.path),
                    "save or export to another file");
+        }
+        try {
+            check_work(command, trust.budget.get());
+        } catch (const Forbidden& problem) {
+            refuse(problem.message, problem.hint.c_str());
         }
         drop_overwrite(command);
         commands.push_back(std::move(command));

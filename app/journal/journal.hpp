@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "journal/budget.hpp"
 #include "session/command.hpp"
 
 namespace achilles {
@@ -29,8 +31,10 @@ struct Trust {
     Files files = Files::refused;
     std::vector<std::filesystem::path> named;  // by the user: these may be read
     std::map<std::string, bool> answered{};    // "write /home/me/a.toml": whether it may, where the user was asked
+    std::shared_ptr<Budget> budget{};          // of its work; null: it has no limits
 };
-Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named);
+// With a budget, unless it is trusted with files: memory and max_steps may be the defaults, or more where these options say so.
+Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
 
 // The commands of all journals that one session replays are counted: one that replays itself ends.
 constexpr std::size_t most_replayed = 10000;
@@ -46,8 +50,8 @@ std::string want(const std::string& file, bool writes);
 // Whether what comes from anybody may read this file; nothing: the user is to be asked.
 std::optional<bool> may_read(const std::string& file, const Trust& trust);
 
-// parse_journal() of a journal that may come from anybody. `overwrite` in it counts for nothing. Throws Forbidden, and
-// InputError as there.
+// parse_journal() of a journal that may come from anybody. `overwrite` in it counts for nothing. Throws Forbidden, also for
+// an option that its budget refuses, and InputError as there.
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust);
 
 // Of a command line: --do "seek 3.2". Each is a line of its own; blank ones do nothing.

@@ -17,7 +17,7 @@ namespace achilles {
 PictureJob::PictureJob(const std::vector<std::string>& words) : command_(command_line(words)) {}
 
 PictureJob::PictureJob(const Origin& origin)
-    : inputs_(origin.sources), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
+    : inputs_(origin.sources, origin.command), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
 void PictureJob::check_size(int width, int height) const {
     constexpr double most_pixels = 32e6;  // some seconds and 400 MB
@@ -27,6 +27,18 @@ void PictureJob::check_size(int width, int height) const {
                          fmt::format("at most {:.0f} million pixels are drawn for a picture that may be anybody's; its "
                                      "command makes it without this limit:\n{}",
                                      most_pixels / 1e6, command_));
+}
+
+void PictureJob::check(const Options& options) const {
+    if (inputs_.budget()) inputs_.budget()->check(options);
+}
+
+void PictureJob::check(const Sweep& sweep) const {
+    if (inputs_.budget()) inputs_.budget()->check(sweep);
+}
+
+void PictureJob::check_rows(std::uint64_t rows) const {
+    if (inputs_.budget()) inputs_.budget()->check_rows(rows);
 }
 
 void PictureJob::add(const std::string& path) {
@@ -54,6 +66,7 @@ void PictureJob::put_text(const std::string& path, const std::string& text) {
 }
 
 void PictureJob::commit() {
+    inputs_.end_time_limit();
     if (reproduces_) return;
     for (const auto& file : inputs_.files_read()) files_.spare(file);
     files_.commit();

@@ -15,6 +15,8 @@
 
 namespace achilles {
 
+struct Sweep;
+
 class PictureJob {
  public:
     // For a command line: from the disk, into files.
@@ -30,6 +32,10 @@ class PictureJob {
 
     // A stranger's picture is made again up to a size. Throws InputError for so many pixels.
     void check_size(int width, int height) const;
+    // The same of a run, of a sweep, and of the rows that it has come to. Throw Forbidden.
+    void check(const Options& options) const;
+    void check(const Sweep& sweep) const;
+    void check_rows(std::uint64_t rows) const;
     // Tried before the work: a path that cannot be written is bad input, not a loss at the end. Throws InputError.
     void add(const std::string& path);
     // What the file will hold. `make` is not called for a picture nobody asked for.

@@ -12,15 +12,17 @@
 #include <string>
 #include <vector>
 
+#include "surface/room.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
 
 namespace {
 
-// What a process says through its pipe: one `task_done` for each task; after `task_failed`, until the pipe's end, the
-// file and the message of what went wrong, each ended by a zero byte.
+// What a process says through its pipe: one `task_done` for each task; after `task_failed`, until the pipe's end, what kind of
+// problem it is, then the file and the message of what went wrong, each ended by a zero byte.
 constexpr char task_done = '.', task_failed = '!';
+constexpr char of_input = 'i', of_memory = 'm';
 
 using Counter = std::atomic<std::size_t>;
 static_assert(Counter::is_always_lock_free);  // it is shared by processes
@@ -54,8 +56,8 @@ bool say(int pipe, const char* text, std::size_t size) {
     return true;
 }
 
-void say_problem(int pipe, const std::string& file, const std::string& message) {
-    const std::string text = task_failed + file + '\0' + message + '\0';
+void say_problem(int pipe, char kind, const std::string& file, const std::string& message) {
+    const std::string text = std::string{task_failed, kind} + file + '\0' + message + '\0';
     say(pipe, text.data(), text.size());
 }
 
@@ -72,11 +74,13 @@ void work(std::size_t count, Counter& next, int pipe, const std::function<std::f
     } catch (const InputError& error) {
         const std::string told = error.what(), place = error.file + ": ";
         const bool has_place = !error.file.empty() && told.rfind(place, 0) == 0;
-        say_problem(pipe, has_place ? error.file : "", has_place ? told.substr(place.size()) : told);
+        say_problem(pipe, of_input, has_place ? error.file : "", has_place ? told.substr(place.size()) : told);
+    } catch (const NotEnoughMemory& error) {
+        say_problem(pipe, of_memory, "", error.what());
     } catch (const std::bad_alloc&) {
-        say_problem(pipe, "", "there is not enough memory for this");
+        say_problem(pipe, of_memory, "", "there is not enough memory for this");
     } catch (const std::exception& error) {
-        say_problem(pipe, "", error.what());
+        say_problem(pipe, of_input, "", error.what());
     }
     next = count;
 }
@@ -173,10 +177,13 @@ CrewOutcome share_work(std::size_t count, int jobs, const std::function<std::fun
     outcome.signal = wait_for(processes);
     for (const Process& process : processes) {
         if (!process.failed) continue;
-        const std::size_t end = process.said.find('\0');
-        const std::string file = process.said.substr(0, end);
-        std::string message = end == std::string::npos ? "" : process.said.substr(end + 1);
+        const char kind = process.said.empty() ? of_input : process.said.front();
+        const std::string said = process.said.empty() ? "" : process.said.substr(1);
+        const std::size_t end = said.find('\0');
+        const std::string file = said.substr(0, end);
+        std::string message = end == std::string::npos ? "" : said.substr(end + 1);
         if (!message.empty() && message.back() == '\0') message.pop_back();
+        if (kind == of_memory) throw NotEnoughMemory(message);
         throw InputError(file, {}, message);
     }
     return outcome;

@@ -64,6 +64,18 @@ std::string picture_of(const Figure& figure, const Look& look, const std::string
 // What it makes, without the lock.
 pybind11::bytes unlocked(const std::function<std::string()>& make);
 
+// Of a class whose objects this module alone makes. __new__ would leave them without a value, and what is called on them then
+// reads memory that nobody has written: it raises TypeError instead, also for copies and pickles.
+inline pybind11::custom_type_setup made_here_alone() {
+    return pybind11::custom_type_setup([](PyHeapTypeObject* type) {
+        type->ht_type.tp_new = [](PyTypeObject* of, PyObject*, PyObject*) -> PyObject* {
+            PyErr_Format(PyExc_TypeError, "%s: achilles makes these; they cannot be made or copied by hand",
+                         of->tp_name);
+            return nullptr;
+        };
+    });
+}
+
 void bind_errors(pybind11::module_& module);
 void bind_systems(pybind11::module_& module);
 void bind_runs(pybind11::module_& module);

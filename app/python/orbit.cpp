@@ -98,7 +98,7 @@ Asked of_period(const Found& found) {
 
 void bind_orbits(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<Found, std::shared_ptr<Found>>(module, "Orbit")
+    py::class_<Found, std::shared_ptr<Found>>(module, "Orbit", made_here_alone())
         .def_readonly("warnings", &Found::warnings)
         // Where there is none: a sentence. Then nothing else may be asked.
         .def_property_readonly("why", [](const Found& f) { return f.answer.orbit ? "" : f.answer.why; })

@@ -146,7 +146,7 @@ std::string draw(const Made& made, const AskedLook& asked, const std::string& fo
 
 void bind_runs(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<Made, std::shared_ptr<Made>>(module, "Run")
+    py::class_<Made, std::shared_ptr<Made>>(module, "Run", made_here_alone())
         .def_readonly("warnings", &Made::warnings)
         .def_property_readonly("settings", [](const Made& m) { return m.asked.settings; })
         .def_property_readonly("given", [](const Made& m) { return m.asked.options; })

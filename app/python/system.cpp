@@ -132,8 +132,7 @@ std::vector<std::pair<std::string, std::string>> equations_of(const System& syst
 }  // namespace
 
 void bind_systems(py::module_& module) {
-    py::class_<System, std::shared_ptr<System>>(module, "System")
-        .def(py::init<std::string, std::string>(), py::call_guard<py::gil_scoped_release>())
+    py::class_<System, std::shared_ptr<System>>(module, "System", made_here_alone())
         .def_readonly("name", &System::name)
         .def_property_readonly("title", [](const System& s) { return s.model->description().title; })
         .def_property_readonly("source", [](const System& s) { return s.model->description().source; })
@@ -146,6 +145,10 @@ void bind_systems(py::module_& module) {
         .def_property_readonly("options", &options_of)
         .def_property_readonly("units", &units_of)
         .def("equations", &equations_of, py::call_guard<py::gil_scoped_release>());
+    module.def(
+        "system",
+        [](std::string text, std::string name) { return std::make_shared<System>(std::move(text), std::move(name)); },
+        py::call_guard<py::gil_scoped_release>());
     module.def("option_table", &option_table);
     module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& names) {
         return did_you_mean(word, names);

@@ -22,6 +22,7 @@ Session open_session(const std::string& name, const SystemDescription& first, co
                      const OptionOverrides& overrides, SystemSource library, Patience patience) {
     library.finish = [overrides](Options& options) { apply(overrides, options); };
     const Run run = asked_run(first, settings, overrides);
+    if (library.budget && !library.is_from_picture) library.budget->allow(run.options);
     warn(first, run);
     try {
         return {name, first, run, std::move(library), patience};
@@ -51,6 +52,8 @@ SystemSource source_of(PictureJob& job) {
     };
     library.journal = [&job](const std::string& name) { return job.inputs().journal(name); };
     library.exports = !job.reproduces();
+    library.budget = job.inputs().budget();
+    library.is_from_picture = job.reproduces();
     library.saves_any_text = false;
     library.before_writing = [&job](const std::string& file) { job.refuse_output(file); };
     if (job.reproduces())

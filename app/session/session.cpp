@@ -147,6 +147,8 @@ void Session::begin_document(Document document) {
         change_system(system, Plots(system->model), run);
         for (const std::string& told : outside_ranges(description, run)) warn(told);
         for (const std::string& told : unseen_lines(description)) warn(told);
+    } catch (const Forbidden&) {
+        throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
         scene_.perform(command::Show{"editor", true});
@@ -186,6 +188,8 @@ void Session::read_document() {
         placed_ = command::Seek{time_};
         if (!same_system(description, this->description())) let_go();
         change_system(system, plots_.carried_over(system->model), run);
+    } catch (const Forbidden&) {
+        throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
     }
@@ -213,6 +217,7 @@ void Session::keep_plane() {
 
 // Shows the start of the system until its run is there. The run must be one that can start.
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
+    if (library_.budget) library_.budget->check(run.options);  // before anything has changed
     put_aside_pin();
     system_ = system;
     plots_ = plots;
@@ -300,6 +305,7 @@ void Session::perform(const command::UseOption& command) {
 // The same model with another run: nothing is read or derived again.
 void Session::rerun(const Run& run) {
     system_->model->check(run);
+    if (library_.budget) library_.budget->check(run.options);
     put_aside_pin();
     asked_ = run;
     const auto watch = std::make_shared<Watch>();
@@ -310,6 +316,7 @@ void Session::rerun(const Run& run) {
         return std::make_shared<Simulated>(system, run, plots, theme, watch.get());
     });
     receive(patience_);
+    if (library_.budget && watch_ == nullptr) library_.budget->charge(trajectory());
 }
 
 double Session::seconds_under_way() const {

@@ -31,6 +31,7 @@
 
 namespace achilles {
 
+class Budget;
 class FilmJob;
 class OrbitJob;
 class Stage;
@@ -50,6 +51,8 @@ struct SystemSource {
     std::function<void(std::unique_ptr<FilmJob>)> film{};
     std::function<void(const std::string& file)> before_writing{};  // `save` and `export`; may be empty
     bool saves_any_text = true;                                     // false: only one that is a system
+    std::shared_ptr<Budget> budget{};                               // of its runs and sweeps; null: no limits
+    bool is_from_picture = false;                                   // then the first run is within the budget, too
 };
 
 // Runs are made on a thread of their own. A command waits for its run as long as the session has patience; by default
@@ -66,7 +69,8 @@ class Session {
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Does what the command says. What cannot be done leaves everything as it was but error(), or problems() where a
-    // text is no system; false then, but for a text. Throws Forbidden: a journal wants what it may not.
+    // text is no system; false then, but for a text. Throws Forbidden: a journal wants what it may not, or more work than
+    // its budget allows.
     bool apply(const Command& command);
 
     // A mistake that is no command's: error() tells it until the next command.

@@ -1,7 +1,11 @@
 // Many runs beside the present one.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "expression/parse.hpp"
+#include "figure/sweep_figure.hpp"
+#include "journal/journal.hpp"
 #include "session/refusal.hpp"
 #include "session/session.hpp"
 
@@ -17,6 +21,10 @@ Sweep sweep_of(const std::string& text, const SystemDescription& description) {
     if (sweep.base != default_run(description))
         throw refusal("--set and the options do not stand here", "the sliders say what does not vary");
     if (sweep.axes.size() > 2) throw refusal("two axes can be shown, and no more");
+    if (sweep.count() > most_drawn_rows)
+        throw refusal(
+            fmt::format("a sweep of {} points has no picture: at most {} are drawn", sweep.count(), most_drawn_rows),
+            "achilles sweep --csv F makes a table of it");
     return sweep;
 }
 
@@ -57,12 +65,15 @@ Sweep Session::sweep() const {
 void Session::check_sweep(const std::string& text) const {
     Sweep sweep = sweep_of(text, description());
     sweep.base.options = asked_.options;
+    if (library_.budget) library_.budget->check(sweep);
     const RunMeasures measures(system_->model, sweep);
 }
 
 void Session::perform(const command::ShowSweep& command) {
     try {
         check_sweep(command.text);
+    } catch (const Forbidden&) {
+        throw;
     } catch (const InputError& problem) {
         throw refusal(problem.what(), std::string(command::ShowSweep::said.usage));
     }

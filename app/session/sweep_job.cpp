@@ -1,5 +1,7 @@
 #include "session/sweep_job.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include <span>
 #include <utility>
 
+#include "figure/sweep_figure.hpp"
 #include "study/chunks.hpp"
 
 namespace achilles {
@@ -42,6 +45,10 @@ std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& mo
     const auto write = [&](Chunk chunk, const std::string&) {
         const std::scoped_lock lock(mutex);
         data->add(waiting.extract(chunk.first).mapped().rows);
+        if (data->count() > most_drawn_rows)
+            throw InputError("sweep", {},
+                             fmt::format("there are more than {} rows, and no more are drawn", most_drawn_rows),
+                             "make the runs shorter, or fewer; achilles sweep --csv F takes the table as it is");
     };
     do_chunks(0, sweep.count(), 0, task, write, never);
     return data;

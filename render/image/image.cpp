@@ -7,6 +7,7 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <new>
 
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -63,7 +64,7 @@ std::string png_bytes(const Image& image, const Compression& compression) {
     const std::vector<std::uint8_t> mixed = opaque ? std::vector<std::uint8_t>{} : with_alpha(image);
     const void* const pixels = opaque ? image.rgb.data() : mixed.data();
     if (stbi_write_png_to_func(append, &out, image.width, image.height, channels, pixels, channels * image.width) == 0)
-        throw std::runtime_error("no memory to compress a PNG file");
+        throw std::bad_alloc();  // what it says of itself where it fails
     return out;
 }
 

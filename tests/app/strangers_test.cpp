@@ -6,12 +6,15 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "cli/dropped.hpp"
 #include "image/png_notes.hpp"
 #include "journal/journal.hpp"
+#include "journal/words.hpp"
+#include "model/read_system.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles::test {
@@ -131,6 +134,107 @@ TEST_F(Strangers, work_has_a_limit) {
     refused("frames ./s.toml --size 8000x8000", "", "too large");
     refused("figure ./s.toml" + words, "", "2004 words");
     refused("screenshot ./s.toml --journal j", replays, "at most 10000 commands");
+}
+
+// No option of a journal, no text in it, no sweep, and nothing that a picture carries makes the program grow or run for ever:
+// each is refused before a run of it is made.
+TEST_F(Strangers, AskForNoMoreWorkThanTheirBudget) {
+    const auto is_refused = [&](const Answer& answer, const std::string& place, const std::string& message) {
+        EXPECT_EQ(answer.status, 2) << message;
+        EXPECT_EQ(answer.err.find(place), 0U) << answer.err;
+        EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
+    };
+    const std::string memory = "a run of a journal or a picture keeps at most 1000 MB";
+    const std::string steps = "a run of a journal or a picture takes at most 2000000";
+    const std::string points = "a sweep of a journal or a picture has at most 4194304";
+    const auto begin = std::chrono::steady_clock::now();
+    is_refused(screenshot("open ball_on_sine\nmemory 1e300\nmax-steps 1000000000\nend 1e9\nset e 1\n"),
+               "x.journal:2:1: ", memory);
+    is_refused(screenshot("# why\n  max-steps 1000000000\n"), "x.journal:2:3: ", steps);
+    is_refused(screenshot("sweep \"--over e=0:1:10000000 --print x\"\n"), "achilles: ", points);
+    is_refused(screenshot("sweep \"--over memory=1e9:1e300:5 --print x\"\n"), "achilles: ", memory);
+    for (const std::string run : {"memory = 1e300", "max_steps = 1000000000"}) {
+        const std::string system = drop_text + "[run]\n" + run + "\n";
+        is_refused(screenshot("text " + quoted(system) + "\n"), "achilles: ", run[1] == 'e' ? memory : steps);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
+    EXPECT_FALSE(has("a.png"));
+    // What the user types, or trusts, is done.
+    EXPECT_EQ(screenshot("memory 2e9\n", "--memory 2e9").status, 0);
+    EXPECT_EQ(screenshot("memory 2e9\nmax-steps 3000000\n", "--allow-files").status, 0);
+    EXPECT_EQ(folder.run("screenshot --do 'memory 2e9' --out b.png" + small).status, 0);
+}
+
+TEST_F(Strangers, PicturesAreMadeAgainWithinABudget) {
+    ASSERT_EQ(screenshot("").status, 0);
+    const std::string bare = held_by("a.png"), head = bare.substr(0, 33) + bare.substr(bare.find("IDAT") - 4);
+    const auto refused = [&](const std::string& command, const std::string& message, const std::string& run = {}) {
+        const std::string system = drop_text + "[run]\n" + run;
+        folder.put("p.png", with_notes(head, {{"Achilles Command", "achilles " + command},
+                                              {"Achilles System", "./s.toml\n" + system},
+                                              {"Achilles System", "ball_on_sine\n" + system}}));
+        const auto begin = std::chrono::steady_clock::now();
+        const Answer answer = folder.run("reproduce p.png");
+        EXPECT_EQ(answer.status, 2) << command;
+        EXPECT_NE(answer.err.find(message), std::string::npos) << command << answer.err;
+        EXPECT_NE(answer.err.find("its command makes it without this limit:\nachilles " + command), std::string::npos)
+            << answer.err;
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)) << command;
+    };
+    const std::string memory = "keeps at most 1000 MB", steps = "takes at most 2000000";
+    for (const std::string command : {"figure ./s.toml", "frames ./s.toml", "screenshot ./s.toml", "orbit ./s.toml",
+                                      "sweep ./s.toml --over y=1:2:5 --print y", "figure ./s.toml --mechanism"}) {
+        refused(command + " --memory 1e300", memory);
+        refused(command + " --max-steps 1000000000", steps);
+        refused(command, memory, "memory = 1e300\n");
+    }
+    refused("paper", steps, "max_steps = 1000000000\n");
+    refused("sweep ./s.toml --over y=1:2:900000000 --print y", "a picture has at most 4194304");
+    refused("sweep ./s.toml --over memory=1e9:1e300:5 --print y", memory);
+}
+
+// Runs that are each within the limits are not together.
+TEST(Budget, CountsAllRuns) {
+    Options few;
+    few.max_steps = 100;
+    const auto budget = std::make_shared<Budget>("say so", few);
+    SystemSource library;
+    library.budget = budget;
+    const SystemDescription description = parse_system(drop_text, "drop.toml");
+    achilles::Run run = default_run(description);
+    run.options.max_steps = 100;
+    run.options.end_time = 0.5;
+    Session session("drop.toml", description, run, library);
+    const double full_run = static_cast<double>(session.trajectory().statistics.steps) / few.max_steps;
+    ASSERT_GT(full_run, 0.0);
+    budget->limit();
+    int runs = 0;
+    const auto forever = [&] {
+        for (; runs < 10000; ++runs) session.apply(command::Set{"y", 1.0 + 1e-6 * runs});
+    };
+    EXPECT_THROW(forever(), Forbidden);
+    EXPECT_NEAR(runs * full_run, Budget::max_full_runs, 0.5);
+    // The session is whole all the same, and goes on without the limits.
+    EXPECT_THROW(session.apply(command::UseOption("max-steps", {101})), Forbidden);
+    budget->lift();
+    EXPECT_TRUE(session.apply(command::UseOption("max-steps", {101})));
+    EXPECT_TRUE(session.apply(command::Undo{}));
+    budget->limit();
+    EXPECT_THROW(session.apply(command::Redo{}), Forbidden);
+    EXPECT_EQ(session.trajectory().run.options.max_steps, 100);
+}
+
+TEST(TimeLimitDeathTest, EndsTheProcess) {
+    const auto endless = [] {
+        TimeLimit limit;
+        limit.arm("say so", 1);
+        for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    };
+    EXPECT_EXIT(endless(), testing::ExitedWithCode(2), "takes longer than 1 s, and nothing is written\nsay so");
+    TimeLimit limit;
+    limit.arm("say so", 1);
+    limit.disarm();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
 }
 
 // In a window the user is asked about each file, and Enter says nothing.

@@ -100,6 +100,66 @@ TEST(OutputFiles, are_no_inputs_and_no_others) {
     }
 }
 
+// What is printed is printed, or it is said that it is not: whoever reads a status must not take a lost answer for one.
+TEST(StandardOutput, ThatIsFullIsAnError) {
+    const Folder folder;
+    folder.put("drop.toml", drop_text);
+    for (const std::string arguments :
+         {"--version", "--help", "simulate --help", "list", "help", "help data", "check ./drop.toml", "new mine",
+          "simulate ./drop.toml", "simulate ./drop.toml --json -", "simulate ./drop.toml --csv -", "show ./drop.toml",
+          "sweep ./drop.toml --over y=1:2:5 --print t", "prove ./drop.toml --end 0.1", "figure ./drop.toml --out -",
+          "frames ./drop.toml --end 0.1 --size 320x200 --out film"}) {
+        if (arguments.starts_with("show ") && folder.run("show --help").status != 0) continue;
+        folder.put("script", "'" ACHILLES_BINARY_DIR "/achilles' " + arguments +
+                                 " >/dev/full 2>err </dev/null\necho $? >status\n");
+        ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && sh ./script").c_str()), 0);
+        EXPECT_EQ(content(folder.path() / "status"), "2\n") << arguments;
+        const std::string err = content(folder.path() / "err");
+        EXPECT_NE(err.find("standard output: "), std::string::npos) << arguments << ": " << err;
+    }
+}
+
+// A pipe is waited for, in words; what is written into it is whole.
+TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
+    const Folder folder;
+    folder.put("drop.toml", drop_text);
+    for (const std::string arguments :
+         {"simulate ./drop.toml --json pipe", "sweep ./drop.toml --over y=1:2:5 --print t --csv pipe"}) {
+        folder.put("script",
+                   "mkfifo pipe\n'" ACHILLES_BINARY_DIR "/achilles' " + arguments +
+                       " 2>err &\np=$!\nfor i in $(seq 1000); do grep -q waiting err && break; sleep 0.01; done\n"
+                       "cat pipe >got\nwait $p\necho $? >status\nrm pipe\n");
+        ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && timeout 60 sh ./script").c_str()), 0)
+            << arguments;
+        EXPECT_EQ(content(folder.path() / "status"), "0\n");
+        EXPECT_NE(content(folder.path() / "err").find("pipe: waiting for a program that reads this pipe\n"),
+                  std::string::npos)
+            << content(folder.path() / "err");
+        const std::size_t pipe = arguments.find(" pipe");
+        EXPECT_EQ(content(folder.path() / "got"), folder.run(arguments.substr(0, pipe) + " -").out);
+    }
+}
+
+// A sentence and status 3, whatever is refused: memory, threads, the libraries that draw.
+TEST(Memory, ThatIsShortIsSaid) {
+    const Folder folder;
+    for (const std::string arguments :
+         {"figure ball_on_sine --out o.png", "screenshot ball_on_sine --out o.png",
+          "frames ball_on_sine --end 0.1 --size 640x480 --out film",
+          "sweep ball_on_sine --over e=0:0.5:3 --print x --out o.png", "simulate ball_on_sine"})
+        for (const int limit : {200000, 250000, 450000}) {
+            std::filesystem::remove_all(folder.path() / "film");
+            std::filesystem::remove(folder.path() / "o.png");
+            const Answer answer = folder.run(arguments, "ulimit -v " + std::to_string(limit) + ";");
+            if (answer.status == 0) continue;
+            EXPECT_EQ(answer.status, 3) << limit << " " << arguments << answer.err;
+            EXPECT_NE(answer.err.find("memory"), std::string::npos) << limit << " " << arguments << answer.err;
+            EXPECT_FALSE(std::filesystem::exists(folder.path() / "o.png"));
+        }
+    EXPECT_EQ(folder.run("figure ball_on_sine --out o.png", "ulimit -v 200000;").status, 3);
+    EXPECT_EQ(folder.run("figure ball_on_sine --out o.png", "ulimit -v 2000000;").status, 0);
+}
+
 // What a screenshot was told leads to the same picture.
 TEST(Record, is_written_by_a_screenshot) {
     const Folder folder;

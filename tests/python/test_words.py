@@ -216,3 +216,26 @@ def test_it_is_found_where_it_is_installed(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd="/",
                           env={"PYTHONPATH": str(package.parent)})
     assert done.stdout.split() == [str(package / "__init__.py"), "<?xml"], done.stderr
+
+
+@pytest.mark.parametrize("kind", ["System", "Run", "Orbit"])
+def test_an_object_without_a_value_cannot_be_made(kind):
+    """What __new__ leaves uninitialized would read memory that nobody has written."""
+    program = f"""
+import copy, achilles
+kind = getattr(achilles._core, {kind!r})
+class Child(kind): pass
+made = {{"System": lambda: achilles.System("ball_on_sine")._core, "Run": lambda: achilles.simulate("ball_on_sine", end=1)._core,
+        "Orbit": lambda: achilles.orbit("ball_on_vibrating_table")._core}}[{kind!r}]()
+ways = [kind, lambda: kind.__new__(kind), lambda: object.__new__(kind), lambda: kind.__base__.__new__(kind), Child,
+        lambda: Child.__new__(Child), lambda: copy.copy(made), lambda: copy.deepcopy(made)]
+for way in ways:
+    try:
+        broken = way()
+    except TypeError:
+        continue
+    [getattr(broken, name) for name in dir(broken)]
+    raise SystemExit("an object without a value was made")
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, (done.returncode, done.stderr)

@@ -109,7 +109,8 @@ void add_width_option(CLI::App& command, double& width, const std::string& about
 
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files) {
     command.add_flag("--allow-files", allow_files,
-                     "trust the journal: it may write files, and read those that it names by a path");
+                     "trust the journal: it may write files, read those that it names by a path, and take as much time "
+                     "and memory as it asks for");
     command.add_option("--do", steps, "a command as in a journal, --do \"seek 3.2\"; may be given again")
         ->type_name("COMMAND")
         ->expected(1)

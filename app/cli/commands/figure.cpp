@@ -88,7 +88,8 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
             : InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
                          "leave --view out, or --journal and --do");
     std::vector<Command> steps;
-    job.inputs().trust(trust_of(arguments.allow_files, {arguments.system, arguments.journal}));
+    job.inputs().trust(
+        trust_of(arguments.allow_files, {arguments.system, arguments.journal}, work_options(arguments.overrides)));
     if (!arguments.journal.empty()) steps = job.inputs().journal(arguments.journal);
     const std::vector<Command> more = job.inputs().steps(arguments.steps);
     steps.insert(steps.end(), more.begin(), more.end());
@@ -126,6 +127,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     std::vector<std::string> points;
     const std::optional<Spread> spread = spread_of(arguments, description, points);
     const Run run = asked_run(description, points, arguments.overrides);
+    job.check(run.options);
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
     check_asked(*model, run, points);

@@ -36,6 +36,7 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
     const auto model = std::make_shared<const Model>(description);
     AskedOrbit asked = arguments.asked;
     const Run run = asked_run(description, asked.settings, arguments.overrides);
+    job.check(run.options);
     check_asked(*model, run, asked.settings);
     warn(description, run);
     for (const Option& option : all_options())

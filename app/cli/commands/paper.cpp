@@ -21,9 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Trajectory run(Inputs& inputs, const std::string& system) {
-    const auto model = std::make_shared<const Model>(inputs.system(system));
+Trajectory run(PictureJob& job, const std::string& system) {
+    const auto model = std::make_shared<const Model>(job.inputs().system(system));
     Run paper = model->default_run();
+    job.check(paper.options);
     paper.options.truncation.conditions = Conditions::paper;  // its figures show its truncation
     return simulate(model, paper);
 }
@@ -32,7 +33,7 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
     if (format == "pdf") need_pdf_writer("--format pdf");
     std::optional<OutputFolder> made;
     if (!job.reproduces()) made.emplace(folder);
-    const Trajectory ball = run(job.inputs(), "ball_on_sine"), pendulum = run(job.inputs(), "double_pendulum");
+    const Trajectory ball = run(job, "ball_on_sine"), pendulum = run(job, "double_pendulum");
     const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
     const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";
     const auto file_of = [&](const NamedFigure& figure) { return (folder / (figure.name + "." + format)).string(); };

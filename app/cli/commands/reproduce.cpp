@@ -61,6 +61,7 @@ int reproduce(const std::string& picture, const std::string& out) {
     if (!out.empty()) format_for(out, picture_format(before));
     PictureJob job(origin);
     const int status = with_name(picture, [&] { return run_again(picture, origin, picture_format(before), job); });
+    job.inputs().end_time_limit();
     const std::string& after = *job.made();
     if (!out.empty()) files.put(out, after);
     files.commit();

@@ -71,6 +71,7 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = asked_run(description, arguments.settings, arguments.overrides);
     const Sweep sweep = make_sweep(arguments.asked, base, description);
+    job.check(sweep);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
     if (job.reproduces()) {
         reproduce_sweep(table, arguments.pictures, job, arguments.threads);
@@ -114,7 +115,10 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     if (ranks != nullptr && asked_to_stop) ranks->leave();
     progress.end();
     const std::string how = output.how_to_go_on();
-    print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
+    if (output.done() == points)
+        print_clean(stderr, "achilles: all {} runs are made, but not all of the files{}\n", points, how);
+    else
+        print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
     return stopped_early;
 }
 
@@ -138,9 +142,11 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     add_texts(*command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
               "what varies: a parameter, x or x' of the start, or an option that is a number (end), over COUNT values "
               "from LOW to HIGH, or log:LOW:HIGH:COUNT; given again, the first is the slowest");
-    add_texts(*command, "--print", asked.prints, "WHAT",
-              "what is asked of a run: an expression over its end, with zeno_time(k), impact_time(k), impact_speed(k), "
-              "release_time(k), zeno_points, impacts, releases, least_gap; or held, or outcome; may be given again");
+    add_texts(
+        *command, "--print", asked.prints, "WHAT",
+        "what is asked of a run: an expression over its end, with zeno_time(k), impact_time(k), impact_speed(k), "
+        "release_time(k), zeno_points, impacts, releases, least_gap; its derivative, d(zeno_time(1), e); or held, or "
+        "outcome; may be given again");
     const auto text_option = [&](const char* flag, std::optional<std::string>& place, const char* type,
                                  const char* about) {
         command

@@ -102,7 +102,7 @@ def _of_file(name: str) -> Any:
 @functools.lru_cache(maxsize=64)
 def _derived(text: str, name: str) -> Any:
     """The same file is derived once."""
-    return _core.System(text, name)
+    return _core.system(text, name)
 
 
 def _escaped(words: str) -> str:
