@@ -88,7 +88,7 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked,
     if (log_path_.empty() && !pictures_.files().empty()) log_path_ = pictures_.files().front();
     if (log_path_.empty()) {
         if (asked.resume) throw InputError("--resume", {}, "this needs a file, --csv F, --hdf5 F or --out F");
-        stream_ = csv_ == "-" ? STDOUT_FILENO : ::open(csv_.c_str(), O_WRONLY | O_CLOEXEC);
+        stream_ = csv_ == "-" ? STDOUT_FILENO : open_in_place(csv_);
         if (stream_ < 0)
             throw InputError(csv_, {}, fmt::format("the file cannot be written: {}", std::strerror(errno)));
         put(stream_, sweep_csv_heading(table_, units_), name_of_csv());
@@ -97,7 +97,7 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked,
     log_path_ += ".part";
     files_.refuse_output(log_path_);
     files_.add(log_path_);
-    log_ = std::make_unique<SweepLog>(log_path_, key(), asked.resume);
+    log_ = std::make_unique<SweepLog>(log_path_, key(), asked.resume, table.sweep().count());
 }
 
 SweepOutput::~SweepOutput() {
@@ -189,6 +189,8 @@ void SweepOutput::finish() {
 
 std::string SweepOutput::how_to_go_on() {
     if (!log_) return "";
+    if (log_->done() == table_.sweep().count())
+        return fmt::format("; they are kept in {}, and the same command makes the files of them", log_path_);
     if (log_->done() > 0) return fmt::format(": the same command with --resume goes on from {}", log_path_);
     log_->remove();  // there is nothing in it
     return "";

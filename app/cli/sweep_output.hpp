@@ -42,7 +42,7 @@ class SweepOutput {
     void append(Chunk chunk, const std::string& bytes);
     // Makes the files. Throws std::runtime_error; the log stays then.
     void finish();
-    // For a message: ": --resume goes on with F.part", or nothing.
+    // For a message: ": --resume goes on with F.part", "; they are kept in F.part ..." of all runs, or nothing.
     std::string how_to_go_on();
 
  private:

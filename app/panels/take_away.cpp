@@ -44,7 +44,7 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
     };
     constexpr Kind kinds[] = {
         {"Film as MP4\u2026", "mp4",
-         "the mechanism in motion beside the plots; joined by ffmpeg, where it is installed"},
+         "the mechanism in motion beside the plots; ffmpeg joins it, and must be installed"},
         {"Figure as SVG\u2026", "svg", "the plots for print, with their origin: achilles reproduce makes them again"},
         {"Figure as PNG\u2026", "png", "the same in pixels"},
         {"Run as JSON\u2026", "json", "phases, events and certificates"},

@@ -113,9 +113,8 @@ void choose_kind(PanelState& state) {
     const std::string& ending = state.take_away.ending;
     row("kind");
     if (state.take_away.what == What::film) {
-        const std::string by = find_program("ffmpeg").empty()
-                                   ? "ffmpeg, which would join the pictures, is not installed: they stay in a folder"
-                                   : "joined by ffmpeg";
+        const std::string by =
+            find_program("ffmpeg").empty() ? "ffmpeg, which joins the pictures, is not installed" : "joined by ffmpeg";
         for (const char* kind : {"mp4", "gif"})
             if (word(kind, ending == kind, state, by)) end_in(state, kind);
     } else {
@@ -260,9 +259,12 @@ TakeAwayNote note_on_film(const Session& session, const TakeAwayForm& form) {
     if (!(extent.frames <= most_film_frames))
         return {fmt::format("more than {:.0f} pictures: raise the speed, or take fewer a second", most_film_frames),
                 true};
-    const bool stay = find_program("ffmpeg").empty();
-    return {fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s{}", extent.width, extent.height, extent.frames,
-                        extent.frames / form.fps, stay ? "; ffmpeg is not installed: the pictures stay in a folder" : "")};
+    if (extent.width < 320 || extent.width > 3840)
+        return {fmt::format("a film is 320 to 3840 pixels wide, not {}", extent.width), true};
+    if (find_program("ffmpeg").empty())
+        return {"ffmpeg, which joins the pictures of a film, is not installed", true};
+    return {fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s", extent.width, extent.height, extent.frames,
+                        extent.frames / form.fps)};
 }
 
 TakeAwayNote note_on_page(const Session& session, const TakeAwayForm& form) {

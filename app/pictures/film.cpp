@@ -7,13 +7,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
 
 #include "pictures/find_program.hpp"
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_ending.hpp"
+#include "system/description.hpp"
+#include "system/input_error.hpp"
 
 extern char** environ;  // NOLINT: POSIX has it here
 
@@ -40,8 +46,10 @@ struct Temporary {
     }
 };
 
-// The status of a program that reads nothing and says all into this file; -1 where it cannot run or is killed.
-int run(const std::vector<std::string>& words, const fs::path& says) {
+// The status of a program that reads nothing, and writes its output and its messages into these files; -1 where it cannot run or
+// is killed. `wait` is called while it runs, ten times a second.
+int run(const std::vector<std::string>& words, const fs::path& output, const fs::path& says,
+        const std::function<void()>& wait) {
     std::vector<std::string> kept = words;
     std::vector<char*> pointers;
     for (std::string& word : kept) pointers.push_back(word.data());
@@ -49,17 +57,49 @@ int run(const std::vector<std::string>& words, const fs::path& says) {
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, 1, says.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::posix_spawn_file_actions_adddup2(&actions, 1, 2);
+    ::posix_spawn_file_actions_addopen(&actions, 1, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    ::posix_spawn_file_actions_addopen(&actions, 2, says.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     pid_t process = 0;
     const int problem = ::posix_spawnp(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     int status = 0;
-    if (problem != 0 || ::waitpid(process, &status, 0) != process || !WIFEXITED(status)) return -1;
-    return WEXITSTATUS(status);
+    if (problem != 0) return -1;
+    pid_t ended = 0;
+    while ((ended = ::waitpid(process, &status, WNOHANG)) == 0) {
+        wait();
+        ::usleep(100'000);
+    }
+    return ended == process && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// The last N of "frame=N" in what ffmpeg tells of its progress.
+std::size_t frames_in(const std::string& text) {
+    constexpr std::string_view key = "frame=";
+    const std::size_t at = text.rfind(key);
+    return at == text.npos ? 0 : std::strtoul(text.c_str() + at + key.size(), nullptr, 10);
 }
 
 }  // namespace
+
+bool has_film_joiner() { return !find_program(joiner).empty(); }
+
+void need_film_joiner(const std::string& option) {
+    if (!has_film_joiner())
+        throw InputError(option, {}, "ffmpeg, which joins the frames of a film, is not installed",
+                         "install ffmpeg, or draw the frames alone into a folder: achilles frames --out FOLDER");
+}
+
+void check_frames_out(const std::string& out) {
+    const std::string ending = ending_of(out), option = "--out " + shown(out);
+    if (is_film(out)) return need_film_joiner(option);
+    const bool has_letter =
+        std::any_of(ending.begin(), ending.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+    std::error_code ignored;
+    if (!has_letter || ending == "frames" || fs::is_directory(out, ignored)) return;
+    throw InputError(option, {}, fmt::format("a film ends in .mp4 or .gif, and this name ends in .{}", shown(ending)),
+                     fmt::format("write --out {}; for a folder of this name --out {}/",
+                                 fs::path(out).replace_extension(".mp4").string(), out));
+}
 
 bool is_film(const std::string& file) {
     const std::string ending = ending_of(file);
@@ -84,14 +124,19 @@ std::vector<std::string> join_words(const FrameSeries& frames, const std::string
     return words;
 }
 
-std::string joined(const FrameSeries& frames, const std::string& film) {
-    if (find_program(joiner).empty()) throw std::runtime_error("ffmpeg is not installed");
+std::string joined(const FrameSeries& frames, const std::string& film,
+                   const std::function<void(std::size_t frames)>& done) {
+    if (!has_film_joiner()) throw std::runtime_error("ffmpeg is not installed");
     // In the folder, with its ending, by which ffmpeg knows what is wanted.
-    const Temporary made{frames.folder / ("joined." + ending_of(film))}, said{frames.folder / "joined.log"};
+    const Temporary made{frames.folder / ("joined." + ending_of(film))}, said{frames.folder / "joined.log"},
+        told{frames.folder / "joined.progress"};
     std::vector<std::string> words = join_words(frames, made.path.string());
     // No date and no version: the same frames give the same file.
-    words.insert(words.end() - 1, {"-y", "-map_metadata", "-1", "-fflags", "+bitexact"});
-    const int status = run(words, said.path);
+    words.insert(words.end() - 1,
+                 {"-y", "-nostats", "-progress", "pipe:1", "-map_metadata", "-1", "-fflags", "+bitexact"});
+    const int status = run(words, told.path, said.path, [&] {
+        if (done) done(frames_in(content(told.path)));
+    });
     std::string bytes = status == 0 ? content(made.path) : "";
     if (!bytes.empty()) return bytes;
     const std::string all = content(said.path);

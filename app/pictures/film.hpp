@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@ namespace achilles {
 
 // Whether a name's ending says so.
 bool is_film(const std::string& file);
+
+// Whether ffmpeg is there to join one. need_film_joiner() throws InputError about an option where it is not.
+bool has_film_joiner();
+void need_film_joiner(const std::string& option);
+
+// What --out of `achilles frames` names: a film that can be joined, or a folder. Throws InputError for a film where there is no
+// ffmpeg, and for an ending of another kind of file, unless a folder of that name is there.
+void check_frames_out(const std::string& out);
 
 // Where the pictures of a film are drawn: "film.frames" beside film.mp4.
 std::filesystem::path frames_folder(const std::string& film);
@@ -23,9 +32,11 @@ struct FrameSeries {
 };
 std::vector<std::string> join_words(const FrameSeries& frames, const std::string& film);
 
-// Runs it and returns the file's bytes; nothing but the frames stays in the folder. Throws std::runtime_error, with what
+// Runs it and returns the file's bytes; nothing but the frames stays in the folder. `done` hears now and then how many frames are
+// joined. Throws std::runtime_error, with what
 // ffmpeg said, where it fails, and where there is none.
-std::string joined(const FrameSeries& frames, const std::string& film);
+std::string joined(const FrameSeries& frames, const std::string& film,
+                   const std::function<void(std::size_t frames)>& done = {});
 
 // Takes the frames of a film, and the folder where nothing else is in it.
 void remove_frames(const std::filesystem::path& frames, std::size_t count);

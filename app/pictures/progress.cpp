@@ -37,10 +37,13 @@ void Progress::end() {
 }
 
 void Progress::show(std::size_t done) {
-    if (!on_terminal_ && !lines_) return;
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+    if (!on_terminal_ && !lines_) {
+        if (seconds < next_line_) return;
+        next_line_ = 2.0 * seconds;
+    }
     const std::string line = progress_line(done, count_, seconds, things_);
-    fmt::print(stderr, fmt::runtime(lines_ ? "{}\n" : "\r\x1b[K{}"), line);
+    fmt::print(stderr, fmt::runtime(on_terminal_ ? "\r\x1b[K{}" : "{}\n"), line);
     std::fflush(stderr);
 }
 

@@ -262,6 +262,7 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
     if (!(extent.frames <= most_film_frames))
         throw InputError(what.file, {}, fmt::format("these would be more than {:.0f} frames", most_film_frames),
                          "a higher speed or fewer frames a second make it less");
+    need_film_joiner(what.file);
     Words words{"frames", name_anywhere(session.system())};
     const Words options = run_options(session);
     words.insert(words.end(), options.begin(), options.end());

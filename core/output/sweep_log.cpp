@@ -111,7 +111,7 @@ struct SweepLog::Header {
     }
 };
 
-SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume) : path_(std::move(path)) {
+SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume, std::uint64_t points) : path_(std::move(path)) {
     file_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0) throw InputError(path_, {}, fmt::format("the file cannot be written: {}", std::strerror(errno)));
     struct stat there {};
@@ -120,7 +120,7 @@ SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume) : path_(s
         if (!is_file) throw InputError(path_, {}, "this is not a file");
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0) throw InputError(path_, {}, "another process is writing it");
         if (there.st_size > 0)
-            go_on(key, resume);
+            go_on(key, resume, points);
         else
             begin(key);
     } catch (...) {
@@ -130,7 +130,7 @@ SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume) : path_(s
     }
 }
 
-void SweepLog::go_on(const SweepKey& key, bool resume) {
+void SweepLog::go_on(const SweepKey& key, bool resume, std::uint64_t points) {
     SweepKey known;
     if (!read_key(known))
         throw InputError(path_, {}, "an unfinished sweep would be kept here, and this file is none",
@@ -138,6 +138,7 @@ void SweepLog::go_on(const SweepKey& key, bool resume) {
     find_end();
     const std::string different = difference(known, key), anew = "remove it to begin anew";
     if (done_ == 0 && !different.empty()) return begin(key);
+    if (done_ >= points && different.empty()) return;
     if (!resume && done_ > 0)
         throw InputError(path_, {}, fmt::format("an unfinished sweep is here, with {} points", done_),
                          different.empty() ? "--resume goes on with it; " + anew : anew);

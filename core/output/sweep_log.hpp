@@ -24,9 +24,10 @@ std::string difference(const SweepKey& log, const SweepKey& asked);
 // was not written whole, whatever ended it, is one that does not check, and what follows it is cut off.
 class SweepLog {
  public:
-    // A log as it is found: the end of the points that it has, from 0 on. Throws InputError where the file is another one's,
-    // or is being written by another process; where `resume` is false, also where it has points that would be lost.
-    SweepLog(std::string path, const SweepKey& key, bool resume);
+    // A log as it is found: the end of the points that it has, from 0 on; the sweep has so many. Throws InputError where the file
+    // is another one's, or is being written by another process; where `resume` is false, also where it has points that would be
+    // lost. One with all points of the same sweep serves without `resume`: only its files are still to be made.
+    SweepLog(std::string path, const SweepKey& key, bool resume, std::uint64_t points);
     ~SweepLog();
     SweepLog(const SweepLog&) = delete;
     SweepLog& operator=(const SweepLog&) = delete;
@@ -41,7 +42,7 @@ class SweepLog {
 
  private:
     struct Header;
-    void go_on(const SweepKey& key, bool resume);
+    void go_on(const SweepKey& key, bool resume, std::uint64_t points);
     bool read_key(SweepKey& key);
     void begin(const SweepKey& key);
     void find_end();

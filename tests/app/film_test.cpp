@@ -40,22 +40,62 @@ TEST(Film, is_joined_from_its_frames_which_go) {
     EXPECT_FALSE(fs::exists(studio.path() / "film.frames"));
     EXPECT_NE(studio.said().find("-framerate 2.5 -i "), std::string::npos);
     EXPECT_NE(studio.said().find("frame_%05d.png -pix_fmt yuv420p -y"), std::string::npos) << studio.said();
-    EXPECT_NE(studio.said().find("\n7\n"), std::string::npos) << "six frames and a log:\n" << studio.said();
+    EXPECT_NE(studio.said().find("\n8\n"), std::string::npos) << "six frames, a log and how far it is:\n"
+                                                              << studio.said();
     ASSERT_EQ(studio.make(short_film + "film.gif").status, 0);
     EXPECT_NE(studio.said().find("palettegen"), std::string::npos);
 }
 
-TEST(Film, without_ffmpeg_leaves_its_frames_and_the_command) {
+// It is looked for before anything is drawn.
+TEST(Film, WithoutFfmpegIsRefused) {
     const test::Folder folder;
     // `timeout`, which the folder runs programs by, has to be found.
     const test::Answer answer =
-        folder.run(short_film + "film.mp4 2>&1", "PATH=/usr/bin/none:$(dirname $(command -v timeout)) ");
+        folder.run(short_film + "film.mp4", "PATH=/usr/bin/none:$(dirname $(command -v timeout)) ");
     if (fs::exists("/usr/bin/ffmpeg") || fs::exists("/bin/ffmpeg")) GTEST_SKIP() << "it stands beside timeout";
-    EXPECT_EQ(answer.status, 3);
-    EXPECT_FALSE(fs::exists(folder.path() / "film.mp4"));
-    EXPECT_TRUE(fs::exists(folder.path() / "film.frames/frame_00005.png"));
-    EXPECT_NE((answer.out + answer.err).find("ffmpeg is not installed"), std::string::npos);
-    EXPECT_NE((answer.out + answer.err).find("ffmpeg -framerate 2.5 -i "), std::string::npos);
+    EXPECT_EQ(answer.status, 2);
+    EXPECT_EQ(answer.err.rfind("--out film.mp4: ffmpeg, which joins the frames of a film, is not installed\n", 0), 0U)
+        << answer.err;
+    EXPECT_NE(answer.err.find("achilles frames --out FOLDER"), std::string::npos) << answer.err;
+    EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Film, HasAnEndingThatCanBeMade) {
+    const Studio studio;
+    for (const std::string name : {"film.avi", "film.MOV", "film.webm", "a.b/film.mkv", "film.png", "film.mp44"}) {
+        const test::Answer answer = studio.make(short_film + name);
+        const std::string ending = fs::path(name).extension().string().substr(1);
+        EXPECT_EQ(answer.status, 2) << name;
+        EXPECT_EQ(answer.err.find("--out " + name + ": a film ends in .mp4 or .gif, and this name ends in ."), 0U)
+            << answer.err;
+        EXPECT_FALSE(fs::exists(studio.path() / name));
+    }
+    EXPECT_FALSE(fs::exists(studio.path() / "a.b"));
+    // Folders, by what they are, by their slash, or by a name that no file has.
+    fs::create_directory(studio.path() / "mine.frames");
+    for (const std::string name : {"mine.frames", "film.avi/", "run1.5", "plain"}) {
+        EXPECT_EQ(studio.make("frames ball_on_sine --end 0.5 --fps 2 --size 320x200 --out " + name).status, 0) << name;
+        EXPECT_TRUE(fs::exists(studio.path() / name / "frame_00000.png")) << name;
+    }
+}
+
+// As ffmpeg counts them.
+TEST(Film, TellsHowManyFramesAreJoined) {
+    const Studio studio(
+        "echo frame=3; echo progress=continue; sleep 0.5; echo frame=7; sleep 0.5; echo film > \"$last\"");
+    fs::create_directory(studio.path() / "frames");
+    const std::string before = std::getenv("PATH");
+    ::setenv("PATH", ((studio.path() / "bin").string() + ":" + before).c_str(), 1);
+    std::vector<std::size_t> told;
+    const std::string film =
+        joined({studio.path() / "frames", 30.0, 320, 200}, (studio.path() / "a.mp4").string(), [&](std::size_t frames) {
+            if (told.empty() || told.back() != frames) told.push_back(frames);
+        });
+    ::setenv("PATH", before.c_str(), 1);
+    EXPECT_EQ(film, "film\n");
+    if (!told.empty() && told.front() == 0) told.erase(told.begin());
+    EXPECT_EQ(told, (std::vector<std::size_t>{3, 7}));
+    EXPECT_TRUE(fs::is_empty(studio.path() / "frames"));
 }
 
 // What was there stays, the frames too; they are not drawn again.
@@ -93,7 +133,10 @@ TEST(Film, shows_the_plots_that_commands_ask_for) {
 
 // A session begins it beside itself, of the text that it runs, and can stop it.
 TEST(Film, of_a_session_is_followed_and_stopped) {
+    const Studio studio;  // its ffmpeg is not reached
     const test::Folder folder;
+    const std::string before = std::getenv("PATH");
+    ::setenv("PATH", ((studio.path() / "bin").string() + ":" + before).c_str(), 1);
     Session session = test::session("ball_on_sine");
     session.apply(command::Text{session.document().text + "# not saved\n"});
     session.apply(command::End{2000.0});
@@ -108,6 +151,7 @@ TEST(Film, of_a_session_is_followed_and_stopped) {
     film->cancel();
     EXPECT_TRUE(film->update());
     EXPECT_TRUE(folder.files().empty()) << "a film that is given up leaves something";
+    ::setenv("PATH", before.c_str(), 1);
 }
 
 TEST(Film, of_a_session_is_checked_before_it_is_begun) {

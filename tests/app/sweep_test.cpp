@@ -226,6 +226,58 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
     EXPECT_FALSE(std::filesystem::exists("/dev/full.part"));
 }
 
+// What a picture needs is looked for before the runs; one that fails all the same stands in nobody's way.
+TEST(SweepCommand, DrawsOrSaysWhyNot) {
+    const Folder folder;
+    folder.put("drop.toml", drop_text);
+    const std::string sweep = "sweep ./drop.toml --over y=1:2:10 --print \"impact_time(1)\" --out a.";
+    std::filesystem::create_directories(folder.path() / "none");
+    for (const char* ending : {"png", "svg"}) {
+        const Answer answer = folder.run(sweep + ending, "ACHILLES_ASSETS=none");
+        EXPECT_EQ(answer.status, 2) << answer.err;
+        EXPECT_EQ(answer.err.rfind(std::string("--out a.") + ending + ": ", 0), 0u) << answer.err;
+        EXPECT_EQ(folder.files().size(), 2u) << "the system and the empty folder";
+    }
+    const Answer full = folder.run(sweep + "png", "trap '' XFSZ; ulimit -f 6;");
+    EXPECT_EQ(full.status, 3);
+    EXPECT_EQ(
+        full.err,
+        "achilles: the file cannot be written: a.png: File too large\nachilles: all 10 runs are made, but not all "
+        "of the files; they are kept in a.png.part, and the same command makes the files of them\n");
+    const Answer other = folder.run(sweep + "png --set y=1.5 --end 3");
+    EXPECT_EQ(other.status, 2) << "of another sweep they are not thrown away";
+    const Answer again = folder.run(sweep + "png");
+    EXPECT_EQ(again.status, 0) << again.err;
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "a.png"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.png.part"));
+}
+
+// Derivatives beside what they are of: in the table, from standard output and a file, in HDF5, in curves and maps.
+TEST(SweepCommand, PrintsDerivatives) {
+    const Folder folder;
+    const std::string prints = "--print \"zeno_time(1)\" --print \"d(zeno_time(1), e)\" ";
+    const std::string curve = "sweep ball_on_sine --over e=0.3:0.5:3 --end 5 " + prints;
+    const Answer answer = folder.run(curve + "--csv -");
+    ASSERT_EQ(answer.status, 0) << answer.err;
+    const auto lines = lines_of(answer.out);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[0], "e,zeno_time(1),\"d(zeno_time(1), e)\",outcome");
+    const auto number = [&](std::size_t row, std::size_t column) { return std::stod(cells_of(lines[row])[column]); };
+    EXPECT_NEAR(number(2, 2), (number(3, 1) - number(1, 1)) / 0.2, 0.2 * std::abs(number(2, 2)));
+    EXPECT_EQ(folder.run(curve + "--csv a.csv --out a.svg --out a.png --threads 1").status, 0);
+    EXPECT_EQ(content(folder.path() / "a.csv"), answer.out);
+    const std::string svg = content(folder.path() / "a.svg");
+    EXPECT_NE(svg.find("\xE2\x88\x82"), std::string::npos) << "the sign of a partial derivative";
+    EXPECT_EQ(folder.run("reproduce a.svg").status, 0);
+    EXPECT_EQ(
+        folder.run("sweep ball_on_sine --over e=0.3:0.5:3 --over x=-1:1:3 --end 5 " + prints + "--out m.svg").status,
+        0);
+    const Answer refused = folder.run("sweep ball_on_sine --over e=0:1:3 --print \"d(impacts, e)\" --csv b.csv");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_EQ(refused.err.rfind("--print d(impacts, e): 'impacts' is a whole number", 0), 0u) << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.csv"));
+}
+
 // ---- HDF5 ----
 
 std::string bytes_of(const std::vector<double>& numbers) {
@@ -304,6 +356,14 @@ TEST_F(SweepHdf5, HoldsAGrid) {
     EXPECT_FALSE(holds("--threads")) << "nor when it was made";
 }
 
+TEST_F(SweepHdf5, HoldsDerivatives) {
+    write("sweep ball_on_sine --over e=0.3:0.5:3 --print \"d(zeno_time(1) , e)\" --print x --end 5", false);
+    if (file_.empty()) return;
+    EXPECT_TRUE(holds("d(zeno_time(1) , e)"));
+    columns_.erase(columns_.begin() + 1);  // the heading has a comma: the rows have a cell less
+    EXPECT_TRUE(holds(numbers(1)));
+}
+
 TEST_F(SweepHdf5, HoldsSectionsByRows) {
     write("sweep ball_on_sine --over x=-1:1:5 --at impact --print impact_speed --end 8", false);
     if (file_.empty()) return;
@@ -318,8 +378,8 @@ TEST_F(SweepHdf5, IsMadeOfTheLogWhereItCouldNotBeWritten) {
     const Answer full = folder_.run(sweep + "a.h5", "trap '' XFSZ; ulimit -f 6;");
     EXPECT_EQ(full.status, 3);
     EXPECT_EQ(full.err,
-              "achilles: the file cannot be written: a.h5: File too large\nachilles: the sweep stopped early, at "
-              "30 of 30 runs: the same command with --resume goes on from a.h5.part\n");
+              "achilles: the file cannot be written: a.h5: File too large\nachilles: all 30 runs are made, but not all "
+              "of the files; they are kept in a.h5.part, and the same command makes the files of them\n");
     EXPECT_EQ(folder_.files().size(), 2u) << "the whole one, and the log";
     EXPECT_EQ(folder_.run(sweep + "a.h5 --resume").status, 0);
     EXPECT_EQ(content(folder_.path() / "a.h5"), content(folder_.path() / "whole.h5"));

@@ -37,7 +37,7 @@ double seconds_of(int threads, const Work& work) {
 // As the command does: rows and their text in chunks, into a log, and from there into the file.
 void write_files(const SweepTable& table, int threads, const std::string& path) {
     std::remove((path + ".part").c_str());
-    SweepLog log(path + ".part", {}, false);
+    SweepLog log(path + ".part", {}, false, ~std::uint64_t{0});
     const std::atomic<bool> stop{false};
     const auto task = [&](Chunk chunk) { return sweep_csv(table, table.rows(chunk.first, chunk.count)); };
     do_chunks(

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <optional>
 #include <thread>
 
 #include "cli/commands/commands.hpp"
@@ -12,7 +13,6 @@
 #include "model/model.hpp"
 #include "paint/mechanism.hpp"
 #include "pictures/film.hpp"
-#include "pictures/find_program.hpp"
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/process_pool.hpp"
@@ -98,18 +98,18 @@ void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept)
     print_clean(stdout, "{}\n", line);
 }
 
-// The film in place of its frames; without ffmpeg these stay. Returns the exit status.
+// The film in place of its frames; where ffmpeg fails these stay. Returns the exit status.
 int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
     const fs::path folder = folder_of(arguments);
-    if (find_program("ffmpeg").empty()) {
-        print_clean(stderr, "achilles: ffmpeg is not installed: the frames of {} stay\n", arguments.out);
-        tell(arguments, count, 0);
-        return stopped_early;
-    }
     if (arguments.progress) print_clean(stderr, "[joining {} frames\n", count);
     try {
-        job.put_text(arguments.out,
-                     joined({folder, arguments.fps, arguments.size.width, arguments.size.height}, arguments.out));
+        // Lines are for the frames that are drawn.
+        std::optional<Progress> progress;
+        if (!arguments.progress) progress.emplace(count, "frames joined");
+        job.put_text(arguments.out, joined({folder, arguments.fps, arguments.size.width, arguments.size.height},
+                                           arguments.out, [&](std::size_t frames) {
+                                               if (progress && frames <= count) progress->show(frames);
+                                           }));
     } catch (const std::runtime_error& problem) {
         print_clean(stderr, "achilles: {}\n", problem.what());
         tell(arguments, count, 0);
@@ -160,6 +160,7 @@ struct Scenario {
 Scenario plain(const FramesArguments& arguments, PictureJob& job) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    job.check(run.options);
     const auto model = std::make_shared<const Model>(description);
     std::vector<ViewDescription> views = views_for(description, arguments.views);
     check_asked(*model, run, arguments.settings);
@@ -173,7 +174,7 @@ Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "the commands tell what is plotted",
                          "leave --view out, or --do");
-    job.inputs().trust(trust_of(arguments.allow_files, {arguments.system}));
+    job.inputs().trust(trust_of(arguments.allow_files, {arguments.system}, work_options(arguments.overrides)));
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
                                    arguments.overrides, source_of(job), {});
     apply_all(session, job.inputs().steps(arguments.steps));
@@ -184,6 +185,7 @@ Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
 
 int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     job.check_size(arguments.size.width, arguments.size.height);
+    if (!job.reproduces()) check_frames_out(arguments.out);
     const Scenario scenario = arguments.steps.empty() ? plain(arguments, job) : after_steps(arguments, job);
     const Trajectory& trajectory = scenario.trajectory;
     const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
@@ -239,8 +241,8 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
     command
         ->add_option(
             "--out", arguments->out,
-            "a film, which ffmpeg joins where it is installed; or the folder of the frames, where those of the "
-            "same command stay")
+            "a film, which ffmpeg joins (it must be installed); or the folder of the frames, where those of the same "
+            "command stay")
         ->required()
         ->type_name("F.mp4|F.gif|DIR");
     const auto add_number = [&](const char* option, double& target, double low, double high, const char* about) {

@@ -26,13 +26,13 @@ class SweepFiles : public testing::Test {
 
     // Three chunks; the points that a log has.
     void write() {
-        SweepLog log(log_, key_, false);
+        SweepLog log(log_, key_, false, 1000);
         log.append({0, 10}, std::string(1000, 'a'));
         log.append({10, 1}, "");
         log.append({11, 5}, std::string(100, 'b'));
         EXPECT_EQ(log.done(), 16u);
     }
-    std::uint64_t done() { return SweepLog(log_, key_, true).done(); }
+    std::uint64_t done() { return SweepLog(log_, key_, true, 1000).done(); }
 
     fs::path folder_, log_;
     SweepKey key_{"Achilles", "--over e=0:1:16 --print t", "csv ", "title = \"a\"\ne = 1\n"};
@@ -72,13 +72,13 @@ TEST_F(SweepFiles, MayHaveNoAxis) {
 TEST_F(SweepFiles, AreReadBackFromTheLog) {
     write();
     std::string all;
-    const SweepLog log(log_, key_, true);
+    const SweepLog log(log_, key_, true, 1000);
     log.each([&](Chunk chunk, std::string_view bytes) {
         all +=
             std::to_string(chunk.first) + "+" + std::to_string(chunk.count) + ":" + std::to_string(bytes.size()) + " ";
     });
     EXPECT_EQ(all, "0+10:1000 10+1:0 11+5:100 ");
-    EXPECT_THROW(SweepLog(log_, key_, true), InputError) << "while another one has it";
+    EXPECT_THROW(SweepLog(log_, key_, true, 1000), InputError) << "while another one has it";
 }
 
 // Wherever its writer was ended, and whatever byte is not as it was.
@@ -106,10 +106,14 @@ TEST_F(SweepFiles, AreOfOneSweep) {
         SweepKey other = key_;
         (other.*part) += "x";
         EXPECT_NE(difference(key_, other), "");
-        EXPECT_THROW(SweepLog(log_, other, true), InputError);
-        EXPECT_THROW(SweepLog(log_, other, false), InputError);
+        EXPECT_THROW(SweepLog(log_, other, true, 1000), InputError);
+        EXPECT_THROW(SweepLog(log_, other, false, 1000), InputError);
     }
-    EXPECT_THROW(SweepLog(log_, key_, false), InputError) << "points would be lost";
+    EXPECT_THROW(SweepLog(log_, key_, false, 1000), InputError) << "points would be lost";
+    EXPECT_EQ(SweepLog(log_, key_, false, 16).done(), 16u) << "all of them are there: only files are to be made";
+    SweepKey other = key_;
+    other.sweep += "x";
+    EXPECT_THROW(SweepLog(log_, other, false, 16), InputError);
     EXPECT_EQ(done(), 16u) << "and none is";
     EXPECT_EQ(difference(key_, key_), "");
 }
