@@ -13,6 +13,7 @@
 #include "journal/journal.hpp"
 #include "output/output.hpp"
 #include "paint/mechanism.hpp"
+#include "pictures/film.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/paper_size.hpp"
 #include "pictures/pdf.hpp"
