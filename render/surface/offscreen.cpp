@@ -1,9 +1,12 @@
 #include "surface/offscreen.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "surface/draw_data.hpp"
 #include "surface/interface.hpp"
@@ -14,11 +17,13 @@ namespace achilles {
 
 namespace {
 
-// What Mesa and its compiler take of the address space for pictures of this size, bytes. Measured without a limit: 460 MB and 9
-// bytes a pixel.
+// What Mesa and its compiler take of the address space for pictures of this size, bytes. Measured without a limit on two cores:
+// 460 MB and 9 bytes a pixel; each core more has a thread with its stack.
 std::size_t room_for(int width, int height) {
-    constexpr std::size_t fixed = std::size_t{512} << 20, per_pixel = 16;
-    return fixed + per_pixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    constexpr std::size_t fixed = std::size_t{512} << 20, per_core = std::size_t{8} << 20, per_pixel = 16;
+    const std::size_t cores = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);  // Mesa uses no more
+    return fixed + (cores - 2) * per_core +
+           per_pixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
 // OSMesa, or EGL where Debian no longer has it; both draw the same bytes. ACHILLES_OFFSCREEN=osmesa or egl insists.
