@@ -226,7 +226,7 @@ import copy, achilles
 kind = getattr(achilles._core, {kind!r})
 class Child(kind): pass
 made = {{"System": lambda: achilles.System("ball_on_sine")._core, "Run": lambda: achilles.simulate("ball_on_sine", end=1)._core,
-        "Orbit": lambda: achilles.orbit("ball_on_vibrating_table")._core}}[{kind!r}]()
+        "Orbit": lambda: achilles.orbit("ball_down_a_wave")._core}}[{kind!r}]()
 ways = [kind, lambda: kind.__new__(kind), lambda: object.__new__(kind), lambda: kind.__base__.__new__(kind), Child,
         lambda: Child.__new__(Child), lambda: copy.copy(made), lambda: copy.deepcopy(made)]
 for way in ways:
