@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "depend/chain.hpp"
@@ -24,10 +25,11 @@ struct Transport {
     void follow(const Link& link) {
         if (link.kind == Link::Kind::crossing) {
             const auto F = link.F.head(size);
-            const auto G = link.G.head(size);
-            const double along = (link.by_place.size() > 0 ? link.by_place : link.G).head(size).dot(error);
-            const double rate = G.dot(F);
-            error -= F * ((along + link.residual) / rate);
+            // At an impact that of the state, for what vanishes there is the gap of q and t: what rounding and steps have added
+            // to these is not in the components h and u.
+            const auto G = (link.by_place.size() > 0 ? link.by_place : link.G).head(size);
+            const double rate = link.G.head(size).dot(F);
+            error -= F * ((G.dot(error) + link.residual) / rate);
             const VectorXd cross = covariance * G.transpose() / rate;  // of each component with the time that it takes
             const double variance = G.dot(cross) / rate;
             covariance += variance * F * F.transpose() - F * cross.transpose() - cross * F.transpose();
@@ -62,6 +64,24 @@ struct Transport {
 // Whether all that a link says are numbers.
 bool is_known(const Link& link) {
     return link.kind == Link::Kind::crossing || (link.J.allFinite() && link.left_out.allFinite());
+}
+
+// The sizes at fixed time, of e - F e_t with its rounding, of every coordinate and rate.
+State sizes_at_fixed_time(const Transport& carried, const Tangent& tangent, const VectorXd& rate) {
+    const Index time = Tangent::t();
+    const auto size_of = [&](Index k) {
+        const double error = carried.error[k] - rate[k] * carried.error[time];
+        const auto& P = carried.covariance;
+        const double variance = P(k, k) - 2.0 * rate[k] * P(k, time) + rate[k] * rate[k] * P(time, time);
+        return std::sqrt(error * error + std::max(variance, 0.0));
+    };
+    const auto n = static_cast<Index>(tangent.dof);
+    State sizes{Vector::Zero(n), Vector::Zero(n), 0.0};
+    for (std::size_t i = 0; i < tangent.dof; ++i) {
+        sizes.q[static_cast<Index>(i)] = size_of(tangent.q(i));
+        sizes.v[static_cast<Index>(i)] = size_of(tangent.v(i));
+    }
+    return sizes;
 }
 
 ErrorEstimate none(std::string reason) {
@@ -105,6 +125,8 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
     CompletionError of_cuts(*trajectory.model, trajectory.run);
     std::optional<CompletionError::Cut> cut;
     ErrorEstimate result;
+    result.course.begin(trajectory.run);
+    std::size_t steps = 0;
     while (const Link* link = chain.next()) {
         if (stop.stop_requested()) return none("another thread asked to stop");
         if (!is_known(*link))
@@ -116,6 +138,10 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         carried.follow(*link);
         if (link->kind == Link::Kind::crossing) continue;
         if (link->kind == Link::Kind::step || link->event) carried.round(chain.state(), tangent);
+        // What a step leaves out is given with its last part.
+        if (link->kind == Link::Kind::step && link->left_out.size() > 0)
+            result.course.add(trajectory, trajectory.pieces[steps++],
+                              sizes_at_fixed_time(carried, tangent, chain.rate()));
         if (!link->event) continue;
         const Event& event = trajectory.events[*link->event];
         if (link->completion) {
@@ -129,6 +155,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
             cut.reset();
         }
         result.events.push_back(carried.of_time());
+        result.course.add(event, sizes_at_fixed_time(carried, tangent, chain.rate()));
     }
     if (!chain.broken().empty()) {
         result.none_since = chain.broken();
@@ -142,10 +169,17 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
                 "the errors grow beyond all numbers by the end of the run; a shorter run has an estimate";
         }
     }
+    result.trusted_until = result.course.horizon();
+    if (!result.trusted_until && result.end) result.trusted_until = trajectory.end_time;
     return result;
 }
 
 }  // namespace
+
+std::optional<double> horizon_before_end(const Trajectory& trajectory, const ErrorEstimate& estimate) {
+    if (!estimate.trusted_until || *estimate.trusted_until >= trajectory.end_time) return std::nullopt;
+    return estimate.trusted_until;
+}
 
 double ErrorEstimate::AtEnd::size() const { return std::hypot(norm, sigma); }
 

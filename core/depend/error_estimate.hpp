@@ -4,6 +4,7 @@
 //     const ErrorEstimate e = estimate_error(trajectory);
 //     e.end->norm       of the true end less the computed one, roughly;  e.end->reach: hardly ever exceeded
 //     e.events[j]       s, of the time of event j
+//     e.trusted_until   s: from there on some error is more than a thousandth of its coordinate's range
 #pragma once
 
 #include <optional>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "depend/error_course.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles {
@@ -26,6 +28,11 @@ struct ErrorEstimate {
     std::optional<AtEnd> end;
     // Of the times of events, s, rounding included: of the trajectory's, as many of the first as can be estimated.
     std::vector<double> events;
+    // Of every coordinate and rate along the run, as far as it can be estimated.
+    ErrorCourse course;
+    // The horizon (s): the first step end or event where the error of some coordinate or rate exceeds its share of the range so
+    // far (ErrorCourse), the end of the run where that never happens. Nothing only where there is no estimate.
+    std::optional<double> trusted_until;
     // Why there is none at the end, else empty.
     std::string none_since;
 };
@@ -39,5 +46,8 @@ struct ErrorEstimate {
 // the same run always has it or never.
 ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token& stop = {});
 inline constexpr std::size_t most_estimated_steps = 100'000;
+
+// The horizon of a run where it comes before the end (s); else nothing.
+std::optional<double> horizon_before_end(const Trajectory& trajectory, const ErrorEstimate& estimate);
 
 }  // namespace achilles

@@ -263,8 +263,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
 }
 
 // Null where there is none, with the reason.
-void add_error_estimate(Json& result, const Trajectory& trajectory) {
-    const ErrorEstimate estimate = estimate_error(trajectory);
+void add_error_estimate(Json& result, const Trajectory& trajectory, const ErrorEstimate& estimate) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         Json& of_event = result["events"][i]["error_estimate"] = nullptr;
         if (i < estimate.events.size()) of_event = number(estimate.events[i]);
@@ -293,8 +292,10 @@ Json events_json(const Trajectory& trajectory) {
 
 std::string version() { return ACHILLES_VERSION; }
 
-std::string to_json(const Trajectory& trajectory, const Instants& instants, const Dependence* dependence) {
+std::string to_json(const Trajectory& trajectory, const Instants& instants, const Dependence* dependence,
+                    const ErrorEstimate* known) {
     const Ground ground;
+    const ErrorEstimate estimate = known != nullptr ? *known : estimate_error(trajectory);
     Json phases = Json::array();
     for (const Phase& phase : trajectory.phases) {
         phases.push_back({{"kind", to_text(phase.kind)},
@@ -305,7 +306,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
         if (phase.not_unique()) phases.back()["not_unique"] = true;
     }
     Json warnings = Json::array();
-    for (const Remark& remark : remarks(trajectory)) warnings.push_back(remark.sentence);
+    for (const Remark& remark : remarks(trajectory, estimate)) warnings.push_back(remark.sentence);
     const Statistics& s = trajectory.statistics;
     Json result = {{"achilles", version()},
                    {"system", system_of(trajectory)},
@@ -322,6 +323,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"loss", number(trajectory.loss)},
                      {"by_convention", trajectory.by_convention}}},
                    {"outcome", outcome_of(trajectory)},
+                   {"trusted_until", number(estimate.trusted_until)},
                    {"warnings", warnings},
                    {"start",
                     {{"t", number(trajectory.run.options.start_time)},
@@ -339,7 +341,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"ulps", rounding::libm},
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
-    add_error_estimate(result, trajectory);
+    add_error_estimate(result, trajectory, estimate);
     if (instants) result["samples"] = samples_of(trajectory, *instants);
     if (dependence != nullptr) {
         const Derivatives& d = dependence->derivatives;

@@ -2,6 +2,7 @@
 // null, or empty.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ struct ErrorEstimate;
 struct SystemDescription;
 struct Dependence;
 
-// With instants the array `samples` holds them; with derivatives its events, its end and `derivatives` have them.
-std::string to_json(const Trajectory& trajectory, const Instants& instants = {},
-                    const Dependence* dependence = nullptr);
+// With instants the array `samples` holds them; with derivatives its events, its end and `derivatives` have them. The estimate
+// is that of this run; null: it is made here.
+std::string to_json(const Trajectory& trajectory, const Instants& instants = {}, const Dependence* dependence = nullptr,
+                    const ErrorEstimate* estimate = nullptr);
 
 struct CsvStyle {
     Instants instants{};       // with them a last column tells the events since the row before
@@ -24,7 +26,8 @@ struct CsvStyle {
     bool units = false;        // a second line with the unit of every column; empty where it is not known
 };
 std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
-std::string summary(const Trajectory& trajectory);
+// With the digits that the estimated error leaves; null: it is made here.
+std::string summary(const Trajectory& trajectory, const ErrorEstimate* estimate = nullptr);
 // What the summary says besides where derivatives were asked for.
 std::string summary(const Trajectory& trajectory, const Dependence& dependence);
 // Phases, events and end, 9 significant digits: what golden tests compare first.
@@ -34,6 +37,11 @@ struct Remark {
     std::string label, sentence;
 };
 std::vector<Remark> remarks(const Trajectory& trajectory);
+// That the run is not trusted from a time before its end on (error_estimate.hpp); nothing where it is, or where there is no
+// estimate.
+std::optional<Remark> horizon_remark(const Trajectory& trajectory, const ErrorEstimate& estimate);
+// The same before all others.
+std::vector<Remark> remarks(const Trajectory& trajectory, const ErrorEstimate& estimate);
 // What the Euclidean norms over all coordinates, and over all rates, are in: " m", " (m, rad)"; nothing where no unit is given.
 struct NormUnits {
     std::string position, velocity;
@@ -41,8 +49,8 @@ struct NormUnits {
 NormUnits norm_units(const SystemDescription& description);
 // What a certificate says, in one sentence.
 std::string sentence(const Certificate& certificate, const SystemDescription& description);
-// What is estimated of the error at the end, or why nothing is.
-std::string sentence(const ErrorEstimate& estimate);
+// What is estimated of the error at the end, or why nothing is known of it.
+std::string sentence(const Trajectory& trajectory, const ErrorEstimate& estimate);
 // The energy drift, to two digits; one of rounding alone is "below 1e-14", which is not nothing.
 std::string drift_text(double drift);
 // The least gap beside the size of the coordinates, to two digits; a negative one of rounding alone is "0 to rounding".

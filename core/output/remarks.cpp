@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depend/error_estimate.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 
 namespace achilles {
 
@@ -136,6 +138,29 @@ std::vector<Remark> remarks(const Trajectory& trajectory) {
     if (auto remark = missed(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = integration_outweighs(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = ended_on_the_way(trajectory)) all.push_back(std::move(*remark));
+    return all;
+}
+
+std::optional<Remark> horizon_remark(const Trajectory& trajectory, const ErrorEstimate& estimate) {
+    const std::optional<double> horizon = horizon_before_end(trajectory, estimate);
+    if (!horizon) return std::nullopt;
+    const ErrorCourse& course = estimate.course;
+    const std::string name =
+        trajectory.model->description().coordinates[static_cast<std::size_t>(course.coordinate())].name +
+        (course.is_rate() ? "'" : "");
+    const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
+    const std::string advice = used.tolerance > 10.0 * least_tolerance ? ": a smaller --tolerance reaches further" : "";
+    const std::string label = fmt::format("trusted until t = {:.6g} s", *horizon);
+    return Remark{label,
+                  fmt::format("{}, not to the end: from there on the estimated error of {} is more than {:g} of its "
+                              "range, and what is computed is not the motion of this system{}. Numbers that "
+                              "are not known are printed as {}",
+                              label, name, ErrorCourse::largest_share, advice, unknown_number)};
+}
+
+std::vector<Remark> remarks(const Trajectory& trajectory, const ErrorEstimate& estimate) {
+    std::vector<Remark> all = remarks(trajectory);
+    if (auto remark = horizon_remark(trajectory, estimate)) all.insert(all.begin(), std::move(*remark));
     return all;
 }
 

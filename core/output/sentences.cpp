@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/model.hpp"
+#include "number/angle.hpp"
 #include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
@@ -27,7 +28,7 @@ std::string counted(long impacts, int cuts) {
                                    : " before the cuts");
 }
 
-std::string seconds(double t) { return fmt::format("{:.6g} s", t + 0.0); }
+std::string seconds(double t, double error) { return known_digits(t, error, 6) + " s"; }
 
 }  // namespace
 
@@ -36,12 +37,17 @@ std::optional<double> proved_time(const Event& event) {
     return std::max(event.certificate->zeno_high - event.t, event.t - event.certificate->zeno_low);
 }
 
-Sentences::Sentences(const Trajectory& trajectory) : trajectory_(trajectory) {
+Sentences::Sentences(const Trajectory& trajectory, const ErrorEstimate* estimate, Angles angles)
+    : trajectory_(trajectory), precision_(trajectory, estimate) {
     const Model& model = *trajectory.model;
     is_of_several_ = model.contacts() > 1;
     energy_unit_ = unit_of_expression(model.description(), "energy");
-    for (const std::string& rate : output_names(model.description(), "gap'"))
-        rate_units_.push_back(unit_of_expression(model.description(), rate));
+    for (const std::string& rate : output_names(model.description(), "gap'")) {
+        RateUnit unit{unit_of_expression(model.description(), rate), 1.0};
+        if (angles == Angles::degrees && unit.text.starts_with("rad/"))
+            unit = {"deg" + unit.text.substr(3), degrees(1.0)};
+        rate_units_.push_back(std::move(unit));
+    }
     EnergyBalance balance(model, trajectory.run);
     Sample start, end;
     start.t = trajectory.run.options.start_time, start.state = trajectory.run.start();
@@ -54,14 +60,18 @@ Sentences::Sentences(const Trajectory& trajectory) : trajectory_(trajectory) {
         if (trajectory.events[i].joint && trajectory.events[i].joint->order_matters) by_convention_ = i;
 }
 
-std::string Sentences::energy(double value) const {
+std::string Sentences::energy(double value, double error) const {
     const double shown = without_noise(value, 10.0 * std::max(energy_scale_, std::abs(trajectory_.loss)));
-    return shown == 0.0 ? "" : with_unit(fmt::format("{:.3g}", shown), energy_unit_);
+    const std::string digits = shown == 0.0 ? "0" : known_digits(shown, error, 3);
+    return digits == "0" ? "" : with_unit(digits, energy_unit_);
 }
 
 // ", 0.4 J lost"; nothing of an elastic impact.
-std::string Sentences::lost(double energy) const {
-    const std::string text = this->energy(energy);
+std::string Sentences::lost(double energy, const Event& event) const {
+    Sample before;
+    before.t = event.t;
+    before.state = {event.q, event.v_before, event.t};
+    const std::string text = this->energy(energy, precision_.of_energy(before));
     if (text.empty()) return "";
     return energy_unit_.empty() ? ", energy lost " + text : ", " + text + " lost";
 }
@@ -85,11 +95,14 @@ std::string Sentences::impact(std::size_t index) const {
     std::string text = "impact";
     if (is_of_several_) text += " of " + joined_names(*trajectory_.model, event.contacts, " and ");
     if (event.contacts.count() > 1) text += " at once";
-    text += " at gap speed " + with_unit(fmt::format("{:.4g}", event.impact_speed), rate_units_[first]);
+    const RateUnit& unit = rate_units_[first];
+    text += " at gap speed " +
+            with_unit(known_digits(event.impact_speed * unit.factor, precision_.of_gap_speed(index) * unit.factor, 4),
+                      unit.text);
     const Event* next = index + 1 < trajectory_.events.size() ? &trajectory_.events[index + 1] : nullptr;
     const bool is_cut =
         next != nullptr && next->truncation && next->truncation->t == event.t && !is_plastic_landing(*next);
-    const std::string loss = lost(energy_lost(trajectory_, index));
+    const std::string loss = lost(energy_lost(trajectory_, index), event);
     text += loss;
     if (is_cut && !loss.empty()) text += " by it and the restart";
     if (!event.opened.empty()) text += "; it opens " + joined_names(*trajectory_.model, event.opened, " and ");
@@ -109,7 +122,8 @@ std::string Sentences::zeno(std::size_t index) const {
     if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
     const Pile pile = pile_of(trajectory_, index);
     std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
-    text += lost(pile.loss);
+    text += lost(pile.loss, event);
+    if (precision_.is_beyond(event.t)) return text;  // of the computed motion alone, which is not this one
     const std::optional<double> bound = proved_time(event);
     text += !bound         ? ", not certified"
             : *bound > 0.0 ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))
@@ -148,11 +162,11 @@ std::string Sentences::state(ContactSet held) const {
 
 std::string Sentences::start() const {
     const ContactSet held = trajectory_.phases.empty() ? trajectory_.end_held : trajectory_.phases.front().held;
-    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time), state(held));
+    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0), state(held));
 }
 
 std::string Sentences::end() const {
-    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time), state(trajectory_.end_held));
+    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_held));
     if (trajectory_.outcome.kind != Outcome::Kind::end_time)
         text += fmt::format("; the run ends early: {}", to_text(trajectory_.outcome.kind));
     return text;

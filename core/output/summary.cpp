@@ -9,6 +9,7 @@
 #include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "output/sentences.hpp"
 #include "simulate/least_gap.hpp"
 #include "system/units.hpp"
@@ -23,12 +24,12 @@ std::string unit_after(const Model& model, const std::string& name) {
     return unit.empty() ? "" : " " + unit;
 }
 
-// "x = 1.5 m, y = 2 m" for values from this slot on; what is noise beside their scale is 0.
-std::string named(const Model& model, std::size_t first_slot, const Vector& values, const Vector& scale) {
+// "x = 1.5 m, y = 2 m" for values from this slot on, with the digits that their errors leave.
+std::string named(const Model& model, std::size_t first_slot, const Vector& values, const Vector& errors) {
     std::string text;
     for (Eigen::Index i = 0; i < values.size(); ++i) {
         const std::string& name = model.slot_names()[first_slot + static_cast<std::size_t>(i)];
-        text += fmt::format("{}{} = {:.9g}{}", i == 0 ? "" : ", ", name, without_noise(values[i], scale[i]) + 0.0,
+        text += fmt::format("{}{} = {}{}", i == 0 ? "" : ", ", name, known_digits(values[i], errors[i], 9),
                             unit_after(model, name));
     }
     return text;
@@ -55,8 +56,8 @@ class Course {
         : trajectory_(trajectory),
           estimate_(estimate),
           model_(*trajectory.model),
-          scale_(scale_of(trajectory)),
-          sentences_(trajectory),
+          sentences_(trajectory, &estimate),
+          precision_(sentences_.precision()),
           ends_(ends_of_phases(trajectory)) {}
 
     std::string told() const {
@@ -77,11 +78,11 @@ class Course {
  private:
     bool is_of_several() const { return model_.contacts() > 1; }
     std::string names(ContactSet contacts) const { return joined_names(model_, contacts); }
+    std::string time(double t) const { return known_digits(t, precision_.of_time(t), 10); }
 
     std::string phase_line(const Phase& phase) const {
-        return fmt::format("{} phase{}, t = {:.10g} to {:.10g} s{}\n", to_text(phase.kind),
-                           holding(trajectory_, phase.held), phase.start, phase.end,
-                           phase.not_unique() ? ", forces not unique" : "");
+        return fmt::format("{} phase{}, t = {} to {} s{}\n", to_text(phase.kind), holding(trajectory_, phase.held),
+                           time(phase.start), time(phase.end), phase.not_unique() ? ", forces not unique" : "");
     }
 
     std::string chatter_line(const Chatter& chatter) const {
@@ -92,10 +93,10 @@ class Course {
             held = held.with(trajectory_.phases[i].held);
         }
         return fmt::format(
-            "{} phases in a row, t = {:.10g} to {:.10g} s, with {} impacts: a contact comes to rest and an impact of "
+            "{} phases in a row, t = {} to {} s, with {} impacts: a contact comes to rest and an impact of "
             "another opens it, again and again ({})\n",
-            chatter.last - chatter.first, trajectory_.phases[chatter.first].start,
-            trajectory_.phases[chatter.last - 1].end, impacts, names(held));
+            chatter.last - chatter.first, time(trajectory_.phases[chatter.first].start),
+            time(trajectory_.phases[chatter.last - 1].end), impacts, names(held));
     }
 
     std::string events(std::size_t phase) const {
@@ -120,8 +121,9 @@ class Course {
                 i = end - shown_last;
             }
             const Event& impact = trajectory_.events[i];
-            text += fmt::format("  impact    t = {:<16.10g} gap speed {:.6g}{}\n", impact.t, impact.impact_speed,
-                                of_contacts(impact));
+            text += fmt::format("  impact    t = {:<16} gap speed {}{}\n",
+                                known_digits(impact.t, precision_.of_event(i), 10),
+                                known_digits(impact.impact_speed, precision_.of_gap_speed(i), 6), of_contacts(impact));
         }
         return text;
     }
@@ -139,12 +141,14 @@ class Course {
         const Event& event = trajectory_.events[index];
         const bool is_plastic = is_plastic_landing(event);
         const std::string contacts = is_of_several() ? " of " + names(event.contacts) + "," : "";
-        std::string text = fmt::format("  {:<9} t = {:<16.10g}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
-                                       event.t, contacts, named(model_, 0, event.q, scale_.q));
+        std::string text = fmt::format("  {:<9} t = {:<16}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
+                                       known_digits(event.t, precision_.of_event(index), 10), contacts,
+                                       named(model_, 0, event.q, precision_.of_state(event.t).q));
         text += indented(sentences_.of(index));
+        if (precision_.is_beyond(event.t)) return text;  // a certificate is of the computed motion
         if (event.truncation && !is_plastic)
-            text += fmt::format("            cut short at the last of them, t = {:.10g}, gap speed {:.3g}\n",
-                                event.truncation->t, event.truncation->impact_speed);
+            text += fmt::format("            cut short at the last of them, t = {}, gap speed {:.3g}\n",
+                                time(event.truncation->t), event.truncation->impact_speed);
         if (!event.certificate) return text;
         text += indented(sentence(*event.certificate, model_.description()));
         if (!is_plastic && index < estimate_.events.size())
@@ -162,18 +166,23 @@ class Course {
     const Trajectory& trajectory_;
     const ErrorEstimate& estimate_;
     const Model& model_;
-    State scale_;
     Sentences sentences_;
+    const Precision& precision_;
     std::vector<std::size_t> ends_;
 };
 
-// Where the energy went.
-std::string balance(const Trajectory& trajectory) {
+// Where the energy went: known as well as the energy at the end.
+std::string balance(const Trajectory& trajectory, const Precision& precision) {
     // Of angles alone it would be no unit of an energy.
     const char* unit = unit_of_expression(trajectory.model->description(), "energy") == "J" ? " J" : "";
     const bool damped = !trajectory.model->description().dissipation.text.empty();
-    return fmt::format("work {:.9g}{} by forces{} and moving surfaces, loss {:.9g}{} at impacts\n",
-                       trajectory.work + 0.0, unit, damped ? ", dissipation" : "", trajectory.loss + 0.0, unit);
+    Sample end;
+    end.t = trajectory.end_time;
+    end.state = trajectory.end;
+    const double error = precision.of_energy(end);
+    return fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts\n",
+                       known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",
+                       known_digits(trajectory.loss, error, 9), unit);
 }
 
 std::string conventions(int count) {
@@ -216,7 +225,9 @@ NormUnits norm_units(const SystemDescription& description) {
             fmt::format(fmt::runtime(form), fmt::join(rates, ", "))};
 }
 
-std::string sentence(const ErrorEstimate& estimate) {
+std::string sentence(const Trajectory& trajectory, const ErrorEstimate& estimate) {
+    if (const auto horizon = horizon_before_end(trajectory, estimate))
+        return fmt::format("the error at the end is not known: the run is trusted until t = {:.6g} s", *horizon);
     if (!estimate.end) return "no estimate of the error at the end: " + estimate.none_since;
     return fmt::format("estimated error {:.1g} at the end: an estimate, not a proof", estimate.end->size());
 }
@@ -245,32 +256,35 @@ std::string sentence(const Certificate& c, const SystemDescription& description)
     return text + fmt::format("; of the {} this had the least room: {}", c.paper ? "conditions" : "bounds", c.decisive);
 }
 
-std::string summary(const Trajectory& trajectory) {
+std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     const Ground ground;
+    const ErrorEstimate estimate = known != nullptr ? *known : estimate_error(trajectory);
     const Model& model = *trajectory.model;
     const Options& o = trajectory.run.options;
     std::string text = fmt::format("{}\n", model.description().title);
+    if (const auto remark = horizon_remark(trajectory, estimate)) text += "  " + remark->sentence + "\n";
     text += fmt::format("  {}", to_text(o.method));
     for (const Option* option : told_options())
         if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
     text += "\n";
     for (const Remark& remark : remarks(trajectory)) text += "  " + remark.sentence + "\n";
     text += "\n";
-    const State scale = scale_of(trajectory);
-    const ErrorEstimate estimate = estimate_error(trajectory);
+    const Precision precision(trajectory, &estimate);
+    const State errors = precision.of_state(trajectory.end_time);
     text += Course(trajectory, estimate).told();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
     text += fmt::format("\nend at t = {:.10g} s, {}{}: {}; {}", trajectory.end_time, to_text(trajectory.end_phase),
-                        holding(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, scale.q),
-                        named(model, n, trajectory.end.v, scale.v));
-    text += "\n" + sentence(estimate);
+                        holding(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, errors.q),
+                        named(model, n, trajectory.end.v, errors.v));
+    text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
     text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n",
                         Sentences(trajectory).impacts(), s.steps, s.evaluations, has_power ? " beside the work" : "",
-                        drift_text(s.energy_drift), least_gap_text(least_gap(trajectory), scale.q.maxCoeff()));
-    if (has_power || model.contacts() > 1) text += balance(trajectory);
+                        drift_text(s.energy_drift),
+                        least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
+    if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
@@ -281,9 +295,11 @@ std::string summary(const Trajectory& trajectory) {
             "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between "
             "bodies.\n";
     text +=
-        "Digits are those of the computed run: its errors grow along the way, as estimated to first order, and "
-        "another\n"
-        "--tolerance shows how much.\n";
+        estimate.trusted_until
+            ? "Digits end where the estimated error begins: it grows along the way, to first order, and another\n"
+              "--tolerance shows how much.\n"
+            : "Digits are those of the computed run: its errors grow along the way, and another --tolerance shows how "
+              "much.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });
