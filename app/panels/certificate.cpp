@@ -146,6 +146,12 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
             "of the whole run from its start, integration and all cuts included; what stands below is of this cut "
             "alone");
     }
+    if (const auto horizon = session.horizon(); horizon && event.t > *horizon)
+        return paragraph(
+            fmt::format("The run is not trusted after t = {:.6g} s: what is certified here is of the computed "
+                        "motion, which is not the motion of this system.",
+                        *horizon),
+            remaining().width, text_color());
     show_certificate(event);
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";

@@ -8,6 +8,7 @@
 
 #include "figure/label.hpp"
 #include "output/energy.hpp"
+#include "output/precision.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
@@ -95,10 +96,10 @@ void fill(const Part& part, bool stripes, ImVec2 low, ImVec2 high) {
         list->AddRectFilled({x, low.y}, {std::min(x + step, high.x), high.y}, packed(part.color, 0.8F));
 }
 
-std::string valued(const Session& session, double value) {
+std::string valued(const Session& session, double value, double error) {
     const std::string unit = typeset_unit(session.sentences().energy_unit());
     const double size = 10.0 * std::max(session.sentences().energy_scale(), std::abs(session.trajectory().loss));
-    const std::string text = std::isfinite(value) ? number(without_noise(value, size), "{:.4g}") : "\u2013";
+    const std::string text = std::isfinite(value) ? number(without_noise(value, size), error, 4) : "\u2013";
     return unit.empty() ? text : text + " " + unit;
 }
 
@@ -112,13 +113,14 @@ void show_numbers(const Session& session, const Energies& now, const Rectangle& 
     const float width = area.width / static_cast<float>(count), line = ImGui::GetTextLineHeight();
     const auto all = parts(session.theme());
     const auto its = values(now);
+    const double error = session.precision().of_energy(session.now());
     for (std::size_t i = 0; i < count; ++i) {
         const ImVec2 at{area.x + static_cast<float>(i) * width, area.y};
         const float sign = units(9.0F), words = units(14.0F);
         const float top = std::floor(at.y + 0.5F * (line - sign));
         fill(all[i], i == striped, {at.x, top}, {at.x + sign, top + sign});
         cell({std::floor(at.x + words), at.y}, all[i].name, width - words - units(4.0F), faint_color());
-        cell({std::floor(at.x + words), at.y + ImGui::GetTextLineHeightWithSpacing()}, valued(session, its[i]),
+        cell({std::floor(at.x + words), at.y + ImGui::GetTextLineHeightWithSpacing()}, valued(session, its[i], error),
              width - words - units(4.0F), text_color());
         ImGui::SetCursorScreenPos(at);
         ImGui::Dummy({width, 2.0F * ImGui::GetTextLineHeightWithSpacing()});
@@ -172,6 +174,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
             from = to;
         }
     }
+    fade_beyond(session, {left, top, width, height}, start, end, session.theme().background);
     const float now = std::floor(left + static_cast<float>((session.time() - start) / (end - start)) * width) + 0.5F;
     list->AddLine({now, top}, {now, bottom}, packed(session.theme().background), units(4.0F));
     list->AddLine({now, top}, {now, bottom}, packed(text_color()), units(1.5F));
@@ -182,8 +185,9 @@ std::string told(const Session& session, const EnergyCourse& course, double t) {
     const auto its = values(course.before(t));
     const auto all = parts(session.theme());
     std::string text = fmt::format("t = {:.6g} s", t);
+    const double error = session.precision().of_energy(session.at(t));
     for (std::size_t i = 0; i < (has_forces(session) ? 4U : 3U); ++i)
-        text += fmt::format("\n{} {}", all[i].name, valued(session, its[i]));
+        text += fmt::format("\n{} {}", all[i].name, valued(session, its[i], error));
     const auto& events = session.trajectory().events;
     const auto after =
         std::upper_bound(events.begin(), events.end(), t, [](double at, const Event& event) { return at < event.t; });

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "figure/compose.hpp"
 #include "figure/label.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
 
@@ -61,11 +63,18 @@ void EventColumns::row(const Session& session, const Event* event, double lost, 
     // Below so much a loss is rounding.
     const double size = 10.0 * std::max(std::abs(session.trajectory().loss), session.sentences().energy_scale());
     const double shown_loss = without_noise(lost, size);
-    if (shown_ > 0 && shown_loss != 0.0) put(at, 0, number(shown_loss, "{:.4g}"), color);
-    for (std::size_t i = 1; i < shown_ && event != nullptr; ++i)
+    const Precision& precision = session.precision();
+    if (shown_ > 0 && shown_loss != 0.0)
+        put(at, 0,
+            number(shown_loss, event == nullptr ? 0.0 : precision.of_energy(sample_at(session.trajectory(), *event)),
+                   4),
+            color);
+    if (event == nullptr) return;
+    const State errors = precision.of_state(event->t);
+    for (std::size_t i = 1; i < shown_; ++i)
         put(at, i,
             is_held(i) ? joined_names(*session.model(), event->held)
-                       : number_of_size(state(i).shown(*event, session.scale()), state(i).size(session.scale()), 5),
+                       : number_of_size(state(i).of(*event), state(i).size(session.scale()), 5, state(i).error(errors)),
             color);
 }
 

@@ -23,8 +23,7 @@ struct StateColumn {
     double factor = 1.0;
     double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
     double size(const State& scale) const { return (is_rate ? scale.v : scale.q)[coordinate] * factor; }
-    // Rounding noise is shown as 0.
-    double shown(const Event& event, const State& scale) const { return without_noise(of(event), size(scale)); }
+    double error(const State& errors) const { return (is_rate ? errors.v : errors.q)[coordinate] * factor; }
 };
 
 std::vector<StateColumn> state_columns(const Session& session);

@@ -6,17 +6,20 @@
 #include <optional>
 
 #include "figure/label.hpp"
+#include "figure/shown_unit.hpp"
 #include "number/angle.hpp"
 #include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "paint/marker.hpp"
 #include "panels/event_columns.hpp"
 #include "panels/event_rows.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -62,6 +65,14 @@ std::string event_name(const Session& session, const Event& event) {
     return fmt::format("{} {}", event.kind == Event::Kind::zeno ? "Zeno" : to_text(event.kind), contacts);
 }
 
+// Gap speeds of angles are in degrees a second, as the rates beside them.
+double speed_factor(const Session& session, const Event& event) {
+    const std::vector<std::string> rates = output_names(session.description(), "gap'");
+    std::size_t first = 0;
+    while (first + 1 < rates.size() && !event.contacts.contains(first)) ++first;
+    return shown_unit(unit_of_expression(session.description(), rates[first])).factor;
+}
+
 // The events for a spreadsheet, every digit: the chosen one, or all. In the units of the list.
 std::string table(const Session& session) {
     const std::vector<StateColumn> columns = state_columns(session);
@@ -79,7 +90,8 @@ std::string table(const Session& session) {
         text += fmt::format("\n{}\t{}", i + 1, event_name(event));
         for (const ContactSet& set : {event.contacts, event.opened, event.held})
             if (several) text += "\t" + joined_names(*session.model(), set, "+");
-        text += fmt::format("\t{}\t{}", event.t, is_impact ? fmt::format("{}", event.impact_speed) : "");
+        text += fmt::format("\t{}\t{}", event.t,
+                            is_impact ? fmt::format("{}", event.impact_speed * speed_factor(session, event)) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
         text += fmt::format("\t{}\t{}", energy_lost(session.trajectory(), i), session.sentences().of(i));
         const EnclosedEvent* const enclosed = session.enclosed(i);
@@ -192,13 +204,23 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(buttons, state, commands);
 }
 
+// Points stand below one another, whatever digits an error leaves.
+void time_cell(ImVec2 at, double t, double error, const Color& color) {
+    constexpr int decimals = 9;
+    const int known = known_decimals(error, decimals);
+    const float digit = label_width("0", ImGui::GetFontSize()),
+                point = known == 0 ? label_width(".", ImGui::GetFontSize()) : 0.0F;
+    const float missing = std::isfinite(error) ? static_cast<float>(decimals - known) * digit + point : 0.0F;
+    number_cell({at.x - missing, at.y}, time_at, number_with_decimals(t, error, decimals), color);
+}
+
 void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {
     const Event& event = session.trajectory().events[index];
     ImDrawList* list = ImGui::GetWindowDrawList();
     const Markers markers = event_markers(session.theme(), event.kind);
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
-    number_cell(at, time_at, number(event.t, "{:.9f}"), text_color());
+    time_cell(at, event.t, session.precision().of_event(index), text_color());
     // Beside a card, which says the rest, its name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
@@ -229,7 +251,7 @@ void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at,
                                       [](const Event& event) { return event.kind != Event::Kind::impact; });
     const double lost = events[row.event + row.count - 1].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0);
     columns.put_words(at, fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
-    number_cell(at, time_at, number(events[row.event].t, "{:.9f}"), faint_color());
+    time_cell(at, events[row.event].t, session.precision().of_event(row.event), faint_color());
     columns.row(session, nullptr, lost, at, faint_color());
 }
 
@@ -250,8 +272,9 @@ void show_impacts(const Session& session, const EventRows::Row& row, int present
             commands.emplace_back(command::Select{0});
     }
     remember(state, "impacts " + std::to_string(row.event + 1));
-    tooltip(fmt::format("events {} to {}, t = {:.9g} to {:.9g} s: a click {} them", row.event + 1, last + 1,
-                        events[row.event].t, events[last].t, row.is_open ? "folds" : "lists"));
+    const auto time = [&](std::size_t i) { return known_digits(events[i].t, session.precision().of_event(i), 9); };
+    tooltip(fmt::format("events {} to {}, t = {} to {} s: a click {} them", row.event + 1, last + 1, time(row.event),
+                        time(last), row.is_open ? "folds" : "lists"));
     paint_impacts(session, row, at, columns);
 }
 
@@ -280,7 +303,7 @@ void show_end(const Session& session, bool is_start, const EventColumns& columns
     }
     remember(state, is_start ? "event start" : "event end");
     if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
-    number_cell(at, time_at, number(t, "{:.9f}"), faint_color());
+    time_cell(at, t, 0.0, faint_color());
     // Its time stands in a column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");

@@ -9,6 +9,7 @@
 
 #include "output/bounds.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
@@ -76,7 +77,7 @@ void show_interval(const Session& session, const Event& zeno, float width) {
         paragraph(fmt::format("Cut {:.3g} s before \u03c4\u221e, after {} impacts.", zeno.t - zeno.truncation->t,
                               zeno.impacts),
                   width, text_color());
-    if (!zeno.certificate || !zeno.certificate->certified) return;
+    if (!zeno.certificate || !zeno.certificate->certified || session.precision().is_beyond(zeno.t)) return;
     const Certificate& c = *zeno.certificate;
     paragraph(fmt::format("Certified from the computed state at the cut:\n\u03c4\u221e lies in {}, {:.2g} s wide.",
                           interval_text(c.zeno_low, c.zeno_high), c.zeno_high - c.zeno_low),
@@ -101,7 +102,7 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
     ImGui::BeginGroup();
     if (show_card_title("Zeno lens",
                         fmt::format("event {}, {} = {} s", index + 1, is_plastic_landing(zeno) ? "t" : "\u03c4\u221e",
-                                    number(zeno.t, "{:.10g}")),
+                                    number(zeno.t, session.precision().of_event(index), 10)),
                         state, 2.0F * edge))
         commands.emplace_back(command::Show{"lens", false});
     const auto lens = Lens::at(session.trajectory(), index);

@@ -150,6 +150,7 @@ struct PlaneView {
     std::shared_ptr<const Panel> panel;
     std::optional<Run> run;  // of that
     double end = 0.0;
+    std::optional<double> horizon;
     bool dark = false;
     Framing framing, framed;  // as it is to be; as it was made
     std::vector<Point> event_places;
@@ -311,7 +312,7 @@ void show_state(const Session& session, const Rectangle& panel);
 float state_height(const Session& session, float panel_width);
 // "2.7251422 ± 7.4e-7": the time of a Zeno point, and how far that of the exact motion from the computed state at the cut can be
 // from it, or the measure of the integration's error where that is larger; without a proof the time alone.
-std::string time_text(const Trajectory& trajectory, std::size_t event);
+std::string time_text(const Trajectory& trajectory, std::size_t event, double error = 0.0);
 // What that stands for.
 std::string precision_text();
 // "proved: t in [LOW, HIGH]" behind this; empty where there is no proof of the event.

@@ -29,14 +29,16 @@ void choose(const Session& session, PlaneView& plane) {
 const Panel& panel_of(const Session& session, PlaneView& plane) {
     const Trajectory& trajectory = session.trajectory();
     const bool is_same = plane.panel && plane.run == trajectory.run && plane.end == trajectory.end_time &&
-                         plane.dark == session.theme().dark && plane.framed == plane.framing;
+                         plane.horizon == session.horizon() && plane.dark == session.theme().dark &&
+                         plane.framed == plane.framing;
     if (is_same) return *plane.panel;
     plane.run = trajectory.run;
     plane.end = trajectory.end_time;
+    plane.horizon = session.horizon();
     plane.dark = session.theme().dark;
     plane.framed = plane.framing;
     plane.panel = std::make_shared<const Panel>(
-        compose(trajectory, session.samples(), plane.plane->view(), session.theme(), plane.framing));
+        compose(trajectory, session.samples(), plane.plane->view(), session.theme(), plane.framing, session.horizon()));
     plane.event_places.clear();
     plane.arrows_in = {};
     plane.surfaces_key.clear();

@@ -11,6 +11,7 @@
 #include "figure/difference.hpp"
 #include "figure/label.hpp"
 #include "figure/ticks.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
@@ -83,13 +84,13 @@ void paint_lines(const Session& session, const Place& place, double x, const std
 void paint_values(const Session& session, const Place& place, const Sample& sample) {
     const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
     const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
-    const std::vector<double> values = session.values(place.plot, sample);
+    const std::vector<double> values = session.values(place.plot, sample), errors = session.errors(place.plot, sample);
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (i > 0 && hidden.contains(i - 1)) continue;
         const std::string unit = quantities[i].unit.empty() ? "" : " " + quantities[i].unit;
         lines.push_back(quantities[i].label + " = " +
-                        (std::isfinite(values[i]) ? number(values[i], "{:.6g}") + unit : "\u2013"));
+                        (std::isfinite(values[i]) ? number(values[i], errors[i], 6) + unit : "\u2013"));
     }
     paint_lines(session, place, place.map.x(values[0]), lines);
 }
@@ -104,15 +105,20 @@ void paint_differences(const Session& session, const Place& place, double t, flo
                                         packed(text_color(), 0.45F * strength), units(1.0F));
     if (!with_values) return;
     const auto& quantities = plot.prepared->quantities();
-    const std::vector<double> here = session.values(place.plot, session.at(t));
+    const Sample now = session.at(t);
+    const std::vector<double> here = session.values(place.plot, now), errors = session.errors(place.plot, now);
     std::vector<std::string> lines{"\U0001D461 = " + number(t, "{:.6g}") + " s"};
     for (const PinnedRun& run : session.pinned()) {
         if (!run.shown || t > run.trajectory->end_time) continue;
-        const std::vector<double> there = values_at(*run.trajectory, run.sampler->at(t), *plot.prepared);
+        const Sample then = run.sampler->at(t);
+        const std::vector<double> there = values_at(*run.trajectory, then, *plot.prepared),
+                                  doubts =
+                                      errors_at(*run.trajectory, then, *plot.prepared,
+                                                Precision(*run.trajectory, *run.estimate ? &**run.estimate : nullptr));
         for (const std::size_t i : compared_quantities(*plot.prepared, plot.framing))
             lines.push_back(fmt::format("|\u0394{}| = {} {} ({})", quantities[i].label,
-                                        number(std::abs(there[i] - here[i]), "{:.3g}"), quantities[i].unit,
-                                        run.name.empty() ? "pinned" : run.name));
+                                        number(std::abs(there[i] - here[i]), errors[i] + doubts[i], 3),
+                                        quantities[i].unit, run.name.empty() ? "pinned" : run.name));
     }
     paint_lines(session, place, double{at}, lines);
 }

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <optional>
 
+#include "figure/compose.hpp"
 #include "figure/label.hpp"
+#include "figure/shown_unit.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
@@ -37,15 +40,15 @@ void row(const std::string& name, const std::string& first, const std::string& s
 // The rates before and after, in the units that are shown.
 void show_rates(const Session& session, const Event& event) {
     row("", "before", "after");
-    const State& scale = session.scale();
+    const State errors = session.precision().of_state(event.t);
     const auto& coordinates = session.description().coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const bool is_angle = coordinates[i].unit == "rad";
         const double factor = is_angle ? degrees(1.0) : 1.0;
         const auto at = static_cast<Eigen::Index>(i);
         row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
-            number(without_noise(event.v_before[at], scale.v[at]) * factor),
-            number(without_noise(event.v_after[at], scale.v[at]) * factor));
+            number(event.v_before[at] * factor, errors.v[at] * factor, 6),
+            number(event.v_after[at] * factor, errors.v[at] * factor, 6));
     }
 }
 
@@ -56,7 +59,8 @@ std::optional<Inequality> failed(const Certificate& certificate) {
     return std::nullopt;
 }
 
-std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once) {
+std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once,
+                        const ShownUnit& acceleration) {
     if (reason.cut)
         return "Cut here: what follows is certified to stay within the tolerances of what is drawn. The next event, "
                "the "
@@ -65,8 +69,9 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, 
         return "Not cut: more than one contact moves here, all at once by Moreau's law.";
     if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
     if (!(reason.normal_acceleration < 0.0))
-        return fmt::format("Not cut: the surface falls away here, the gap would accelerate by {}.",
-                           number(reason.normal_acceleration));
+        return fmt::format(
+            "Not cut: the surface falls away here, the gap would accelerate by {}.",
+            number_with_unit(number(reason.normal_acceleration * acceleration.factor), acceleration.text));
     if (attempt == nullptr)
         return fmt::format(
             "Not cut: nothing can be certified yet, the gap's acceleration may change its sign{} on the way.",
@@ -115,6 +120,11 @@ std::string title(const char* kind, const Session& session, const Event& event, 
     return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
 }
 
+std::string time_of(const Session& session, std::size_t event) {
+    return fmt::format("t = {} s",
+                       number(session.trajectory().events[event].t, session.precision().of_event(event), 10));
+}
+
 // Where there are several contacts.
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
     const Model& model = *session.model();
@@ -132,7 +142,7 @@ std::string what_is_held(const Session& session, const Event& event, const Impac
 
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Impact", session, event, index), fmt::format("t = {:.10g} s", event.t), state))
+    if (show_card_title(title("Impact", session, event, index), time_of(session, index), state))
         commands.emplace_back(command::Select{0});
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
@@ -144,16 +154,22 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
         const std::string unit = typeset_unit(unit_of_expression(description, of));
         return unit.empty() ? value : value + " " + unit;
     };
-    row("gap speed |h\u0307|", with(number(event.impact_speed, "{:.9g}"), output_names(description, "gap'")[first]));
-    row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))), number(reason.energy_before),
-        number(reason.energy_after));
+    const ShownUnit rate = shown_unit(unit_of_expression(description, output_names(description, "gap'")[first]));
+    row("gap speed |h\u0307|", number_with_unit(number(event.impact_speed * rate.factor,
+                                                       session.precision().of_gap_speed(index) * rate.factor, 9),
+                                                rate.text));
+    const double error = session.precision().of_energy(sample_at(session.trajectory(), event));
+    row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
+        number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
     row("energy lost",
-        with(number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before))),
-             "energy"));
+        with(
+            number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before)), error, 6),
+            "energy"));
     const bool several = session.model()->contacts() > 1;
     show_proved(session, index);
     std::string words =
-        why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr);
+        why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr,
+                    shown_unit(unit_of_expression(description, output_names(description, "gap''")[first])));
     if (several) {
         for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
             row("impulse on " + description.constraints[contact].name,
@@ -165,7 +181,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
 
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
-    if (show_card_title(title("Release", session, event, index), fmt::format("t = {:.10g} s", event.t), state))
+    if (show_card_title(title("Release", session, event, index), time_of(session, index), state))
         commands.emplace_back(command::Select{0});
     const ReleaseReason reason = explain_release(session.trajectory(), index);
     const Rectangle room = remaining();

@@ -10,6 +10,7 @@
 #include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "output/sentences.hpp"
 #include "paint/marker.hpp"
 #include "panels/turns.hpp"
@@ -30,7 +31,9 @@ struct Result {
 std::string explanation(const Session& session, std::size_t index) {
     const Event& event = session.trajectory().events[index];
     const std::string said = typeset_sentence(
-        fmt::format("{} at t = {:.10g} s: {}", event_name(event), event.t, session.sentences().of(index)));
+        fmt::format("{} at t = {} s: {}", event_name(event),
+                    known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
+    if (session.precision().is_beyond(event.t)) return said;  // a certificate is of the computed motion
     if (event.kind != Event::Kind::zeno) return said + proved_text(session, index, "\n") + "\nClick: why";
     if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
     std::string proof =
@@ -88,7 +91,8 @@ struct Strip {
 };
 Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
     const Trajectory& trajectory = session.trajectory();
-    Cell cell{name_of(trajectory, result), time_text(trajectory, result.event), 0.0F};
+    Cell cell{name_of(trajectory, result),
+              time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
     if (const EnclosedEvent* enclosed = session.enclosed(result.event))
         cell.name += ", proved", cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
@@ -272,14 +276,16 @@ std::string precision_text() {
            "estimate of theirs is larger, that stands here, and nothing is certified of it.";
 }
 
-std::string time_text(const Trajectory& trajectory, std::size_t index) {
+std::string time_text(const Trajectory& trajectory, std::size_t index, double error) {
     const Event& event = trajectory.events[index];
+    if (!std::isfinite(error)) return unknown_number;
     const bool is_proved = event.certificate && event.certificate->certified;
     const double low = is_proved ? event.certificate->zeno_low : 0.0,
                  high = is_proved ? event.certificate->zeno_high : 0.0;
     const double half = 0.5 * (high - low);
-    if (!is_proved || !(half > 0.0)) return number(event.t, "{:.6f}");
-    const double integration = integration_error_of_time(trajectory, index);  // digits that it may change mean nothing
+    if (!is_proved || !(half > 0.0)) return number_with_decimals(event.t, error, 6);
+    // Digits that it may change mean nothing.
+    const double integration = std::max(error, integration_error_of_time(trajectory, index));
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(half, integration)))), 0, 12);
     const std::string text = fmt::format("{:.{}f}", event.t, digits);
     const double value = std::strtod(text.c_str(), nullptr);

@@ -32,10 +32,12 @@ StateValue value_of(const Session& session, std::size_t i, bool is_rate) {
     std::string unit = is_angle ? "\u00b0" : c.unit.empty() ? "" : " " + c.unit;
     if (is_rate && !unit.empty()) unit += "/s";
     const double scale = (is_rate ? session.scale().v : session.scale().q)[at] * factor;
-    const auto text = [&](double value) { return " = " + number_of_size(value, scale, 3) + unit; };
+    const State errors = session.precision().of_state(session.now().t);
+    const double error = (is_rate ? errors.v : errors.q)[at] * factor;
+    const auto text = [&](double value) { return " = " + number_of_size(value, scale, 3, error) + unit; };
     StateValue shown{typeset_name(c.name + (is_rate ? "'" : "")),
                      text((is_rate ? session.now().state.v : session.now().state.q)[at] * factor), 0.0F};
-    shown.width = label_width(shown.name + text(-scale), ImGui::GetFontSize());
+    shown.width = label_width(shown.name + " = " + number_of_size(-scale, scale, 3) + unit, ImGui::GetFontSize());
     return shown;
 }
 

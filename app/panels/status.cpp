@@ -142,7 +142,7 @@ void show_proof(const Session& session) {
 // summary; nor where it would take the legend its place.
 void show_estimate(const Session& session) {
     const ErrorEstimate* estimate = session.error_estimate();
-    if (estimate == nullptr || !estimate->end) return;
+    if (estimate == nullptr || !estimate->end || session.horizon()) return;  // a remark tells of the horizon
     const std::string text = fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}"));
     const float room = ImGui::GetWindowPos().x + content_right() - ImGui::GetItemRectMax().x;
     const float needed = ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + legend_width(session);
@@ -191,7 +191,10 @@ void show_status(const Session& session, const PanelState& state) {
         ImGui::SameLine(0.0F, units(24.0F));
     }
     for (const Remark& remark : session.remarks()) {
+        const bool is_horizon = session.horizon() && &remark == session.remarks().data();
+        ImGui::PushStyleColor(ImGuiCol_Text, packed(is_horizon ? error_color() : text_color()));
         ImGui::TextUnformatted(remark.label.c_str());
+        ImGui::PopStyleColor();
         tooltip(remark.sentence);
         ImGui::SameLine(0.0F, units(24.0F));
     }

@@ -258,6 +258,8 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_phases(session, track, list);
     paint_events(session, track, list);
+    fade_beyond(session, {track.left, track.top, track.width, units(marks + band)}, track.start, track.end,
+                session.theme().page);
     paint_axis(session, track, list);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "figure/label.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
@@ -152,6 +153,15 @@ void remember(PanelState& state, const std::string& name) {
     add_stop(state, name, state.places[name]);
 }
 
+void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind) {
+    const std::optional<double> horizon = session.horizon();
+    if (!horizon || !(*horizon < end)) return;
+    constexpr float cover = 0.72F;
+    const auto x = area.x + static_cast<float>((*horizon - start) / (end - start)) * area.width;
+    ImGui::GetWindowDrawList()->AddRectFilled({x, area.y}, {area.x + area.width, area.y + area.height},
+                                              packed(behind, cover));
+}
+
 bool dragged_to(double low, double high, float left, float width, double& value) {
     if (!ImGui::IsItemActive() || width <= 0.0F) return false;
     const double share = std::clamp((double{ImGui::GetIO().MousePos.x} - left) / width, 0.0, 1.0);
@@ -172,9 +182,10 @@ void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
 void name_event(const Session& session, int number) {
     if (is_behind_dialog()) return;
     const auto index = static_cast<std::size_t>(number - 1);
-    const std::string text = fmt::format("event {}, t = {} s\n{}\nclick: select it", number,
-                                         achilles::number(session.trajectory().events[index].t, "{:.9g}"),
-                                         typeset_sentence(session.sentences().of(index)));
+    const std::string text =
+        fmt::format("event {}, t = {} s\n{}\nclick: select it", number,
+                    achilles::number(session.trajectory().events[index].t, session.precision().of_event(index), 9),
+                    typeset_sentence(session.sentences().of(index)));
     const ImVec2 size = tooltip_size(text), mouse = ImGui::GetIO().MousePos;
     const float above = mouse.y - size.y - units(12.0F);
     place_tooltip({mouse.x + units(12.0F), above >= 0.0F ? above : mouse.y + units(20.0F)}, size);
@@ -203,8 +214,9 @@ Vector start_towards(const Session& session, const Vector& q) {
 }
 
 std::string typeset_sentence(std::string text) {
-    for (const auto& [plain, symbol] : {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"},
-                                        std::pair{"_inf", "\u221e"}, std::pair{" - ", " \u2212 "}})
+    for (const auto& [plain, symbol] :
+         {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},
+          std::pair{" - ", " \u2212 "}, std::pair{" deg/s", "\u00b0/s"}})
         for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
             text.replace(at, std::string_view(plain).size(), symbol);
     // Of a power of ten, not of a compound word.
@@ -227,10 +239,19 @@ std::string with_minus(std::string text) {
     return text;
 }
 
-std::string number_of_size(double value, double size, int decimals) {
+std::string number(double value, double error, int digits) { return with_minus(known_digits(value, error, digits)); }
+
+std::string number_with_decimals(double value, double error, int decimals) {
+    if (!std::isfinite(error)) return unknown_number;
+    return number(value, fmt::format("{{:.{}f}}", known_decimals(error, decimals)).c_str());
+}
+
+std::string number_of_size(double value, double size, int decimals, double error) {
     const bool fits = size == 0.0 || (size >= std::pow(10.0, 1 - decimals) && size < 1e6);
-    if (value == 0.0 && !fits) return "0";
-    return number(value, fmt::format("{{:.{}{}}}", decimals, fits ? 'f' : 'e').c_str());
+    if (fits) return number_with_decimals(value, error, decimals);
+    if (!std::isfinite(error)) return unknown_number;
+    const int digits = count_of_known_digits(value, error, decimals + 1);
+    return digits == 0 ? "0" : number(value, fmt::format("{{:.{}e}}", digits - 1).c_str());
 }
 
 PlotCard paint_plot_card(const Rectangle& cell) {

@@ -81,6 +81,8 @@ float menu_button(const char* popup, const std::string& text, float x, const Rec
                   PanelState& state);
 // A line to type in, with its name before it, so wide at scale 1; true when Enter was pressed there.
 bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state);
+// Covers with the colour behind it, nearly, what is drawn over time from start to end after the horizon of the run.
+void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind);
 // How far from a marker, in pixels at scale 1, a click is meant for it.
 constexpr float marker_reach = 8.0F;
 // Of the events that are asked, the one whose sign a hand means: the nearest within reach, but over the sign of a Zeno
@@ -105,12 +107,15 @@ Vector start_towards(const Session& session, const Vector& q);
 std::string typeset_sentence(std::string text);
 // "12.3", with a true minus sign.
 std::string number(double value, const char* format = "{:.6g}");
+// A number with so many digits, or so many decimals in a column, without those that its error changes (output/precision.hpp).
+std::string number(double value, double error, int digits);
+std::string number_with_decimals(double value, double error, int decimals);
 // "3 m", "30°": a number and a unit that are not torn apart.
 std::string number_with_unit(const std::string& number, const std::string& unit);
 // A text of numbers with minus signs in place of hyphens.
 std::string with_minus(std::string text);
 // One of many numbers of this size below or beside one another, with so many decimals; powers of ten where these would show
-// nothing of it, or where it would be too long.
-std::string number_of_size(double value, double size, int decimals);
+// nothing of it, or where it would be too long. Without the decimals that its error changes.
+std::string number_of_size(double value, double size, int decimals, double error = 0.0);
 
 }  // namespace achilles

@@ -189,15 +189,16 @@ Figure figure_of(const Session& session, const PublicationStyle& style) {
 
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style) {
     const Theme theme = style.dark ? dark_theme() : light_theme();
-    std::vector<Panel> panels = plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print);
+    std::vector<Panel> panels =
+        plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print, session.horizon());
     std::vector<const PinnedRun*> pinned;
     for (const PinnedRun& run : session.pinned())
         if (run.shown) pinned.push_back(&run);
     std::vector<ComparedRun> compared;
     std::vector<std::vector<Panel>> others;
     for (const PinnedRun* run : pinned) {
-        compared.push_back({run->trajectory.get(), run->name, run_color(theme, run->place)});
-        others.push_back(plots.compose(*run->trajectory, *run->samples, theme, Plots::Medium::print));
+        compared.push_back({run->trajectory.get(), run->name, run_color(theme, run->place), run->horizon()});
+        others.push_back(plots.compose(*run->trajectory, *run->samples, theme, Plots::Medium::print, run->horizon()));
     }
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const Plot& plot = plots.list()[i];
@@ -208,8 +209,9 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
         framing.for_print = true;
         if (const Proof* proof = session.proof())
             panels[i] = with_proof(std::move(panels[i]), session.trajectory(), *proof, *plot.prepared, framing, theme);
-        panels[i] = framing.difference ? difference(session.trajectory(), compared, *plot.prepared, framing)
-                                       : with_pinned(std::move(panels[i]), behind, framing, theme);
+        panels[i] = framing.difference
+                        ? difference(session.trajectory(), compared, *plot.prepared, framing, session.horizon())
+                        : with_pinned(std::move(panels[i]), behind, framing, theme);
     }
     Figure figure = publication(session.trajectory(), std::move(panels), style);
     if (!pinned.empty()) name_runs(figure, session, pinned);

@@ -2,7 +2,10 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <mutex>
+#include <optional>
 
+#include "depend/error_estimate.hpp"
 #include "depend/quantities.hpp"
 #include "module.hpp"
 #include "number/ground.hpp"
@@ -32,6 +35,13 @@ struct Made {
     Asked asked;
     Trajectory trajectory;
     std::vector<std::string> warnings;
+    // Made when it is needed: it takes longer than the run.
+    const ErrorEstimate& estimate() const {
+        std::call_once(estimated, [this] { made_estimate = estimate_error(trajectory); });
+        return *made_estimate;
+    }
+    mutable std::once_flag estimated;
+    mutable std::optional<ErrorEstimate> made_estimate;
 };
 
 using Times = py::array_t<double, py::array::c_style | py::array::forcecast>;
@@ -137,9 +147,10 @@ std::string command_of(const Made& made, const Look& look) {
 std::string draw(const Made& made, const AskedLook& asked, const std::string& format) {
     const Look look = look_of(asked, format);
     const SystemDescription& description = made.system->model->description();
-    return picture_of(publication(made.trajectory, views_of(description, look.views), look.style), look, format,
-                      command_of(made, look), {{Source::Kind::system, made.system->name, description.source_text}},
-                      made.trajectory);
+    return picture_of(publication(made.trajectory, views_of(description, look.views), look.style, nullptr,
+                                  horizon_before_end(made.trajectory, made.estimate())),
+                      look, format, command_of(made, look),
+                      {{Source::Kind::system, made.system->name, description.source_text}}, made.trajectory);
 }
 
 }  // namespace
@@ -163,15 +174,20 @@ void bind_runs(py::module_& module) {
                 return sentences;
             },
             released)
+        .def_property_readonly("trusted_until",
+                               [](const Made& m) {
+                                   const py::gil_scoped_release unlocked;
+                                   return m.estimate().trusted_until;
+                               })
         .def("arrays", &arrays_of)
         .def("values", &values_of)
         .def(
-            "summary", [](const Made& m) { return summary(m.trajectory); }, released)
+            "summary", [](const Made& m) { return summary(m.trajectory, &m.estimate()); }, released)
         .def("json",
              [](const Made& m, const std::optional<Times>& times) {
                  const Instants instants = instants_from(times);
                  const py::gil_scoped_release unlocked;
-                 return to_json(m.trajectory, instants);
+                 return to_json(m.trajectory, instants, nullptr, &m.estimate());
              })
         // The same with derivatives, and those of expressions.
         .def(
@@ -181,7 +197,7 @@ void bind_runs(py::module_& module) {
                 const Quantities quantities(m.system->model, std::move(of));
                 Dependence dependence{differentiate(m.trajectory), {}};
                 dependence.quantities = quantities.of(m.trajectory, dependence.derivatives);
-                return to_json(m.trajectory, {}, &dependence);
+                return to_json(m.trajectory, {}, &dependence, &m.estimate());
             },
             released)
         .def("csv",

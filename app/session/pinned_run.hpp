@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "depend/error_estimate.hpp"
 #include "figure/figure.hpp"
 #include "figure/touch.hpp"
 #include "simulate/sampler.hpp"
@@ -19,13 +20,18 @@ struct PinnedRun {
     std::shared_ptr<const Trajectory> trajectory;
     std::shared_ptr<Sampler> sampler;
     std::shared_ptr<const std::vector<Sample>> samples;  // for plots
-    std::shared_ptr<const Touch> touch;                  // how its discs rest in the present drawing,
-    std::shared_ptr<const Mechanism> touched;            // of this mechanism,
-    double touched_size = 0.0;                           // in a world of this size
-    std::string name;          // how it differs from the others and the present one; empty: not at all
-    std::vector<Panel> plots;  // of what is plotted now
-    int revision = -1;         // of that,
-    bool dark = false;         // and in which theme
+    std::shared_ptr<const std::optional<ErrorEstimate>>
+        estimate;  // nothing where another run was made before it was there
+    std::optional<double> horizon() const {
+        return *estimate ? horizon_before_end(*trajectory, **estimate) : std::nullopt;
+    }
+    std::shared_ptr<const Touch> touch;        // how its discs rest in the present drawing,
+    std::shared_ptr<const Mechanism> touched;  // of this mechanism,
+    double touched_size = 0.0;                 // in a world of this size
+    std::string name;                          // how it differs from the others and the present one; empty: not at all
+    std::vector<Panel> plots;                  // of what is plotted now
+    int revision = -1;                         // of that,
+    bool dark = false;                         // and in which theme
 };
 
 // Whether two descriptions are of one system: the same coordinates, parameters, energies, forces and contacts, whatever the

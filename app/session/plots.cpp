@@ -235,7 +235,7 @@ void Plots::perform(const command::Link& command) {
 }
 
 std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                                  Medium medium) const {
+                                  Medium medium, std::optional<double> horizon) const {
     std::vector<Panel> panels;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
@@ -246,7 +246,7 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
         // On a large screen the grid is about as wide as a page; a plot has its part of it.
         framing.size.width /= std::sqrt(columns_);
         framing.size.height /= std::sqrt(rows_);
-        panels.push_back(achilles::compose(trajectory, samples, *plot.prepared, theme, framing));
+        panels.push_back(achilles::compose(trajectory, samples, *plot.prepared, theme, framing, horizon));
         if (medium == Medium::screen) panels.back().title.clear();
     }
     return panels;
@@ -256,7 +256,12 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
     if (pinned.empty()) return panel;
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
     if (panel.curves.size() == 2)
-        for (Curve& curve : panel.curves) curve.stroke.color = theme.ink;
+        for (std::vector<Curve>* const curves : {&panel.curves, &panel.beyond.curves})
+            for (Curve& curve : *curves) {
+                const std::uint8_t alpha = curve.stroke.color.a;
+                curve.stroke.color = theme.ink;
+                curve.stroke.color.a = alpha;
+            }
     std::vector<Curve> under;
     std::array<double, 2> x{panel.x.low, panel.x.high}, y{panel.y.low, panel.y.high};
     for (std::size_t i = 0; i < pinned.size(); ++i) {
@@ -265,6 +270,12 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
             curve.label.clear();
             curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place, pinned.size() - 1 - i);
             under.push_back(std::move(curve));
+        }
+        for (Curve curve : other.beyond.curves) {
+            const std::uint8_t alpha = curve.stroke.color.a;
+            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place, pinned.size() - 1 - i);
+            curve.stroke.color.a = alpha;
+            panel.beyond.curves.push_back(std::move(curve));
         }
         // Each knows what it cannot cross as far as its own limits.
         if (!panel.boundary.points.empty() && !other.boundary.points.empty()) {

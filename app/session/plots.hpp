@@ -47,10 +47,10 @@ class Plots {
     void perform(const command::PlotDifference& command);
 
     // Of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
-    // panels; for print they are in them.
+    // panels; for print they are in them. Pale after the horizon of the run, where that comes before its end.
     enum class Medium { screen, print };
     std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                               Medium medium = Medium::screen) const;
+                               Medium medium = Medium::screen, std::optional<double> horizon = {}) const;
     int revision() const { return revision_; }
     const std::shared_ptr<const Model>& model() const { return model_; }
     // Whether they show the same, whatever led there.

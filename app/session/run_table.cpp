@@ -13,6 +13,7 @@
 #include "model/model.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
+#include "output/precision.hpp"
 #include "session/recipe.hpp"
 
 namespace achilles {
@@ -67,8 +68,8 @@ std::vector<std::string> names_of_runs(std::span<const Run* const> runs, const S
 
 namespace {
 
-std::string told(double value, int digits) {
-    std::string text = fmt::format("{:.{}g}", value + 0.0, digits);
+std::string told(double value, double error, int digits) {
+    std::string text = known_digits(value, error, digits);
     for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
         text.replace(at, 1, "\u2212");
     return text;
@@ -79,21 +80,24 @@ const std::string nothing = "\u2013";
 // What a table says of a run's course: contacts that come to rest, are released, or are thrown open.
 struct Step {
     std::string name;
-    double t = 0.0;
+    double t = 0.0, error = 0.0;  // s
 };
 
-std::vector<Step> steps_of(const Trajectory& run) {
+std::vector<Step> steps_of(const Trajectory& run, const Precision& precision) {
     std::vector<Step> steps;
-    for (const Event& event : run.events) {
+    for (std::size_t i = 0; i < run.events.size(); ++i) {
+        const Event& event = run.events[i];
+        const double error = precision.of_event(i);
         if (event.kind == Event::Kind::impact && event.opened.empty()) continue;
         const std::string contacts = contacts_told(run, event);
         if (!event.opened.empty())
-            steps.push_back({contacts + " opens " + joined_names(*run.model, event.opened), event.t});
+            steps.push_back({contacts + " opens " + joined_names(*run.model, event.opened), event.t, error});
         else if (event.kind == Event::Kind::zeno)
             steps.push_back(
-                {(is_plastic_landing(event) ? "landing" : "Zeno") + (contacts.empty() ? "" : " " + contacts), event.t});
+                {(is_plastic_landing(event) ? "landing" : "Zeno") + (contacts.empty() ? "" : " " + contacts), event.t,
+                 error});
         else
-            steps.push_back({"release" + (contacts.empty() ? "" : " " + contacts), event.t});
+            steps.push_back({"release" + (contacts.empty() ? "" : " " + contacts), event.t, error});
     }
     return steps;
 }
@@ -116,8 +120,9 @@ std::optional<Parting> parting(const std::vector<Step>& present, double present_
         result.after = fmt::format("{} {}", last, count);
     }
     const auto goes_on = [&](const std::vector<Step>& steps, double end) {
-        return same < steps.size() ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, 5))
-                                   : fmt::format("nothing more until {} s", told(end, 5));
+        return same < steps.size()
+                   ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, steps[same].error, 5))
+                   : fmt::format("nothing more until {} s", told(end, 0.0, 5));
     };
     result.sentence =
         fmt::format("{}: {}; the present run: {}", same > 0 ? "after " + result.after : std::string("from the start"),
@@ -127,18 +132,22 @@ std::optional<Parting> parting(const std::vector<Step>& present, double present_
 
 class Table {
  public:
-    explicit Table(std::span<const Trajectory* const> runs) : runs_(runs), digits_(runs.size() <= 3 ? 10 : 7) {
-        for (const Trajectory* run : runs_) courses_.push_back(steps_of(*run));
+    explicit Table(std::span<const ShownRun> runs) : digits_(runs.size() <= 3 ? 10 : 7) {
+        for (const ShownRun& shown : runs) {
+            runs_.push_back(shown.run);
+            precisions_.emplace_back(*shown.run, shown.estimate);
+            courses_.push_back(steps_of(*shown.run, precisions_.back()));
+        }
     }
 
     RunTable made() {
         inputs();
         partings();
         courses();
-        std::vector<double> impacts, ends;
+        std::vector<Value> impacts, ends;
         for (const Trajectory* run : runs_) {
-            impacts.push_back(static_cast<double>(run->statistics.impacts));
-            ends.push_back(run->end_time);
+            impacts.push_back({static_cast<double>(run->statistics.impacts)});
+            ends.push_back({run->end_time});
         }
         numbers("impacts", impacts);
         if (std::any_of(runs_.begin(), runs_.end(),
@@ -162,16 +171,18 @@ class Table {
         }
     }
 
-    // A value of no number is none.
-    void numbers(const std::string& name, const std::vector<double>& values) {
+    struct Value {
+        double x = std::nan(""), error = 0.0;  // no number: there is none
+    };
+    void numbers(const std::string& name, const std::vector<Value>& values) {
         RunTable::Row& row = table_.rows.emplace_back();
         row.name = name;
-        for (const double value : values) {
-            row.values.push_back(std::isfinite(value) ? told(value, digits_) : nothing);
-            row.differs.push_back(value != values[0] && !(std::isnan(value) && std::isnan(values[0])));
+        for (const auto& [x, error] : values) {
+            row.values.push_back(std::isfinite(x) ? told(x, error, digits_) : nothing);
+            row.differs.push_back(x != values[0].x && !(std::isnan(x) && std::isnan(values[0].x)));
         }
-        if (values.size() == 2 && std::isfinite(values[0]) && std::isfinite(values[1]))
-            row.change = told(values[0] - values[1], 3);
+        if (values.size() == 2 && std::isfinite(values[0].x) && std::isfinite(values[1].x))
+            row.change = told(values[0].x - values[1].x, values[0].error + values[1].error, 3);
     }
 
     void partings() {
@@ -189,13 +200,13 @@ class Table {
     void courses() {
         constexpr std::size_t most = 60;
         const std::vector<std::vector<Step>>& all = courses_;
-        std::map<std::string, std::vector<std::vector<double>>> times;  // of every name, run by run
-        std::vector<std::pair<std::string, std::size_t>> order;         // the n-th of a name
+        std::map<std::string, std::vector<std::vector<Value>>> times;  // of every name, run by run
+        std::vector<std::pair<std::string, std::size_t>> order;        // the n-th of a name
         for (std::size_t i = 0; i < all.size(); ++i)
             for (const Step& step : all[i]) {
                 auto& of_runs = times[step.name];
                 of_runs.resize(all.size());
-                of_runs[i].push_back(step.t);
+                of_runs[i].push_back({step.t, step.error});
                 const std::pair<std::string, std::size_t> key{step.name, of_runs[i].size()};
                 const auto longest = [&] {
                     std::size_t longest_of_others = 0;
@@ -206,9 +217,9 @@ class Table {
                 if (order.size() < most && key.second > longest()) order.push_back(key);
             }
         for (const auto& [name, number] : order) {
-            std::vector<double> values;
-            for (const std::vector<double>& of_run : times[name])
-                values.push_back(number <= of_run.size() ? of_run[number - 1] : std::nan(""));
+            std::vector<Value> values;
+            for (const std::vector<Value>& of_run : times[name])
+                values.push_back(number <= of_run.size() ? of_run[number - 1] : Value{});
             numbers(fmt::format("{} {} (s)", name, number), values);
         }
     }
@@ -223,18 +234,18 @@ class Table {
     }
 
     void states() {
-        const State scale = scale_of(*runs_[0]);
         const auto& coordinates = runs_[0]->model->description().coordinates;
         for (std::size_t i = 0; i < coordinates.size(); ++i) {
             const auto at = static_cast<Eigen::Index>(i);
             const bool is_angle = coordinates[i].unit == "rad";
             const double factor = is_angle ? degrees(1.0) : 1.0;
             for (const bool is_rate : {false, true}) {
-                std::vector<double> values;
-                for (const Trajectory* run : runs_)
-                    values.push_back(
-                        without_noise((is_rate ? run->end.v : run->end.q)[at], (is_rate ? scale.v : scale.q)[at]) *
-                        factor);
+                std::vector<Value> values;
+                for (std::size_t k = 0; k < runs_.size(); ++k) {
+                    const State errors = precisions_[k].of_state(runs_[k]->end_time);
+                    values.push_back({(is_rate ? runs_[k]->end.v : runs_[k]->end.q)[at] * factor,
+                                      (is_rate ? errors.v : errors.q)[at] * factor});
+                }
                 std::string unit = is_angle ? "\u00b0" : typeset_unit(coordinates[i].unit);
                 if (is_rate && !unit.empty()) unit += "/s";
                 numbers(with_unit(typeset_name(coordinates[i].name + (is_rate ? "'" : "")) + " at the end", unit),
@@ -243,7 +254,8 @@ class Table {
         }
     }
 
-    std::span<const Trajectory* const> runs_;
+    std::vector<const Trajectory*> runs_;
+    std::vector<Precision> precisions_;
     int digits_;
     std::vector<std::vector<Step>> courses_;
     RunTable table_;
@@ -251,7 +263,7 @@ class Table {
 
 }  // namespace
 
-RunTable run_table(std::span<const Trajectory* const> runs) { return Table(runs).made(); }
+RunTable run_table(std::span<const ShownRun> runs) { return Table(runs).made(); }
 
 std::string to_text(const RunTable& table) {
     std::string text;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "depend/error_estimate.hpp"
 #include "run/trajectory.hpp"
 #include "system/description.hpp"
 
@@ -36,9 +37,16 @@ struct RunTable {
     std::vector<std::pair<std::size_t, std::string>> partings;
 };
 
+// A run, and the estimate of its error; null: there is none, or not yet.
+struct ShownRun {
+    const Trajectory* run = nullptr;
+    const ErrorEstimate* estimate = nullptr;
+};
+
 // Of the present run and the pinned ones: the inputs that vary; after which event the course is another one; when contacts come to rest and are released, as far as the
-// runs go, the number of impacts, the end and the state there. Coordinates of angles are in degrees.
-RunTable run_table(std::span<const Trajectory* const> runs);
+// runs go, the number of impacts, the end and the state there. Coordinates of angles are in degrees. Numbers have the digits that
+// the estimated errors leave.
+RunTable run_table(std::span<const ShownRun> runs);
 
 // The table as text, for tests.
 std::string to_text(const RunTable& table);

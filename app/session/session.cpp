@@ -37,7 +37,7 @@ Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, 
       scale(scale_of(trajectory)),
       least_gap(achilles::least_gap(trajectory)),
       remarks(achilles::remarks(trajectory)),
-      sentences(trajectory),
+      sentences(trajectory, nullptr, Sentences::Angles::degrees),
       quantity(default_quantity(trajectory)),
       stage(std::make_unique<Stage>(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
@@ -226,7 +226,6 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     keep_dependence();
     orbit_job_->forget();
     simulated_.reset();
-    estimate_.reset();
     rerun(run);
     if (simulated_ != nullptr) return;
     std::stop_source at_once;
@@ -326,18 +325,32 @@ double Session::seconds_under_way() const {
 // Of the run that has just come, on a thread beside that of runs: the next of these waits for nothing. While a hand drags each
 // run puts an end to the estimate of the one before it; at rest there always is one, so that no picture depends on the clock.
 void Session::estimate() {
-    estimate_.reset();
     estimator_->start(
         [run = simulated_](const std::stop_token& stop) { return estimate_error(run->trajectory, stop); });
     receive_estimate(patience_);
 }
 
 void Session::receive_estimate(Patience patience) {
-    if (estimate_ || shows_start()) return;
+    if (simulated_->estimate || shows_start()) return;
     try {
-        estimate_ = estimator_->take(patience);
+        simulated_->estimate = estimator_->take(patience);
     } catch (const std::bad_alloc&) {
-        estimate_.emplace().none_since = "there was not enough memory for it";
+        simulated_->estimate.emplace().none_since = "there was not enough memory for it";
+    }
+    if (simulated_->estimate) use_horizon();
+}
+
+// What is shown of the run has the digits that its estimate leaves, and is pale after its horizon.
+void Session::use_horizon() {
+    simulated_->sentences.take(*simulated_->estimate);
+    for (PinnedRun& run : pinned_)
+        if (run.estimate.get() == &simulated_->estimate) run.revision = -1;
+    if (const auto remark = horizon_remark(trajectory(), *simulated_->estimate)) {
+        simulated_->remarks.insert(simulated_->remarks.begin(), *remark);
+        simulated_->revision = -1;
+        compose_plots();
+    } else if (!pinned_.empty()) {
+        compose_pinned();
     }
 }
 
@@ -382,6 +395,10 @@ std::vector<double> Session::values(std::size_t plot, const Sample& sample) cons
     return values_at(simulated_->trajectory, sample, *plots_.list()[plot].prepared);
 }
 
+std::vector<double> Session::errors(std::size_t plot, const Sample& sample) const {
+    return errors_at(simulated_->trajectory, sample, *plots_.list()[plot].prepared, precision());
+}
+
 template <class Other>
 void Session::perform(const Other& command) {
     if constexpr (requires { scene_.perform(command); }) {
@@ -396,7 +413,8 @@ void Session::compose_plots() {
     if (simulated_->revision == plots_.revision() && simulated_->dark == theme_.dark) return;
     simulated_->revision = plots_.revision();
     simulated_->dark = theme_.dark;
-    simulated_->plots = plots_.compose(simulated_->trajectory, simulated_->samples, theme_);
+    simulated_->plots =
+        plots_.compose(simulated_->trajectory, simulated_->samples, theme_, Plots::Medium::screen, horizon());
     compose_pinned();
 }
 

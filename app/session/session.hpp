@@ -114,7 +114,10 @@ class Session {
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return simulated_->trajectory; }
     // What is estimated of its error; null while that is under way: it takes longer than the run, and nobody waits for it.
-    const ErrorEstimate* error_estimate() const { return estimate_ ? &*estimate_ : nullptr; }
+    const ErrorEstimate* error_estimate() const { return simulated_->estimate ? &*simulated_->estimate : nullptr; }
+    // Which digits of its numbers mean something, by that as soon as it is there; where it is not trusted to its end, until when.
+    const Precision& precision() const { return simulated_->sentences.precision(); }
+    std::optional<double> horizon() const { return precision().horizon(); }
     const Mechanism& mechanism() const { return system_->mechanism; }
     // Runs of this system that were pinned, to compare with, in the order in which they were.
     const std::vector<PinnedRun>& pinned() const { return pinned_; }
@@ -178,6 +181,7 @@ class Session {
     const std::vector<Panel>& plots() const { return simulated_->plots; }
     // What a plot shows of an instant, in its units: x, then every y.
     std::vector<double> values(std::size_t plot, const Sample& sample) const;
+    std::vector<double> errors(std::size_t plot, const Sample& sample) const;  // of these
     // The state at a time of the run that is shown.
     Sample at(double time) const { return simulated_->sampler.at(time); }
 
@@ -222,7 +226,8 @@ class Session {
         double least_gap;
         std::vector<Remark> remarks;
         Sentences sentences;
-        std::string quantity;  // default_quantity() of it
+        std::optional<ErrorEstimate> estimate;  // made when all else is there
+        std::string quantity;                   // default_quantity() of it
         std::unique_ptr<Stage> stage;
         int revision = 0;   // of what is plotted
         bool dark = false;  // in which theme
@@ -305,6 +310,7 @@ class Session {
     void receive(Patience patience);
     void estimate();
     void receive_estimate(Patience patience);
+    void use_horizon();
     void compose_plots();
     void place(const Command& command);
     void move_to(double time);
@@ -360,7 +366,6 @@ class Session {
     std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();
-    std::optional<ErrorEstimate> estimate_;  // of simulated_
     std::unique_ptr<Worker<ErrorEstimate>> estimator_ = std::make_unique<Worker<ErrorEstimate>>();
 };
 

@@ -93,6 +93,7 @@ void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) 
     run.trajectory = {all, &all->trajectory};
     run.sampler = {all, &all->sampler};
     run.samples = {all, &all->samples};
+    run.estimate = {all, &all->estimate};
     const auto later =
         std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& one) { return one.number > number; });
     pinned_.insert(later, std::move(run));
@@ -222,10 +223,10 @@ void Session::compose_pinned() {
         std::none_of(plots_.list().begin(), plots_.list().end(), is_difference))
         return;
     std::vector<const Run*> runs{&trajectory().run};
-    std::vector<const Trajectory*> trajectories{&trajectory()};
+    std::vector<ShownRun> shown{{&trajectory(), error_estimate()}};
     for (const PinnedRun& run : pinned_) {
         runs.push_back(&run.trajectory->run);
-        trajectories.push_back(run.trajectory.get());
+        shown.push_back({run.trajectory.get(), *run.estimate ? &**run.estimate : nullptr});
     }
     const std::vector<std::string> names = names_of_runs(runs, description());
     name_ = names[0];
@@ -240,13 +241,13 @@ void Session::compose_pinned() {
             run.touch = std::make_shared<const Touch>(mechanism(), *run.trajectory, run.touched_size);
         }
         if (run.revision != plots_.revision() || run.dark != theme_.dark || run.plots.size() != plots_.list().size())
-            run.plots = plots_.compose(*run.trajectory, *run.samples, theme_);
+            run.plots = plots_.compose(*run.trajectory, *run.samples, theme_, Plots::Medium::screen, run.horizon());
         run.revision = plots_.revision();
         run.dark = theme_.dark;
-        compared.push_back({run.trajectory.get(), run.name, run_color(theme_, run.place)});
+        compared.push_back({run.trajectory.get(), run.name, run_color(theme_, run.place), run.horizon()});
     }
     // Of a run that was told to stop there is nothing to compare.
-    if (!pinned_.empty() && !shows_start()) run_table_ = achilles::run_table(trajectories);
+    if (!pinned_.empty() && !shows_start()) run_table_ = achilles::run_table(shown);
     for (std::size_t i = 0; i < plots_.list().size() && i < plots().size(); ++i) {
         const Plot& plot = plots_.list()[i];
         std::vector<PinnedPanel> others;
@@ -255,8 +256,9 @@ void Session::compose_pinned() {
         Panel own = plots()[i];
         if (proof() != nullptr)
             own = with_proof(std::move(own), trajectory(), *proof(), *plot.prepared, plot.framing, theme_);
-        drawn_.push_back(plot.framing.difference ? difference(trajectory(), compared, *plot.prepared, plot.framing)
-                                                 : with_pinned(std::move(own), others, plot.framing, theme_));
+        drawn_.push_back(plot.framing.difference
+                             ? difference(trajectory(), compared, *plot.prepared, plot.framing, horizon())
+                             : with_pinned(std::move(own), others, plot.framing, theme_));
         drawn_.back().title.clear();
     }
 }

@@ -51,6 +51,7 @@ std::string to_text(const Session& session) {
     if (session.influences_are_current()) text += to_text(*session.influences());
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
+    if (const auto horizon = session.horizon()) text += fmt::format("trusted until {:.9g}\n", *horizon);
     if (!session.error().empty()) text += "error " + session.error() + "\n";
     if (session.document().is_changed()) text += "the text is not saved\n";
     for (const InputError& problem : session.document().problems) text += fmt::format("problem {}\n", problem.what());

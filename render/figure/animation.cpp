@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "depend/error_estimate.hpp"
 #include "figure/boundary.hpp"
 #include "figure/label.hpp"
 #include "figure/publication.hpp"
@@ -37,14 +38,17 @@ void append(std::vector<Thing>& all, const std::vector<Thing>& more) {
 }
 
 // What a run will show, without what has happened.
-Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns, bool dark) {
+Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns, bool dark,
+                   std::optional<double> horizon) {
     PublicationStyle style;
     style.columns = columns;
     style.dark = dark;
-    Figure figure = publication(trajectory, views, style);
+    Figure figure = publication(trajectory, views, style, nullptr, horizon);
     for (Panel& panel : figure.panels) {
         for (Markers& markers : panel.markers) markers.points.clear();
         for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
+        panel.beyond.markers.clear();
+        for (Curve& curve : panel.beyond.curves) curve.stroke.color.a = pale / 2;
         for (TimeBar& one : panel.time_bars)
             for (TimeBar::Mark& mark : one.marks) mark.color.a = pale;
     }
@@ -112,6 +116,7 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
 Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size,
                      double step, CameraMode camera)
     : trajectory_(trajectory),
+      horizon_(horizon_before_end(trajectory, estimate_error(trajectory))),
       size_(size),
       decimals_(decimals_for(step)),
       sampler_(trajectory),
@@ -125,11 +130,11 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
     const double shape = (limits.x_high - limits.x_low) / (limits.y_high - limits.y_low);
     areas_ = still_areas(shape, views.size(),
                          {0.0F, heading, static_cast<float>(size.width), static_cast<float>(size.height) - heading});
-    figure_ = pale_figure(trajectory, views, areas_.columns, size.dark);
+    figure_ = pale_figure(trajectory, views, areas_.columns, size.dark, horizon_);
     if (!mechanism_.is_empty()) return;
     const ViewDescription plane = plane_of(trajectory.model->description());
     plane_view_.emplace(*trajectory.model, plane);
-    plane_ = pale_figure(trajectory, {&plane, 1}, 1, size.dark);
+    plane_ = pale_figure(trajectory, {&plane, 1}, 1, size.dark, horizon_);
     if (!views.empty()) plane_.keys.clear();
 }
 
@@ -148,7 +153,9 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     framing.x = {panel.x.low, panel.x.high};
     framing.y = {panel.y.low, panel.y.high};
     framing.legend = false;
-    const Panel present = compose(trajectory_, past, view, theme, framing);
+    const Panel present = compose(trajectory_, past, view, theme, framing, horizon_);
+    append(panel.beyond.curves, present.beyond.curves);
+    append(panel.beyond.markers, present.beyond.markers);
     for (std::size_t i = 0; i < present.curves.size(); ++i) {
         // The legend shows the full colour.
         panel.curves.push_back(present.curves[i]);

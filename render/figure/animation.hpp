@@ -58,6 +58,7 @@ class Animation {
     void add_present(Panel& panel, const PreparedView& view, const Sample& now) const;
 
     const Trajectory& trajectory_;
+    std::optional<double> horizon_;  // of the run, where it comes before its end
     StillSize size_;
     int decimals_;
     Sampler sampler_;

@@ -1,5 +1,7 @@
 #include "figure/compose.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +13,7 @@
 #include "figure/retrace.hpp"
 #include "figure/ticks.hpp"
 #include "figure/values.hpp"
+#include "output/precision.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -58,6 +61,20 @@ std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample
     std::vector<double> result;
     for (std::size_t i = 0; i < view.quantities().size(); ++i) result.push_back(values[i]);
     return result;
+}
+
+std::vector<double> errors_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view,
+                              const Precision& precision) {
+    Values values(view, trajectory);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < view.quantities().size(); ++i)
+        errors.push_back(precision.of(
+            [&](const Sample& at) {
+                values.set(at);
+                return values[i];
+            },
+            sample));
+    return errors;
 }
 
 namespace {
@@ -196,6 +213,42 @@ void thin(Markers& markers, const Panel& panel, const Resolution& size) {
     });
 }
 
+// Moves the points of each curve after the horizon into `pale`, a panel of the same curves; the point at which a curve crosses it
+// belongs to both. `times` has the instant of each point (s).
+void split_curves(Panel& panel, Panel& pale, const std::vector<std::vector<double>>& times, double horizon) {
+    for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+        std::vector<Point>& points = panel.curves[i].points;
+        const auto first = std::upper_bound(times[i].begin(), times[i].end(), horizon) - times[i].begin();
+        pale.curves[i].stroke = panel.curves[i].stroke;
+        pale.curves[i].points.assign(points.begin() + std::max<std::ptrdiff_t>(first - 1, 0), points.end());
+        points.erase(points.begin() + first, points.end());
+    }
+}
+
+// The curves and markers of a panel as what lies after the horizon.
+Beyond beyond_of(Panel panel, double horizon) {
+    const auto fade = [](Color& color) { color.a = std::min(color.a, pale_beyond); };
+    for (Curve& curve : panel.curves) curve.label.clear(), fade(curve.stroke.color);
+    for (Markers& markers : panel.markers) markers.label.clear(), fade(markers.fill), fade(markers.edge);
+    return {beyond_text(horizon), std::move(panel.curves), std::move(panel.markers)};
+}
+
+// What lies after the horizon is pale.
+void fade(std::vector<TimeBar>& bars, double horizon) {
+    for (TimeBar& bar : bars) {
+        std::vector<TimeBar::Mark> marks;
+        for (TimeBar::Mark mark : bar.marks) {
+            if (mark.low <= horizon && mark.high > horizon) {
+                marks.push_back({mark.low, horizon, mark.color});
+                mark.low = horizon;
+            }
+            if (mark.high > horizon) mark.color.a = std::min(mark.color.a, pale_beyond);
+            marks.push_back(mark);
+        }
+        bar.marks = std::move(marks);
+    }
+}
+
 void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, double margin) {
     if (limits)
         set_ticks(axis, (*limits)[0], (*limits)[1], 0.0);
@@ -243,8 +296,9 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
     return {first, last};
 }
 
-// Fills the curves and sets the axes. The samples say about how large the picture is; the curves, exactly.
-void add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent, const PreparedView& view,
+// Fills the curves and sets the axes. The samples say about how large the picture is; the curves, exactly. Returns the instant of
+// each point of each curve (s).
+std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent, const PreparedView& view,
                  Values& values, const Framing& framing) {
     const std::size_t curves = panel.curves.size() / 2;
     Range x_range, y_range;
@@ -270,13 +324,16 @@ void add_courses(Panel& panel, const Trajectory& trajectory, const Extent& exten
         values.set(sample);
         for (std::size_t i = 0; i < all.size(); ++i) all[i] = values[i];
     });
+    std::vector<std::vector<double>> times;
     for (std::size_t i = 0; i < panel.curves.size(); ++i) {
         panel.curves[i].points = std::move(traced.courses[i].points);
+        times.push_back(std::move(traced.courses[i].times));
         if (traced.courses[i].is_crowded) panel.curves[i].stroke.dash.clear();
     }
     for (std::size_t i = 0; i < traced.ranges.size(); ++i)
         for (const double x : traced.ranges[i]) (i == 0 ? x_range : y_range).include(x);
     set_axes(panel, trajectory, view, framing, x_range, y_range, unseen);
+    return times;
 }
 
 // Widens an axis about its middle until it is at least a part of the other one: what is true to shape is no thread.
@@ -319,9 +376,10 @@ void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sa
                        quantities[0].unit == view.unit() && (is_asked || std::max(shape, 1.0 / shape) <= longest);
     if (panel.equal_axes && !framing.x) widen(panel.x, panel.y);
     if (panel.equal_axes && !framing.y) widen(panel.y, panel.x);
-    for (Curve& curve : panel.curves)
-        if (!curve.stroke.dash.empty() && !framing.log_x && !framing.log_y)
-            curve.points = without_retraced(curve.points, panel.x, panel.y);
+    for (std::vector<Curve>* const curves : {&panel.curves, &panel.beyond.curves})
+        for (Curve& curve : *curves)
+            if (!curve.stroke.dash.empty() && !framing.log_x && !framing.log_y)
+                curve.points = without_retraced(curve.points, panel.x, panel.y);
     panel.boundary.stroke = {theme.surface, 1.0, {}};
     panel.boundary.points = boundary(trajectory, samples, view, panel, {}, framing.size);
     if (panel.equal_axes && !framing.x && !framing.y && !panel.boundary.points.empty())
@@ -330,8 +388,10 @@ void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sa
 
 }  // namespace
 
+std::string beyond_text(double horizon) { return fmt::format("not trusted after t = {:.6g} s", horizon); }
+
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-              const Theme& theme, const Framing& framing) {
+              const Theme& theme, const Framing& framing, std::optional<double> horizon) {
     const auto& quantities = view.quantities();
     const bool over_time = quantities[0].is_time, single = quantities.size() == 2;
     Panel panel;
@@ -340,19 +400,35 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     panel.x.logarithmic = framing.log_x;
     panel.y.logarithmic = framing.log_y;
     add_curves(panel, view, theme);
+    Panel pale = panel;  // what lies after the horizon
     const bool several = trajectory.model->contacts() > 1 && !samples.empty();
+    const bool has_beyond = horizon && !samples.empty() && *horizon < samples.back().t;
+    const auto mark = [&](Panel& marked, std::span<const Event> events) {
+        add_markers(marked, trajectory, events, values, framing, theme);
+        if (several) add_opened(marked, trajectory, events, values, framing, theme);
+        for (Markers& markers : marked.markers) thin(markers, panel, framing.size);
+    };
     if (!samples.empty()) {
         const Extent extent = extent_of(trajectory, samples, view, framing);
-        add_courses(panel, trajectory, extent, view, values, framing);
+        const auto times = add_courses(panel, trajectory, extent, view, values, framing);
+        if (!single) name_drawn(panel);
         const std::span<const Event> events = events_within(trajectory, extent.from, extent.to);
-        add_markers(panel, trajectory, events, values, framing, theme);
-        if (several) add_opened(panel, trajectory, events, values, framing, theme);
-        for (Markers& markers : panel.markers) thin(markers, panel, framing.size);
+        const double known_until = has_beyond ? *horizon : extent.to;
+        const auto known = std::upper_bound(events.begin(), events.end(), known_until,
+                                            [](double t, const Event& event) { return t < event.t; }) -
+                           events.begin();
+        mark(panel, events.first(static_cast<std::size_t>(known)));
+        if (has_beyond) {
+            split_curves(panel, pale, times, *horizon);
+            mark(pale, events.subspan(static_cast<std::size_t>(known)));
+            panel.beyond = beyond_of(std::move(pale), *horizon);
+        }
     } else {
         set_axes(panel, trajectory, view, framing, Range{}, Range{}, 0.0);
+        if (!single) name_drawn(panel);
     }
-    if (!single) name_drawn(panel);
     if (several && over_time) panel.time_bars = contact_bars(trajectory, samples.back().t, panel.x, theme);
+    if (has_beyond) fade(panel.time_bars, *horizon);
     panel.x.label = with_unit(quantities[0].label, quantities[0].unit);
     panel.y.label = view.label().empty() ? view.unit() : with_unit(view.label(), view.unit());
     if (framing.for_print && !over_time) make_picture(panel, trajectory, samples, view, framing, theme);

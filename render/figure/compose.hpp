@@ -14,6 +14,8 @@
 
 namespace achilles {
 
+class Precision;
+
 // A view compiled for its model, once; composing again for another run parses nothing. It refers to the model.
 class PreparedView {
  public:
@@ -72,11 +74,20 @@ struct Framing {
 
 // The panel of one view until the last of the samples: hybrid phases dashed, constrained ones solid, squares at
 // impacts, markers at Zeno points and releases. Over time a run of several contacts has a bar for each (contact_bars.hpp).
+// What lies after the horizon of the run (s), where that comes before its end, is pale.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-              const Theme& theme, const Framing& framing = {});
+              const Theme& theme, const Framing& framing = {}, std::optional<double> horizon = {});
+
+// How opaque it is then, of 255; and what its legend says.
+inline constexpr std::uint8_t pale_beyond = 70;
+std::string beyond_text(double horizon);
 
 // What the view's quantities are at one sample, x first, in the units that are shown.
 std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view);
+
+// How well they are known; infinite where the estimate says that nothing is.
+std::vector<double> errors_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view,
+                              const Precision& precision);
 
 // What is drawn at an event: the state after it.
 Sample sample_at(const Trajectory& trajectory, const Event& event);

@@ -66,7 +66,7 @@ std::vector<std::size_t> compared_quantities(const PreparedView& view, const Fra
 }
 
 Panel difference(const Trajectory& present, std::span<const ComparedRun> others, const PreparedView& view,
-                 const Framing& framing) {
+                 const Framing& framing, std::optional<double> horizon) {
     const std::vector<std::size_t> quantities = compared_quantities(view, framing);
     Panel panel;
     panel.title = "difference: " + view.title();
@@ -82,18 +82,27 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
                      to = framing.x ? std::clamp((*framing.x)[1], from, until) : until;
         Along then(*other.run, view);
         const std::size_t first = panel.curves.size();
+        const double known = std::min(horizon.value_or(until), other.horizon.value_or(until));
+        if (known < until) panel.beyond.label = beyond_text(known);
         for (std::size_t k = 0; k < quantities.size(); ++k) {
             const std::string& label = view.quantities()[quantities[k]].label;
             panel.curves.push_back(
                 {quantities.size() == 1 ? other.name : label + ": " + other.name, stroke_of(other.color, k), {}});
+            Curve& beyond = panel.beyond.curves.emplace_back(Curve{"", panel.curves.back().stroke, {}});
+            beyond.stroke.color.a = pale_beyond;
         }
-        for (const double t : instants(present, *other.run, from, to)) {
+        std::vector<double> times = instants(present, *other.run, from, to);
+        if (known > from && known < to)  // both parts meet there
+            times.insert(std::lower_bound(times.begin(), times.end(), known), known);
+        for (const double t : times) {
             now.go_to(t);
             then.go_to(t);
             for (std::size_t k = 0; k < quantities.size(); ++k) {
                 const double a = now[quantities[k]], b = then[quantities[k]], gap = std::abs(a - b);
                 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-                panel.curves[first + k].points.push_back(std::isfinite(gap) ? Point{t, gap} : Point{nothing, nothing});
+                const Point point = std::isfinite(gap) ? Point{t, gap} : Point{nothing, nothing};
+                if (t <= known) panel.curves[first + k].points.push_back(point);
+                if (t >= known && known < until) panel.beyond.curves[first + k].points.push_back(point);
                 if (!std::isfinite(gap)) continue;
                 largest = std::max({largest, std::abs(a), std::abs(b)});
                 high = std::max(high, gap);
@@ -101,9 +110,11 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
         }
     }
     const double least = floor_of(largest);
-    for (Curve& curve : panel.curves)
-        for (Point& point : curve.points)
-            if (point.y < least) point.y = least;
+    for (std::vector<Curve>* const curves : {&panel.curves, &panel.beyond.curves})
+        for (Curve& curve : *curves)
+            for (Point& point : curve.points)
+                if (point.y < least) point.y = least;
+    std::erase_if(panel.beyond.curves, [](const Curve& curve) { return curve.points.empty(); });
     set_ticks(panel.x, framing.x ? (*framing.x)[0] : start, framing.x ? (*framing.x)[1] : std::max(end, start + 1e-9),
               0.0);
     if (framing.y)

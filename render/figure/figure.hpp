@@ -115,6 +115,13 @@ struct Tube {
     std::vector<Slice> slices;
 };
 
+// What a run does after its horizon, from where on it is not trusted (depend/error_course.hpp): drawn pale, under the rest.
+struct Beyond {
+    std::string label;  // "" : there is nothing of it
+    std::vector<Curve> curves;
+    std::vector<Markers> markers;
+};
+
 // Strokes across the plot area, behind all, seen where nothing covers them.
 struct Hatch {
     std::string label;  // "" : not in the legend
@@ -133,6 +140,7 @@ struct Panel {
     ColorBar color_bar;
     std::vector<Tube> tubes;
     Curve boundary;  // behind the curves: what the path cannot cross
+    Beyond beyond;
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     std::vector<TimeBar> time_bars;  // from top to bottom

@@ -117,11 +117,23 @@ std::string to_text(const Figure& figure) {
         if (!panel.boundary.points.empty())
             text += fmt::format("  boundary {} points {}:{}\n", color_text(panel.boundary.stroke.color),
                                 panel.boundary.points.size(), points_text(panel.boundary.points));
-        for (const Curve& curve : panel.curves)
-            text +=
-                fmt::format("  curve \"{}\" {} width {:.9g}{} points {}:{}\n", curve.label,
-                            color_text(curve.stroke.color), curve.stroke.width,
-                            curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(), points_text(curve.points));
+        const auto add_curves = [&](const char* what, const std::vector<Curve>& curves) {
+            for (const Curve& curve : curves)
+                text += fmt::format("  {} \"{}\" {} width {:.9g}{} points {}:{}\n", what, curve.label,
+                                    color_text(curve.stroke.color), curve.stroke.width,
+                                    curve.stroke.dash.empty() ? "" : " dashed", curve.points.size(),
+                                    points_text(curve.points));
+        };
+        const auto add_markers = [&](const char* what, const std::vector<Markers>& all) {
+            for (const Markers& markers : all)
+                text += fmt::format("  {} \"{}\" {} {} size {:.9g} points {}:{}\n", what, markers.label,
+                                    shape_text(markers.shape), color_text(markers.fill), markers.size,
+                                    markers.points.size(), points_text(markers.points));
+        };
+        if (!panel.beyond.label.empty()) text += fmt::format("  beyond \"{}\"\n", panel.beyond.label);
+        add_curves("curve beyond", panel.beyond.curves);
+        add_markers("markers beyond", panel.beyond.markers);
+        add_curves("curve", panel.curves);
         for (const TimeBar& one : panel.time_bars) {
             constexpr std::size_t most = 40;
             text += fmt::format("  bar \"{}\" of {}:", one.label, one.marks.size());
@@ -132,10 +144,7 @@ std::string to_text(const Figure& figure) {
             }
             text += "\n";
         }
-        for (const Markers& markers : panel.markers)
-            text += fmt::format("  markers \"{}\" {} {} size {:.9g} points {}:{}\n", markers.label,
-                                shape_text(markers.shape), color_text(markers.fill), markers.size,
-                                markers.points.size(), points_text(markers.points));
+        add_markers("markers", panel.markers);
     }
     return text;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "figure/grid.hpp"
@@ -118,14 +119,16 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
         sheet.emplace_back(std::move(path));
     };
     if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is not seen on a screen
+    for (const Curve& curve : panel.beyond.curves) lay(curve);
     for (const Curve& curve : panel.curves) lay(curve);
 }
 
 // Above the box: what happened at the end of an axis is not crossed out by it.
 void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
-    for (const Markers& markers : panel.markers)
-        if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
+    for (const std::vector<Markers>& all : {std::cref(panel.beyond.markers), std::cref(panel.markers)})
+        for (const Markers& markers : all)
+            if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
 }
 
 std::vector<Key> keys_of(const Panel& panel) {

@@ -84,6 +84,14 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         const Markers markers = for_print(opened_markers(theme));
         keys.push_back({markers.label, markers});
     }
+    for (const Panel& panel : panels) {
+        if (panel.beyond.label.empty()) continue;
+        Stroke stroke = phase_stroke(theme, Phase::Kind::constrained, 0, 1);
+        stroke.color = theme.ink;
+        stroke.color.a = pale_beyond;
+        keys.push_back({panel.beyond.label, stroke});
+        break;
+    }
     return keys;
 }
 
@@ -121,7 +129,8 @@ void set_path(Figure& figure, const PublicationStyle& style) {
     const auto path = static_cast<std::size_t>(std::find_if(panels.begin(), panels.end(), is_path) - panels.begin());
     const std::size_t place = style.ordered ? path : 0;
     Figure bare = figure;  // to be copied for every arrangement: without what has no say
-    for (Panel& panel : bare.panels) panel.boundary = {}, panel.curves.clear(), panel.markers.clear();
+    for (Panel& panel : bare.panels)
+        panel.boundary = {}, panel.beyond = {}, panel.curves.clear(), panel.markers.clear();
     double best = ease(bare, style.shape) + worth_it;
     int rows = 1;
     for (std::size_t all = (n + columns - 1) / columns; all < n; ++all) {
@@ -168,11 +177,16 @@ void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, co
             markers = for_print(markers);
             markers.label.clear();
         }
+        for (Markers& markers : panel.beyond.markers) {
+            const auto alpha = markers.fill.a;
+            markers = for_print(markers);
+            markers.fill.a = alpha;
+        }
     }
 }
 
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style,
-                   const Proof* proof) {
+                   const Proof* proof, std::optional<double> horizon) {
     const Theme theme = style.dark ? dark_theme() : light_theme();
     const std::vector<Sample> samples = plot_samples(trajectory);
     Framing framing;
@@ -181,7 +195,7 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
     std::vector<Panel> panels;
     for (const ViewDescription& view : views) {
         const PreparedView prepared(*trajectory.model, view);
-        panels.push_back(compose(trajectory, samples, prepared, theme, framing));
+        panels.push_back(compose(trajectory, samples, prepared, theme, framing, horizon));
         if (proof != nullptr)
             panels.back() = with_proof(std::move(panels.back()), trajectory, *proof, prepared, framing, theme);
     }

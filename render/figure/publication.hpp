@@ -15,9 +15,10 @@ struct PublicationStyle {
     Resolution size{};         // of the picture, pixels: how fine its curves are
 };
 
-// Throws InputError for a view that cannot be evaluated. With a proof of the run where there is one.
+// Throws InputError for a view that cannot be evaluated. With a proof of the run where there is one; pale after the horizon of
+// the run (s), where that comes before its end.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style,
-                   const Proof* proof = nullptr);
+                   const Proof* proof = nullptr, std::optional<double> horizon = {});
 
 // The same of panels that are composed already, in the colours of the style.
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);

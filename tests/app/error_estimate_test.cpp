@@ -39,5 +39,45 @@ TEST(EstimateInTheExplorer, ComesAfterTheRun) {
     EXPECT_EQ(session.error_estimate()->end->norm, estimate_error(session.trajectory()).end->norm);
 }
 
+// A run whose end means nothing: the status line's first remark, pale plots, no digits. An ordinary one has none of it.
+TEST(HorizonInTheExplorer, IsShownWhenTheEstimateIsThere) {
+    const std::string file = ACHILLES_SOURCE_DIR "/tests/reference/horizon/shaker.toml";
+    Session session(file, read_system(file), library());
+    ASSERT_TRUE(session.horizon());
+    const double horizon = *session.horizon();
+    EXPECT_EQ(horizon, estimate_error(session.trajectory()).trusted_until);
+    ASSERT_FALSE(session.remarks().empty());
+    EXPECT_EQ(session.remarks()[0].label.find("trusted until t = "), 0U);
+    EXPECT_NE(to_text(session).find("\ntrusted until "), std::string::npos);
+    for (std::size_t i = 0; i < session.plots().size(); ++i) {
+        const Panel& panel = session.plots()[i];
+        ASSERT_FALSE(panel.beyond.curves.empty());
+        if (!session.plotted().list()[i].over_time()) continue;
+        for (const Curve& curve : panel.curves)
+            for (const Point& point : curve.points) EXPECT_FALSE(point.x > horizon);
+        for (const Curve& curve : panel.beyond.curves) {
+            EXPECT_EQ(curve.stroke.color.a, pale_beyond);
+            for (const Point& point : curve.points) EXPECT_FALSE(point.x < horizon);
+        }
+    }
+    const std::vector<double> late = session.errors(0, session.at(9.0)), early = session.errors(0, session.at(1.0));
+    EXPECT_TRUE(std::isinf(late.back()));
+    EXPECT_LT(early.back(), 1e-6);
+    session.apply(command::End{4.0});
+    EXPECT_FALSE(session.horizon());
+    EXPECT_TRUE(session.remarks().empty());
+    for (const Panel& panel : session.plots()) EXPECT_TRUE(panel.beyond.curves.empty());
+}
+
+// What waits for nobody comes later, and then the plots are composed again.
+TEST(HorizonInTheExplorer, ComesAfterTheRun) {
+    const std::string file = ACHILLES_SOURCE_DIR "/tests/reference/horizon/shaker.toml";
+    Session session(file, read_system(file), library(), 0.0);
+    session.settle();
+    ASSERT_TRUE(session.horizon());
+    EXPECT_FALSE(session.plots()[0].beyond.curves.empty());
+    EXPECT_EQ(session.remarks()[0].label.find("trusted until t = "), 0U);
+}
+
 }  // namespace
 }  // namespace achilles::test

@@ -225,3 +225,11 @@ def test_it_knows_how_wrong_it_is():
     assert all(event.error_estimate > 0 for event in run.events)
     other = achilles.simulate("ball_on_sine", method="dopri5")
     assert other.error_estimate is None and "Taylor" in other.end.no_error_estimate
+
+
+def test_trusted_until_is_the_horizon():
+    run = achilles.simulate("ball_on_sine")
+    assert run.trusted_until == run.end.t == json.loads(run.to_json())["trusted_until"]
+    chaotic = achilles.simulate("ball_on_vibrating_table", e=0.9, end=60)
+    assert 10 < chaotic.trusted_until < 30 and chaotic.warnings[0].startswith("trusted until t = ")
+    assert achilles.simulate("ball_on_sine", method="dopri5").trusted_until is None

@@ -9,6 +9,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
+#include "depend/error_estimate.hpp"
 #include "enclose/enclosure.hpp"
 #include "output/output.hpp"
 #include "output/proof.hpp"
@@ -39,9 +40,9 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 
 }  // namespace
 
-int told_of(const Trajectory& trajectory, bool with_reasons) {
+int told_of(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate* estimate) {
     if (with_reasons)
-        for (const Remark& remark : remarks(trajectory))
+        for (const Remark& remark : estimate != nullptr ? remarks(trajectory, *estimate) : remarks(trajectory))
             print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
     if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
     print_clean(stderr, "achilles: the run stopped early: {}\n",

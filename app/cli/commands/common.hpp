@@ -15,6 +15,7 @@ class App;
 namespace achilles {
 
 struct Enclosure;
+struct ErrorEstimate;
 struct Trajectory;
 
 // SYSTEM, which must be given.
@@ -44,8 +45,8 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale,
 void add_page_options(CLI::App& command, PaperSize& page);
 
 // Prints on standard error what a person may not expect of a finished run: its remarks and why it stopped early; where these stand
-// elsewhere only that it did. The exit status.
-int told_of(const Trajectory& trajectory, bool with_reasons = true);
+// elsewhere only that it did. With an estimate also the time after which the run is not trusted. The exit status.
+int told_of(const Trajectory& trajectory, bool with_reasons = true, const ErrorEstimate* estimate = nullptr);
 // The same of a proof: where it ends undecided, and why, unless that stands elsewhere.
 int told_of(const Enclosure& proof, bool with_reason = true);
 

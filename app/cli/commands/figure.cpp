@@ -8,6 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
+#include "depend/error_estimate.hpp"
 #include "figure/proof.hpp"
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
@@ -40,21 +41,23 @@ struct FigureArguments {
 };
 
 // Puts what is drawn of a finished run where it belongs.
-int put(const FigureArguments& arguments, const Trajectory& trajectory, const std::string& format, PictureJob& job,
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const ErrorEstimate* estimate,
+        const std::string& format, PictureJob& job,
         const std::function<std::string(const PaperSize& page, const Notes&)>& draw) {
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
             [&](const Notes& notes) { return draw(page_for(arguments.page, format), notes); });
     job.commit();
-    return told_of(trajectory);
+    return told_of(trajectory, true, estimate);
 }
 
-int put(const FigureArguments& arguments, const Trajectory& trajectory, const Figure& figure, const Proof* proof,
-        const std::string& format, PictureJob& job) {
-    const int status = put(arguments, trajectory, format, job, [&](const PaperSize& page, const Notes& notes) {
-        const PictureSize size = size_of(page, arguments.size, figure, format);
-        job.check_size(size.width, size.height);
-        return picture_of(figure, size, notes, format);
-    });
+int put(const FigureArguments& arguments, const Trajectory& trajectory, const ErrorEstimate* estimate,
+        const Figure& figure, const Proof* proof, const std::string& format, PictureJob& job) {
+    const int status =
+        put(arguments, trajectory, estimate, format, job, [&](const PaperSize& page, const Notes& notes) {
+            const PictureSize size = size_of(page, arguments.size, figure, format);
+            job.check_size(size.width, size.height);
+            return picture_of(figure, size, notes, format);
+        });
     return proof == nullptr ? status : std::max(status, told_of(proof->enclosure));
 }
 
@@ -64,11 +67,12 @@ int put_mechanism(const FigureArguments& arguments, const Session& session, cons
     const Drawing world = mechanism_of(session, theme);
     Color background = theme.background;
     if (arguments.style.transparent) background.a = 0;
-    return put(arguments, session.trajectory(), format, job, [&](const PaperSize& page, const Notes& notes) {
-        const PictureSize size = size_of(page, arguments.size, world, format);
-        job.check_size(size.width, size.height);
-        return picture_of(world, background, size, notes, format);
-    });
+    return put(arguments, session.trajectory(), session.error_estimate(), format, job,
+               [&](const PaperSize& page, const Notes& notes) {
+                   const PictureSize size = size_of(page, arguments.size, world, format);
+                   job.check_size(size.width, size.height);
+                   return picture_of(world, background, size, notes, format);
+               });
 }
 
 // What is to be proved, if anything is. `points` becomes the settings, in place of each interval its middle.
@@ -105,7 +109,8 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     if (arguments.mechanism) return put_mechanism(arguments, session, format, job);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
-    return put(arguments, session.trajectory(), figure_of(session, style), session.proof(), format, job);
+    return put(arguments, session.trajectory(), session.error_estimate(), figure_of(session, style), session.proof(),
+               format, job);
 }
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
@@ -147,7 +152,10 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     std::optional<Proof> proof;
     if (spread) proof = proof_of(trajectory, *spread);
     const Proof* const drawn = proof ? &*proof : nullptr;
-    return put(arguments, trajectory, publication(trajectory, views, style, drawn), drawn, format, job);
+    const ErrorEstimate estimate = estimate_error(trajectory);
+    return put(arguments, trajectory, &estimate,
+               publication(trajectory, views, style, drawn, horizon_before_end(trajectory, estimate)), drawn, format,
+               job);
 }
 
 void take_columns(const std::string& text, int& columns) {

@@ -12,6 +12,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
+#include "depend/error_estimate.hpp"
 #include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
@@ -98,21 +99,25 @@ int run(const SimulateArguments& arguments) {
         dependence.emplace(Dependence{differentiate(trajectory), {}});
         dependence->quantities = quantities.of(trajectory, dependence->derivatives);
     }
+    const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
+    // It takes longer than the run: of a run that is written as CSV alone nobody waits for it.
+    std::optional<ErrorEstimate> estimate;
+    if (is_summed_up || !arguments.json.empty()) estimate = estimate_error(trajectory);
+    const ErrorEstimate* const known = estimate ? &*estimate : nullptr;
     if (!arguments.json.empty())
-        files.put(arguments.json, to_json(trajectory, instants, dependence ? &*dependence : nullptr));
+        files.put(arguments.json, to_json(trajectory, instants, dependence ? &*dependence : nullptr, known));
     if (!arguments.csv.empty())
         files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
-    const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
     if (is_summed_up) {
         files.add("-");
-        files.put("-", printable(summary(trajectory) + (dependence ? summary(trajectory, *dependence) : "")));
+        files.put("-", printable(summary(trajectory, known) + (dependence ? summary(trajectory, *dependence) : "")));
     }
     files.commit();
     // Not in the files: the same run gives the same bytes.
     if (arguments.verbose)
         print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
                     trajectory.statistics.certificate_seconds);
-    return told_of(trajectory, !is_summed_up);
+    return told_of(trajectory, !is_summed_up, known);
 }
 
 }  // namespace

@@ -153,6 +153,13 @@ class Run:
         return self.end["error_estimate"]
 
     @property
+    def trusted_until(self) -> float | None:
+        """s: the first step end or event where the estimated error of some coordinate or rate exceeds 1e-3 of its range so far, and
+        the end of the run where that never happens. Digits that come later mean nothing. None: there is no estimate, and
+        no_error_estimate of `end` says why. Making it takes longer than the run: it is made when it is asked for."""
+        return self._core.trusted_until
+
+    @property
     def start(self) -> Record:
         """Where it started: t, q, v."""
         return self._told["start"]
