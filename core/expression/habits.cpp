@@ -4,10 +4,6 @@ namespace achilles {
 
 namespace {
 
-struct Habit {
-    std::string_view written, instead;
-};
-
 constexpr std::string_view product = "write '*' for a product", power = "write '^' for a power",
                            minus = "write the minus sign of the keyboard, -",
                            prime = "write the apostrophe of the keyboard, ' as in x'",
@@ -16,32 +12,44 @@ constexpr std::string_view product = "write '*' for a product", power = "write '
 
 // The longer ones first.
 constexpr Habit signs[] = {
-    {".*", "write '*'"},
-    {"./", "write '/'"},
-    {".^", "write '^'"},
-    {"\u00b7", product},
-    {"\u00d7", product},
-    {"\u2219", product},
-    {"\u22c5", product},
-    {"\u2212", minus},
-    {"\u2013", minus},
-    {"\u2014", minus},
-    {"\u00b9", power},
-    {"\u00b2", "write ^2"},
-    {"\u00b3", "write ^3"},
-    {"\u2019", prime},
-    {"\u2032", prime},
-    {"\u00b4", prime},
-    {"`", prime},
-    {"\u221a", "write sqrt(...)"},
-    {"[", round},
-    {"{", round},
-    {"<", comparison},
-    {">", comparison},
-    {"=", "an expression stands alone, without a name and ="},
-    {"\u2264", comparison},
-    {"\u2265", comparison},
-    {";", "nothing ends an expression"},
+    {"**", power, "^"},
+    {".*", "write '*'", "*"},
+    {"./", "write '/'", "/"},
+    {".^", "write '^'", "^"},
+    {"\u00b7", product, "*"},
+    {"\u00d7", product, "*"},
+    {"\u2219", product, "*"},
+    {"\u22c5", product, "*"},
+    {"\u00f7", "write '/'", "/"},
+    {"\u2212", minus, "-"},
+    {"\u2013", minus, "-"},
+    {"\u2014", minus, "-"},
+    {"\u00b9", power, ""},
+    {"\u00b2", "write ^2", ""},
+    {"\u00b3", "write ^3", ""},
+    {"\u2019", prime, "'"},
+    {"\u2032", prime, "'"},
+    {"\u00b4", prime, "'"},
+    {"`", prime, "'"},
+    {"\u0307", "the rate of x is written x'", "'"},
+    {"\u1e8b", "the rate of x is written x'", "x'"},
+    {"\u1e8f", "the rate of y is written y'", "y'"},
+    {"\u221a", "write sqrt(...)", "sqrt"},
+    {"\u00bd", "write 1/2", "(1/2)"},
+    {"\u00a0", "write an ordinary space", " "},
+    {"\u2009", "write an ordinary space", " "},
+    {"\u202f", "write an ordinary space", " "},
+    {"[", round, "("},
+    {"{", round, "("},
+    {"]", round, ")"},
+    {"}", round, ")"},
+    {"<", comparison, ""},
+    {">", comparison, ""},
+    {"=", "an expression stands alone, without a name and =", ""},
+    {"\u2264", comparison, ""},
+    {"\u2265", comparison, ""},
+    {";", "nothing ends an expression", ""},
+    {"\\", "expressions are not LaTeX", ""},
 };
 
 // What has corners or jumps.
@@ -75,6 +83,15 @@ constexpr OtherName names[] = {
     {"F", "lambda", "the contact force is called lambda"},
     {"E", "energy", "it is called energy"},
     {"time", "t", "time is called t"},
+    {"zeno", "zeno_points", "write zeno_time(1), or zeno_points for how many"},
+    {"impact", "impacts", "write impact_time(1), or impacts for how many"},
+    {"bounces", "impacts", "write impacts"},
+    {"bounce", "impacts", "write impact_time(1), or impacts for how many"},
+    {"collisions", "impacts", "write impacts"},
+    {"release", "releases", "write release_time(1), or releases for how many"},
+    {"min_gap", "least_gap", "write least_gap"},
+    {"status", "zeno_points", "write outcome"},
+    {"result", "zeno_points", "write outcome"},
     {"np", "", "functions stand alone: sin(x)"},
     {"numpy", "", "functions stand alone: sin(x)"},
     {"math", "", "functions stand alone: sin(x)"},
@@ -92,11 +109,16 @@ constexpr OtherName names[] = {
 
 }  // namespace
 
+const Habit* sign_at(std::string_view rest) {
+    for (const Habit& habit : signs)
+        if (rest.starts_with(habit.written)) return &habit;
+    return nullptr;
+}
+
 std::string instead_of_sign(std::string_view rest) {
     if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') return "; decimals have a point";
-    for (const Habit& habit : signs)
-        if (rest.starts_with(habit.written)) return "; " + std::string(habit.instead);
-    return "";
+    const Habit* const sign = sign_at(rest);
+    return sign == nullptr ? "" : "; " + std::string(sign->instead);
 }
 
 std::string instead_of_name(std::string_view name, const std::function<bool(std::string_view)>& is_known) {

@@ -7,6 +7,12 @@
 
 namespace achilles {
 
+struct Habit {
+    std::string_view written, instead;  // what people write, and a sentence
+    std::string_view right = {};        // what stands for it, where one sign does
+};
+// The sign at the start of the rest of a text, where it has no meaning here; null where it has one.
+const Habit* sign_at(std::string_view rest);
 // Of a sign that has no meaning here, at the start of the rest of a text: "; write '*' for a product" of a dot.
 std::string instead_of_sign(std::string_view rest);
 // Of a name that has none: "; the gap is called gap" of h, where that is known.

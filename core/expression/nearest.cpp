@@ -71,15 +71,19 @@ std::string spelled_out(std::string_view text) {
     return result;
 }
 
-std::string rates_are_written(std::string_view word, std::span<const std::string> names) {
+std::string rate_meant(std::string_view word, std::span<const std::string> names) {
     for (const std::string& rate : names) {
         if (!rate.ends_with('\'') || rate.ends_with("\'\'") || rate.starts_with("gap")) continue;
         const std::string x = rate.substr(0, rate.size() - 1);
-        const std::string others[] = {x + "dot", x + "_dot", "d" + x, "v" + x, "v_" + x};
-        if (word == "v" || std::find(std::begin(others), std::end(others), word) != std::end(others))
-            return "; rates are written " + rate;
+        const std::string others[] = {x + "dot", x + "_dot", "d" + x, "d" + x + "dt", "v" + x, "v_" + x, x + "_t"};
+        if (word == "v" || std::find(std::begin(others), std::end(others), word) != std::end(others)) return rate;
     }
     return "";
+}
+
+std::string rates_are_written(std::string_view word, std::span<const std::string> names) {
+    const std::string rate = rate_meant(word, names);
+    return rate.empty() ? "" : "; rates are written " + rate;
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates) {
@@ -91,6 +95,15 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
                    : "; did you mean " + in_quotes(latin) + "?";
     const std::string best = nearest(word, candidates);
     return best.empty() ? "" : "; did you mean " + in_quotes(best) + "?";
+}
+
+bool has_word(std::string_view list, std::string_view word) {
+    while (!list.empty()) {
+        const std::size_t end = std::min(list.find(' '), list.size());
+        if (list.substr(0, end) == word) return true;
+        list.remove_prefix(std::min(end + 1, list.size()));
+    }
+    return false;
 }
 
 }  // namespace achilles

@@ -18,11 +18,16 @@ std::string in_quotes(std::string_view name);
 // Greek letters by their names: theta1 for θ1, and 2*theta for 2*θ.
 std::string spelled_out(std::string_view text);
 
-// "; rates are written x'" where a word stands for a rate as other programs write it: xdot, x_dot, dx, vx, v_x of an x
-// whose x' is one of the names, or v alone; else "".
+// x' where a word stands for that rate as other programs write it: xdot, x_dot, dx, dxdt, vx, v_x, x_t of an x whose x' is
+// one of the names, or v alone; else "".
+std::string rate_meant(std::string_view word, std::span<const std::string> names);
+// "; rates are written x'" for such a word; else "".
 std::string rates_are_written(std::string_view word, std::span<const std::string> names);
 
 // "; did you mean 'x'?", or how a rate is written, or "".
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
+
+// Whether a word stands in a list of words with spaces between.
+bool has_word(std::string_view list, std::string_view word);
 
 }  // namespace achilles

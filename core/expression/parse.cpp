@@ -10,6 +10,7 @@
 #include "expression/greek.hpp"
 #include "expression/habits.hpp"
 #include "expression/nearest.hpp"
+#include "expression/repair.hpp"
 
 namespace achilles {
 
@@ -317,6 +318,9 @@ class Parser {
     }
 
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
+        if (!scope_.listed.empty() && !instead_of_corner(bare).empty())
+            throw ParseError(begin, in_quotes(bare) + " is not taken over a run", bare,
+                             "an expression has its value at the end of the run; there is least_gap over all of it");
         if (const std::string_view instead = instead_of_corner(bare == "sgn" && peek() == '(' ? "sign" : bare);
             !instead.empty())
             throw ParseError(
@@ -354,12 +358,34 @@ class Parser {
     int depth_ = 0;
 };
 
+// "write 0.5*x^2" for 0.5x²; "" where what it was meant to be is not known.
+std::string suggestion(std::string_view text, const Scope& scope, Graph& graph) {
+    constexpr std::size_t longest = 200;  // what a person reads in a message
+    if (text.size() > longest) return "";
+    const std::string right = repaired(text, scope);
+    if (right == text) return "";
+    try {
+        Parser(right, scope, graph, nullptr).whole();
+    } catch (const ParseError&) {
+        return "";
+    } catch (const TooLarge&) {
+        return "";
+    }
+    return "write " + right;
+}
+
 }  // namespace
 
 Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts) {
     Parser parser(text, scope, graph, parts);
     try {
         return parser.whole();
+    } catch (const ParseError& error) {
+        const std::string right = error.hint.empty() ? suggestion(text, scope, graph) : "";
+        if (right.empty()) throw;
+        // A guess at the name alone would contradict it.
+        const std::string message = error.what();
+        throw ParseError(error.offset, message.substr(0, message.find("; did you mean")), error.name, right);
     } catch (const TooLarge& problem) {
         throw ParseError(parser.at(), std::string("this expression is too large: ") + problem.what());
     }

@@ -50,8 +50,9 @@ std::string shown(std::string_view text) {
     return "'" + result + (text.size() > most ? "...'" : "'");
 }
 
-[[noreturn]] void fail(std::string_view text, std::size_t offset, const std::string& why, std::string_view name = {}) {
-    throw ParseError(offset, shown(text) + " is not a finite number" + (why.empty() ? "" : ": " + why), name);
+[[noreturn]] void fail(std::string_view text, std::size_t offset, const std::string& why, std::string_view name = {},
+                       std::string_view hint = {}) {
+    throw ParseError(offset, shown(text) + " is not a finite number" + (why.empty() ? "" : ": " + why), name, hint);
 }
 
 }  // namespace
@@ -104,7 +105,7 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
         for (const Function& function : functions) known.emplace_back(function.name);
         fail(text, begin + error.offset,
              is_unknown ? "no name but pi has a value here" + did_you_mean(error.name, known) : error.what(),
-             error.name);
+             error.name, error.hint);
     }
     if (!std::isfinite(given.value)) fail(text, begin, "");
     // No name of the language but theirs has these letters.
