@@ -13,6 +13,7 @@
 #include "number/angle.hpp"
 #include "number/subnormal.hpp"
 #include "system/input_error.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -153,22 +154,64 @@ std::vector<std::string> unseen_lines(const SystemDescription& description) {
     return told;
 }
 
+namespace {
+
+// Several values in one word: "e=0.3,g=9.81", a range, an interval.
+template <class Refuse>
+void refuse_several(const std::string& name, const std::string& written, const Refuse& refuse) {
+    if (const std::size_t equals = written.find('='); equals != written.npos && equals > 0) {
+        const std::size_t end = std::min(written.find_first_of(",; "), equals);
+        std::size_t next = written.find_first_not_of(",; ", end);
+        if (end < equals && next < equals)
+            throw refuse("each value has a --set of its own",
+                         fmt::format("write --set {}={} --set {}", name, written.substr(0, end), written.substr(next)));
+    }
+    const bool is_interval = written.find("..") != written.npos;
+    const std::size_t colon = written.find(':');
+    if (is_interval || colon != written.npos || trimmed(written).starts_with("["))
+        throw refuse(
+            fmt::format("{} is one number", name),
+            fmt::format("achilles prove takes an interval, --set {0}=LOW..HIGH, and achilles sweep a range, --over "
+                        "{0}=LOW:HIGH:COUNT",
+                        name));
+    if (written.ends_with('%'))
+        throw refuse(fmt::format("{} is a number", name),
+                     fmt::format("write --set {}={}/100", name, written.substr(0, written.size() - 1)));
+}
+
+}  // namespace
+
 void assign(Run& run, const SystemDescription& description, std::string_view name_value) {
     const auto refuse = [&](const std::string& why, const std::string& hint = {}) {
         return InputError("--set " + shown(name_value), {}, why, hint);
     };
     const std::size_t equals = name_value.find('=');
-    if (equals == name_value.npos) {
+    const std::size_t colon = name_value.find(':');
+    if (equals == name_value.npos && colon != name_value.npos)
+        throw refuse("an equals sign is missing",
+                     fmt::format("write --set {}={}", name_value.substr(0, colon), name_value.substr(colon + 1)));
+    if (equals == name_value.npos)
         throw refuse("a value is missing", "write --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
-    }
     const std::string name(trimmed(name_value.substr(0, equals))), written(name_value.substr(equals + 1));
     double* const place = find_value(description, run, name);
-    if (place == nullptr) throw refuse(why_not_settable(description, name));
+    if (place == nullptr) {
+        const std::size_t open = name.find('(');
+        if (open != name.npos && name.ends_with("(0)") && find_value(description, run, name.substr(0, open)) != nullptr)
+            throw refuse("the start is set by the name alone",
+                         fmt::format("write --set {}={}", name.substr(0, open), written));
+        throw refuse(why_not_settable(description, name));
+    }
+    refuse_several(name, written, refuse);
     std::optional<double> value;
     try {
         value = read_number(written, unit_of(description, name)).value;
     } catch (const ParseError& error) {
-        throw refuse(error.what());
+        const auto apart = measured(written);
+        if (!apart) throw refuse(error.what(), error.hint);
+        const std::string unit = unit_of(description, name);
+        throw refuse("a value is a number without its unit",
+                     fmt::format("write --set {}={}{}", name, apart->number,
+                                 unit.empty() ? "" : fmt::format(": it is in {}", unit)));
     }
     const bool is_parameter = std::any_of(description.parameters.begin(), description.parameters.end(),
                                           [&](const ParameterDescription& p) { return p.name == name; });

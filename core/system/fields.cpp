@@ -11,12 +11,14 @@
 #include "expression/read_number.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
 Fields::Fields(const TomlValue& table, std::string where) : table_(table), where_(std::move(where)) {
     if (table.kind != TomlValue::Kind::table)
-        throw Mistake{table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)), {}};
+        throw Mistake{table.at, fmt::format("{} must be a table, not {}", where_, kind_name(table.kind)),
+                      fmt::format("write {}{}, and its keys below", where_, where_.starts_with("[[") ? "" : " once")};
 }
 
 namespace {
@@ -36,10 +38,14 @@ void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
         misspelt_.push_back(meant);
         const std::string question =
             other.empty() ? did_you_mean(entry.key, keys) : fmt::format("; did you mean '{}'?", other);
-        mistakes.add({entry.at, fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, question),
-                      entry.value.kind == TomlValue::Kind::table && is_array_of_tables(meant)
-                          ? fmt::format("write [[{}]], once for each", meant)
-                          : fmt::format("known here: {}", listed(keys))});
+        const std::string_view instead = other.empty() ? instead_of_key(entry.key) : "";
+        mistakes.add(
+            {entry.at,
+             fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, instead.empty() ? question : ""),
+             !instead.empty() ? std::string(instead)
+             : entry.value.kind == TomlValue::Kind::table && is_array_of_tables(meant)
+                 ? fmt::format("write [[{}]], once for each", meant)
+                 : fmt::format("known here: {}", listed(keys))});
     }
 }
 
@@ -74,8 +80,14 @@ double Fields::number(std::string_view key, const TomlValue& value, std::string_
         try {
             return read_number(value.text.text, unit).value;
         } catch (const ParseError& error) {
-            throw Mistake{
-                place_in(value.text, error.offset), fmt::format("'{}' in {}: {}", key, where_, error.what()), {}};
+            if (const auto apart = measured(value.text.text))
+                throw Mistake{value.text.at, fmt::format("'{}' in {} is a number without its unit", key, where_),
+                              fmt::format("write {} = {}{}", key, apart->number,
+                                          key == "value" || key == "start"
+                                              ? fmt::format(", and unit = \"{}\" in a line of its own", apart->unit)
+                                              : "")};
+            throw Mistake{place_in(value.text, error.offset), fmt::format("'{}' in {}: {}", key, where_, error.what()),
+                          error.hint};
         }
     }
     if (value.kind != TomlValue::Kind::number) throw wrong_type(key, value, "a number");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "expression/nearest.hpp"
+
 namespace achilles {
 
 std::span<const FileTable> file_tables() {
@@ -98,53 +100,61 @@ std::span<const FileTable> file_tables() {
 
 std::string other_key(std::string_view word, const std::vector<std::string>& keys) {
     struct Other {
-        std::string_view word, key;
+        std::string_view key,
+            words;  // of the words one stands for another key elsewhere, the first that is known here counts
     };
-    static constexpr Other others[] = {{"h", "gap"},
-                                       {"distance", "gap"},
-                                       {"e", "restitution"},
-                                       {"T", "kinetic"},
-                                       {"V", "potential"},
-                                       {"U", "potential"},
-                                       {"R", "dissipation"},
-                                       {"Q", "force"},
-                                       {"velocity", "rate"},
-                                       {"speed", "rate"},
-                                       {"v", "rate"},
-                                       {"v0", "rate"},
-                                       {"q0", "start"},
-                                       {"x0", "start"},
-                                       {"initial", "start"},
-                                       {"init", "start"},
-                                       {"default", "value"},
-                                       {"min", "range"},
-                                       {"max", "range"},
+    static constexpr Other others[] = {
+        {"gap", "h distance g phi condition expression height clearance"},
+        {"restitution", "e cor bounce epsilon coefficient eps"},
+        {"kinetic", "T kinetic_energy T_kin ke KE Ekin"},
+        {"potential", "V U potential_energy PE Epot"},
+        {"dissipation", "R damping rayleigh D"},
+        {"force", "Q forces tau torque generalized_force input u control"},
+        {"rate", "velocity speed v v0 initial_velocity qdot dot rate0 start_rate x_dot y_dot"},
+        {"start", "q0 x0 y0 initial init initial_value initial_position position"},
+        {"value", "default val"},
+        {"range", "min max limits bounds lower upper"},
+        {"about", "description comment doc tooltip"},
+        {"title", "name"},
+        {"name", "title id symbol label"},
+        {"label", "ylabel"},
+        {"at", "position center centre pos xy"},
+        {"shape", "type kind"},
+        {"radius", "r"},
+        {"width", "linewidth thickness lw"},
+        {"from", "start p1 a"},
+        {"to", "end p2 b"},
+        {"end_time", "t_end tend T t_final duration tmax t_stop stop_time end"},
+        {"start_time", "t_start t0 start"},
+        {"tolerance", "rtol atol tol abstol reltol"},
+        {"method", "solver integrator"},
+        {"eps_q", "eps"},
+        {"run", "options simulation settings solver experiment"},
+        {"parameter", "params constants"},
+        {"coordinate", "variable state states dof generalized_coordinate initial initial_conditions"},
+        {"constraint", "contact collision impact guard unilateral"},
+        {"view", "plot figure"},
+        {"drawing", "graphics geometry visual"},
+        {"lagrangian", "energy dynamics"}};
+    for (const Other& other : others) {
+        const bool is_here = std::find(keys.begin(), keys.end(), other.key) != keys.end();
+        if (is_here && has_word(other.words, word)) return std::string(other.key);
+    }
+    return "";
+}
 
-                                       {"description", "about"},
-                                       {"name", "title"},
-                                       {"t_end", "end_time"},
-                                       {"tend", "end_time"},
-                                       {"T", "end_time"},
-                                       {"t_final", "end_time"},
-                                       {"duration", "end_time"},
-                                       {"tmax", "end_time"},
-                                       {"t_start", "start_time"},
-                                       {"t0", "start_time"},
-                                       {"rtol", "tolerance"},
-                                       {"atol", "tolerance"},
-
-                                       {"eps", "eps_q"},
-                                       {"options", "run"},
-                                       {"simulation", "run"},
-                                       {"settings", "run"},
-                                       {"params", "parameter"},
-                                       {"variable", "coordinate"},
-                                       {"contact", "constraint"},
-                                       {"plot", "view"},
-                                       {"energy", "lagrangian"}};
+std::string_view instead_of_key(std::string_view word) {
+    struct Other {
+        std::string_view words, instead;
+    };
+    static constexpr Other others[] = {
+        {"friction mu mu_s mu_k friction_coefficient", "contacts have no friction here: leave it out"},
+        {"gravity g", "gravity is a part of the potential, as m*g*y, with a [[parameter]] g"},
+        {"stiffness k c contact_stiffness", "contacts are rigid: a spring belongs to the potential, as k/2*x^2"},
+        {"mass m inertia", "a mass is a part of the kinetic energy, as m/2*x'^2, with a [[parameter]] m"},
+        {"dt step step_size timestep h max_step", "the step follows from the tolerance in [run]"}};
     for (const Other& other : others)
-        if (other.word == word && std::find(keys.begin(), keys.end(), other.key) != keys.end())
-            return std::string(other.key);
+        if (has_word(other.words, word)) return other.instead;
     return "";
 }
 

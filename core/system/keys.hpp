@@ -28,4 +28,7 @@ std::vector<std::string> keys_of(std::string_view heading);
 // Which of some keys is meant by another word, of those that people write who know other programs: restitution by e; "" where none is.
 std::string other_key(std::string_view word, const std::vector<std::string>& keys);
 
+// What stands for a key of other programs where no key does: friction, gravity, dt; "" where there is nothing to say.
+std::string_view instead_of_key(std::string_view word);
+
 }  // namespace achilles

@@ -6,11 +6,37 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <system_error>
+#include <vector>
 
+#include "expression/nearest.hpp"
 #include "system/description.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
+
+namespace {
+
+// The file beside it whose name is nearest, or the folder that is missing.
+InputError missing(const std::filesystem::path& file) {
+    std::error_code problem;
+    const std::filesystem::path folder = file.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder, problem))
+        return {file.string(), {}, "there is no folder " + shown(folder.string())};
+    std::vector<std::string> names;
+    constexpr std::size_t most = 10000;
+    for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, problem)) {
+        if (names.size() == most) break;
+        if (entry.is_regular_file(problem)) names.push_back(entry.path().filename().string());
+    }
+    const std::string best = nearest(file.filename().string(), names);
+    return {file.string(),
+            {},
+            "there is no such file" + (best.empty() ? "" : "; did you mean " + shown((folder / best).string()) + "?")};
+}
+
+}  // namespace
 
 std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     const std::string name = file.string();
@@ -22,7 +48,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     };
     // Without waiting: whoever opens a pipe that nobody writes to waits for ever.
     const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0 && errno == ENOENT) throw InputError(name, {}, "there is no such file");
+    if (descriptor < 0 && errno == ENOENT) throw missing(file);
     if (descriptor < 0) throw refuse(reason());
     const std::unique_ptr<std::FILE, Close> open(::fdopen(descriptor, "rb"));
     if (!open) throw refuse(reason());

@@ -13,8 +13,10 @@
 #include "run/contact_set.hpp"
 #include "system/derived.hpp"
 #include "system/fields.hpp"
+#include "system/file_kind.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -143,7 +145,8 @@ void read_parameters(Reading& reading) {
         mistakes.attempt([&] { read_unit(fields, parameter.unit); });
         mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
         const TomlValue* value = fields.find("value");
-        if (value != nullptr && value->kind == TomlValue::Kind::string && has_names(value->text.text)) {
+        if (value != nullptr && value->kind == TomlValue::Kind::string && has_names(value->text.text) &&
+            !measured(value->text.text)) {
             if (is_named) read_derived(reading, fields, {parameter.name, parameter.unit, parameter.about, {}});
             continue;
         }
@@ -328,6 +331,7 @@ FileReading read_tables(std::string text, std::string name) {
     const Ground ground;  // decimals are read to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
+    refuse_other_files(text, name);
     FileReading read;
     SystemDescription& system = read.system;
     system.file = std::move(name);

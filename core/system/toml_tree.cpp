@@ -10,6 +10,7 @@
 
 #include "expression/parse.hpp"
 #include "system/input_error.hpp"
+#include "system/keys.hpp"
 
 namespace achilles {
 
@@ -209,9 +210,37 @@ std::string right_quotes(const std::string& key, const std::string& value) {
     return "";
 }
 
+bool has_heading(const std::string& heading) {
+    const auto all = file_tables();
+    return std::any_of(all.begin(), all.end(), [&](const FileTable& table) { return table.heading == heading; });
+}
+
+// "[lagrangian]", or "[[coordinate]]" where there may be several.
+std::string heading_of(const std::string& name) {
+    for (const std::string& heading : {"[" + name + "]", "[[" + name + "]]"})
+        if (has_heading(heading)) return "write " + heading;
+    return name == "run" || name == "truncation" ? fmt::format("write [{}]", name) : "";
+}
+
+// [lagrangian and [[constraint] with all their brackets.
+std::string right_brackets(const std::string& line) {
+    const std::size_t begin = std::min(line.find_first_not_of("[ "), line.size());
+    return heading_of(line.substr(begin, std::min(line.find_first_of("] #", begin), line.size()) - begin));
+}
+
 // What would be right in a line like gap = y - sin(x), or start = 0,4; "" where that is not what is wrong.
 std::string right_value(const std::string& line) {
     const std::size_t equals = line.find('=');
+    const std::string begin = trimmed(line);
+    for (const char* const sign : {"//", "/*", "%", ";", "--", "!"})
+        if (begin.starts_with(sign)) return "a comment begins with #";
+    for (const std::string_view assign : {":=", "->", "==", "<-"})
+        if (const std::size_t at = line.find(assign); at != line.npos && is_name(trimmed(line.substr(0, at))))
+            return fmt::format("write an equals sign: {} = {}", trimmed(line.substr(0, at)),
+                               shown(trimmed(line.substr(at + assign.size()))));
+    if (begin.starts_with("[") && (equals == line.npos || begin.find(']') == begin.npos)) return right_brackets(begin);
+    if (begin.ends_with(':') && is_name(begin.substr(0, begin.size() - 1)))
+        return heading_of(begin.substr(0, begin.size() - 1));
     if (equals == std::string::npos) {
         const std::string words = trimmed(line.substr(0, line.find('#')));
         const std::size_t end = std::min(words.find_first_of(" \t:"), words.size());
@@ -225,6 +254,19 @@ std::string right_value(const std::string& line) {
     if (!is_name(key) || value.empty()) return "";
     if (const std::string quotes = right_quotes(key, value); !quotes.empty()) return quotes;
     if (value.find('"') != std::string::npos) return "";
+    if (value.find("''") != value.npos && value.find("\'\'\'") == value.npos)
+        return "a text with a prime in it stands in double quotes, \"x'\"";
+    if (value[0] == '(' || (value[0] == '[' && value.find(';') != value.npos)) {
+        std::string list = value;
+        std::replace(list.begin(), list.end(), ';', ',');
+        list.front() = '[';
+        if (list.ends_with(')')) list.back() = ']';
+        return fmt::format("a list stands in square brackets: {} = {}", key, shown(list));
+    }
+    if (const std::size_t dots = value.find("..");
+        dots != value.npos && value.find_first_not_of("+-.0123456789eE") == value.npos)
+        return fmt::format("two numbers stand in square brackets: {} = [{}, {}]", key, value.substr(0, dots),
+                           value.substr(value.find_first_not_of('.', dots)));
     if (value[0] == '[' || value[0] == '{') {
         const std::vector<std::string> names = names_in(value);
         const bool has_names = std::any_of(names.begin(), names.end(), [](const std::string& name) {
@@ -250,10 +292,17 @@ std::string right_value(const std::string& line) {
 std::string right_heading(std::string_view message, const std::string& line) {
     if (!message.starts_with("cannot redefine existing")) return "";
     const std::string heading = trimmed(line.substr(0, line.find('#')));
-    if (heading.starts_with("[["))
+    if (heading.starts_with("[[")) {
+        const std::string single = heading.substr(1, heading.size() - 2);
+        if (has_heading(single) || single == "[run]" || single == "[truncation]")
+            return fmt::format("write {} once: its keys stand in one table", shown(single));
         return fmt::format("write {} each time: one above has single brackets", shown(heading));
-    if (heading.starts_with("[")) return "its keys stand in one table: put them together";
-    return "a key stands once in a table: one of the two goes";
+    }
+    if (heading.starts_with("[")) {
+        if (has_heading("[" + heading + "]")) return fmt::format("write [{}] each time: there may be several", heading);
+        return fmt::format("its keys stand in one table: write them all under the first {}", shown(heading));
+    }
+    return "a key stands once in a table: leave one of the two out";
 }
 
 }  // namespace
@@ -290,7 +339,10 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
         }
         const Location at = location(error.source().begin);
         const std::string line = line_of(text, at.line), hint = right_heading(message, line);
-        throw InputError(name, at, fmt::format("not valid TOML: {}", message), hint.empty() ? right_value(line) : hint,
+        // A line break that it shows where it ends: "saw 't\n'".
+        std::string plain(message);
+        std::erase_if(plain, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
+        throw InputError(name, at, fmt::format("not valid TOML: {}", plain), hint.empty() ? right_value(line) : hint,
                          line);
     }
 }

@@ -216,4 +216,36 @@ std::string unit_of_quotient(std::string_view above, std::string_view below) {
     return unit ? written(*unit) : "";
 }
 
+std::optional<Measured> measured(std::string_view text) {
+    constexpr std::array<std::string_view, 36> words{
+        "kg", "g", "mg", "t",  "m", "mm", "cm", "dm",  "km", "um",  "s",   "ms",  "us",   "min", "h",  "N",  "kN", "mN",
+        "Nm", "J", "kJ", "mJ", "W", "kW", "Hz", "kHz", "Pa", "kPa", "MPa", "rad", "mrad", "rpm", "in", "ft", "K",  "A"};
+    Measured result;
+    std::string plain(text);
+    std::replace(plain.begin(), plain.end(), ',', '.');
+    const std::size_t at = plain.find_first_not_of(" \t");
+    if (at == plain.npos || std::string_view("+-.0123456789").find(plain[at]) == std::string_view::npos)
+        return std::nullopt;
+    const char* const first = plain.data() + at + (plain[at] == '+' ? 1 : 0);
+    double value = 0.0;
+    const auto [last, problem] = std::from_chars(first, plain.data() + plain.size(), value);
+    if (problem != std::errc()) return std::nullopt;
+    result.number.assign(first, last);
+    result.unit = plain.substr(static_cast<std::size_t>(last - plain.data()));
+    for (const auto& [sign, right] : {std::pair{"\u00b2", "^2"}, std::pair{"\u00b3", "^3"}, std::pair{"\u00b7", "*"}})
+        for (std::size_t i = result.unit.find(sign); i != std::string::npos; i = result.unit.find(sign))
+            result.unit.replace(i, std::string_view(sign).size(), right);
+    result.unit.erase(0, std::min(result.unit.find_first_not_of(" \t*"), result.unit.size()));
+    result.unit.erase(result.unit.find_last_not_of(" \t") + 1);
+    const std::vector<std::string> names = names_in(result.unit);
+    const bool is_unit = !names.empty() && std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return std::find(words.begin(), words.end(), name) != words.end();
+    });
+    const bool has_signs =
+        result.unit.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789*/^-() ") !=
+        std::string::npos;
+    if (!is_unit || has_signs || !std::isalpha(static_cast<unsigned char>(result.unit[0]))) return std::nullopt;
+    return result;
+}
+
 }  // namespace achilles

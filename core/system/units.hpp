@@ -1,6 +1,7 @@
 // The unit of whatever a system file lets one write, from the units that it gives its coordinates and parameters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,12 @@ std::string unit_of_expression(const SystemDescription& description, std::string
 // The unit of a quotient: "s/m" of s over m; that above where nothing is said of what is below, and "" where the one above, or
 // their quotient, is not known.
 std::string unit_of_quotient(std::string_view above, std::string_view below);
+
+// A number with a unit behind it, as people write what was measured: "9.81 m/s²" is {"9.81", "m/s^2"}. Nothing where a text is
+// something else. Angles in degrees are no such thing: where they may stand read_number() takes them.
+struct Measured {
+    std::string number, unit;
+};
+std::optional<Measured> measured(std::string_view text);
 
 }  // namespace achilles

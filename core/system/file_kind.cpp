@@ -1,0 +1,83 @@
+#include "system/file_kind.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace achilles {
+
+namespace {
+
+struct Kind {
+    std::string_view begins, what, advice;
+};
+
+constexpr std::string_view reproduce = "achilles reproduce FILE prints the command that made it",
+                           start_from_new = "achilles new NAME writes a system file to start from";
+
+// The first bytes of files that are no text.
+constexpr Kind of_bytes[] = {
+    {"\x89PNG", "a PNG picture", reproduce},
+    {"%PDF", "a PDF document", reproduce},
+    {"\xff\xd8\xff", "a JPEG picture", start_from_new},
+    {"GIF8", "a GIF picture", start_from_new},
+    {"\x89HDF", "an HDF5 file", start_from_new},
+    {"PK\x03\x04", "a ZIP archive, as .slx and .xlsx files are", start_from_new},
+    {"\x1f\x8b", "a compressed file", "unpack it first: gunzip FILE"},
+    {"\x7f"
+     "ELF",
+     "a program", start_from_new},
+    {"MATLAB 5.0", "a MAT file", start_from_new},
+};
+
+// The first letters of texts, behind blanks.
+constexpr Kind of_texts[] = {
+    {"<svg", "an SVG picture", reproduce},
+    {"<?xml", "an SVG picture or other XML", reproduce},
+    {"<", "HTML or XML", start_from_new},
+    {"{", "JSON, and a system file is TOML", start_from_new},
+    {"[{", "JSON, and a system file is TOML", start_from_new},
+    {"%", "Matlab or LaTeX, and a system file is TOML", start_from_new},
+    {"\\documentclass", "LaTeX, and a system file is TOML", start_from_new},
+    {"function ", "Matlab, and a system file is TOML", start_from_new},
+    {"import ", "Python, and a system file is TOML", start_from_new},
+    {"from ", "Python, and a system file is TOML", start_from_new},
+    {"def ", "Python, and a system file is TOML", start_from_new},
+    {"model ", "Modelica, and a system file is TOML", start_from_new},
+    {"package ", "Modelica, and a system file is TOML", start_from_new},
+    {"---", "YAML, and a system file is TOML", start_from_new},
+    {"```", "Markdown", "leave the lines with ``` out"},
+};
+
+[[noreturn]] void refuse(const std::string& name, std::string_view what, std::string_view advice) {
+    throw InputError(name, {}, fmt::format("this is {}", what), std::string(advice));
+}
+
+// t,phase,x,... as CSV begins; numbers with commas between, too.
+bool is_table(std::string_view text) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    return std::count(line.begin(), line.end(), ',') >= 2 && line.find_first_of("=[#\"'") == line.npos;
+}
+
+}  // namespace
+
+void refuse_other_files(std::string_view text, const std::string& name) {
+    const std::string_view head = text.substr(0, 256);
+    for (const Kind& kind : of_bytes)
+        if (head.starts_with(kind.begins)) refuse(name, kind.what, kind.advice);
+    if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff") ||
+        (head.size() > 3 && (head[1] == '\0' || head[0] == '\0') && head.find_first_not_of('\0') != head.npos))
+        refuse(name, "text in UTF-16", "save it as UTF-8");
+    if (head.find('\0') != head.npos) refuse(name, "no text: it has zero bytes", start_from_new);
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == text.npos) throw InputError(name, {}, "the file is empty", std::string(start_from_new));
+    text.remove_prefix(first);
+    for (const Kind& kind : of_texts) {
+        const bool is_key = kind.begins.ends_with(' ') && text.substr(kind.begins.size()).starts_with("=");
+        if (text.starts_with(kind.begins) && !is_key) refuse(name, kind.what, kind.advice);
+    }
+    if (is_table(text)) refuse(name, "a table, and a system file is TOML", start_from_new);
+}
+
+}  // namespace achilles
