@@ -8,6 +8,7 @@
 
 #include "expression/nearest.hpp"
 #include "system/description.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -60,24 +61,58 @@ bool is_path(const fs::path& path, const char* extension) {
 
 constexpr const char *of_systems = ".toml", *of_journals = ".journal";
 
+// The names of files with this ending in a folder.
+void add_files_in(const fs::path& folder, const char* extension, std::vector<std::string>& names) {
+    constexpr std::size_t most = 10000;
+    std::error_code problem;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, problem)) {
+        if (names.size() == most) return;
+        if (entry.path().extension() == extension) names.push_back((folder / entry.path().filename()).string());
+    }
+}
+
+// A folder in place of a file: which file in it may be meant.
+InputError a_folder(const fs::path& folder, const char* kind, const char* extension) {
+    std::vector<std::string> names;
+    add_files_in(folder, extension, names);
+    std::sort(names.begin(), names.end());
+    return {folder.string(),
+            {},
+            fmt::format("this is a folder, and a {} is a file{}", kind,
+                        names.empty() ? "" : fmt::format("; write the path of one in it, {}", names.front()))};
+}
+
 // A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
-// to tell.
+// to tell, unless the gallery has such a file.
 fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const char* kind, const char* extension) {
     const fs::path path{std::string(wanted)};
-    if (is_path(path, extension)) return path;
+    std::error_code problem;
+    const bool is_there = fs::exists(path, problem);
     std::vector<std::string> names;
     for (const fs::path& file : files) {
-        if (file.stem() == path) return file;
+        if (file.stem() == path && !is_path(path, extension)) return file;
+        if (!is_there && file.filename() == path.filename() && !path.has_parent_path())
+            throw InputError(
+                path.string(), {},
+                fmt::format("there is no such file here; write {} for the one of the gallery", file.stem().string()));
         names.push_back(file.stem().string());
     }
-    std::error_code problem;
-    if (fs::is_directory(path, problem)) return path;  // which the reader tells
+    if (fs::is_directory(path, problem)) throw a_folder(path, kind, extension);
+    if (is_path(path, extension)) return path;
     const fs::path beside = fs::path(path) += extension;
     if (fs::is_regular_file(beside, problem))
         throw InputError({}, {},
                          fmt::format("there is no {} '{}'; did you mean the file {}?", kind, wanted, beside.string()));
-    throw InputError({}, {}, fmt::format("there is no {} '{}'{}", kind, wanted, did_you_mean(wanted, names)),
-                     fmt::format("a {} is a path to a {} file or one of: {}", kind, extension, fmt::join(names, ", ")));
+    add_files_in("", extension, names);
+    const std::string meant = did_you_mean(wanted, names);
+    throw InputError(
+        {}, {},
+        fmt::format("there is no {} '{}'{}", kind, shown(wanted),
+                    !meant.empty()
+                        ? meant
+                        : fmt::format("; it is the path of a {} file, or {}", extension,
+                                      extension == of_systems ? "a name that 'achilles list' prints"
+                                                              : fmt::format("one of: {}", fmt::join(names, ", ")))));
 }
 
 }  // namespace

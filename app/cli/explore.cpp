@@ -21,6 +21,7 @@
 #include "journal/tour.hpp"
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
+#include "pictures/origin.hpp"
 #include "pictures/thumbnails.hpp"
 #include "session/open_session.hpp"
 #include "surface/window.hpp"
@@ -297,6 +298,18 @@ class Explorer {
     double waited_ = 0.0;
 };
 
+// Where there is no display, the message says what works without one.
+Window window_for(const ExploreOptions& options, const std::string& system) {
+    try {
+        return Window(surface_options(options), "Achilles");
+    } catch (const std::runtime_error& problem) {
+        throw std::runtime_error(fmt::format(
+            "{}\nwithout a window: achilles simulate {system} prints the run, achilles figure {system} --out "
+            "F.png draws it, achilles screenshot {system} --out F.png draws the explorer",
+            problem.what(), fmt::arg("system", shell_word(system))));
+    }
+}
+
 }  // namespace
 
 int explore(const ExploreOptions& options) {
@@ -320,7 +333,7 @@ int explore(const ExploreOptions& options) {
     std::future<PanelState> state = std::async(std::launch::async, panel_state, true);
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
-    Window window(surface_options(options), "Achilles");
+    Window window = window_for(options, name);
     // After everything that can fail: a journal that is there already is not lost to a missing display.
     Explorer explorer(session, window, options, film, state.get(), trust);
     session.set_patience(frame_patience);

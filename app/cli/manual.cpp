@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <utility>
 
 #include "cli/assets.hpp"
 #include "expression/functions.hpp"
@@ -15,6 +17,7 @@
 #include "session/command.hpp"
 #include "session/glossary.hpp"
 #include "simulate/simulate.hpp"
+#include "system/input_error.hpp"
 #include "system/keys.hpp"
 
 namespace achilles {
@@ -127,6 +130,27 @@ std::string title_of(const fs::path& page) {
     return begin == std::string::npos ? "" : text.substr(begin, text.find('\n') - begin);
 }
 
+// The two pages that have a word most often, tables included; small and capital letters are the same.
+std::vector<std::string> pages_about(std::string_view word) {
+    constexpr std::size_t most = 2;
+    const auto lower = [](std::string text) {
+        for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        return text;
+    };
+    const std::string wanted = lower(std::string(word));
+    std::vector<std::pair<std::size_t, std::string>> counts;
+    for (const fs::path& page : manual_files()) {
+        const std::string name = page.stem().string(), text = lower(manual_page(name));
+        std::size_t count = 0;
+        for (std::size_t at = text.find(wanted); at != text.npos; at = text.find(wanted, at + wanted.size())) ++count;
+        if (count > 0) counts.emplace_back(count, name);
+    }
+    std::sort(counts.rbegin(), counts.rend());
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < std::min(counts.size(), most); ++i) names.push_back(counts[i].second);
+    return names;
+}
+
 }  // namespace
 
 std::vector<ManualTopic> manual_topics() {
@@ -153,8 +177,14 @@ std::string manual_page(std::string_view topic) {
         }
         return result;
     }
-    throw InputError({}, {}, fmt::format("there is no topic '{}'{}", topic, did_you_mean(std::string(topic), known)),
-                     fmt::format("the topics are: {}", fmt::join(known, ", ")));
+    const std::vector<std::string> pages = pages_about(topic);
+    const std::string meant = did_you_mean(topic, known);
+    throw InputError({}, {},
+                     fmt::format("there is no topic '{}'{}", shown(topic),
+                                 !pages.empty()   ? fmt::format("; write achilles help {}: it is explained there",
+                                                                fmt::join(pages, ", or achilles help "))
+                                 : !meant.empty() ? meant
+                                                  : fmt::format("; the topics are {}", fmt::join(known, ", "))));
 }
 
 std::string skeleton_system() { return read_text(assets() / "manual" / "skeleton.toml"); }

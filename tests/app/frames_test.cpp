@@ -169,7 +169,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
          "16384\n"},
         {"--out /dev/null/film", "/dev/null/film: the folder cannot be made: Not a directory\n"},
         {"--out /proc/film", "/proc/film: the folder cannot be made: No such file or directory\n"},
-        {"", "achilles: --out is required\n'achilles frames --help' tells more\n"},
+        {"", "achilles: --out is missing; write --out F.mp4\n"},
     };
     for (const auto& [options, message] : cases) {
         const Answer answer = folder.run("frames ball_on_sine " + options);

@@ -146,7 +146,7 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         {"simulate drop.toml --set end=3", "--set end=3: 'end' is an option of the run, --end on the command line\n"},
         {"simulate drop.toml --set tolerance=1e-6",
          "--set tolerance=1e-6: 'tolerance' is an option of the run, --tolerance on the command line\n"},
-        {"simulate .", ".: cannot read the file: it is a directory\n"}};
+        {"simulate .", ".: this is a folder, and a system is a file; write the path of one in it, ./broken.toml\n"}};
     for (const auto& [arguments, message] : mistakes) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 2) << arguments;

@@ -24,7 +24,7 @@ struct CheckArguments {
 };
 
 int check(const CheckArguments& arguments) {
-    const SystemDescription description = read_system(find_system(arguments.system));
+    const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
     const Model model(description);

@@ -47,9 +47,12 @@ void write_new(const std::string& name) {
 void add_manual(CLI::App& program, int& status) {
     CLI::App* help = program.add_subcommand("help", "The manual, a page for each topic");
     const auto topic = std::make_shared<std::string>();
-    help->add_option("TOPIC", *topic, "none lists them")->type_name("");
-    help->callback([topic, &status] {
-        const std::string text = topic->empty() ? contents() : manual_page(*topic);
+    help->add_option("TOPIC", *topic, "none lists them; of a command: its options")->type_name("");
+    help->callback([topic, &program, &status] {
+        const auto commands = program.get_subcommands([&](const CLI::App* one) { return one->get_name() == *topic; });
+        const std::string text = topic->empty()     ? contents()
+                                 : commands.empty() ? manual_page(*topic)
+                                                    : commands.front()->help("achilles");
         std::fwrite(text.data(), 1, text.size(), stdout);
         status = reached_end;
     });

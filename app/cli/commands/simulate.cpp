@@ -77,7 +77,7 @@ Instants instants_of(const SimulateArguments& arguments, const Run& run) {
 
 int run(const SimulateArguments& arguments) {
     check_files(arguments);
-    const SystemDescription description = read_system(find_system(arguments.system));
+    const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
     const Run run = asked_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
     check_asked(*model, run, arguments.settings);

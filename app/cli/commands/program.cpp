@@ -1,0 +1,154 @@
+// Reads the command line, runs a command, and prints what is wrong as one message with exit status 2.
+#include "cli/commands/program.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <system_error>
+#include <thread>
+
+#include "cli/assets.hpp"
+#include "cli/commands/advice.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/sweep_work.hpp"
+#include "cli/terminal.hpp"
+#include "mpi/ranks.hpp"
+#include "output/output.hpp"
+#include "pictures/picture_job.hpp"
+#include "surface/room.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+namespace {
+
+// The first word may be a command, or a system to explore, or missing.
+void put_default_command(const CLI::App& program, std::vector<std::string>& words) {
+    if (words.empty()) words.emplace_back("explore");
+    const std::string first = words.front();
+    if (first == "--help" || first == "-h" || first == "--version") return;
+    const std::vector<std::string> commands = command_names(program);
+    if (std::find(commands.begin(), commands.end(), first) != commands.end()) return;
+    if (first.empty() || first[0] != '-') {
+        const std::vector<std::string> known = system_names();
+        const bool is_system = std::find(known.begin(), known.end(), first) != known.end();
+        if (!is_system && std::filesystem::path(first).extension() != ".toml" && !std::filesystem::exists(first))
+            throw unknown_command(program, words);
+    }
+    words.insert(words.begin(), "explore");
+}
+
+// Throws InputError where standard output has not taken all that was printed.
+void finish_output() {
+    errno = 0;
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return;
+    throw InputError("standard output", {},
+                     fmt::format("not all of it could be written{}{}", errno == 0 ? "" : ": ",
+                                 errno == 0 ? "" : std::strerror(errno)));
+}
+
+// The terminate handler, for an exception on a thread of a library: lack of memory still gets a sentence.
+[[noreturn]] void end_in_words() {
+    try {
+        if (const std::exception_ptr problem = std::current_exception()) std::rethrow_exception(problem);
+    } catch (const std::bad_alloc&) {
+        std::fputs("achilles: there is not enough memory for this\n", stderr);
+        std::_Exit(stopped_early);
+    } catch (const std::exception& error) {
+        print_clean(stderr, "achilles: {}\n", error.what());
+    } catch (...) {
+    }
+    std::abort();
+}
+
+int run(std::vector<std::string> words, Messages* ranks) {
+    CLI::App program("Lagrangian hybrid systems, simulated past their Zeno points", "achilles");
+    program.set_version_flag("--version", "achilles " + version());
+    program.require_subcommand(1);
+    int status = reached_end;
+    add_explore(program, status);
+    add_simulate(program, status);
+    add_prove(program, status);
+    PictureJob job(words);
+    add_pictures(program, status, job, ranks);
+    add_reproduce(program, status);
+    add_check(program, status);
+    add_list(program, status);
+    add_manual(program, status);
+    std::vector<std::string> with_command = words;
+    put_default_command(program, with_command);
+    try {
+        program.parse(
+            std::vector<std::string>(with_command.rbegin(), with_command.rend()));  // CLI11 takes them from the back
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+            const int printed = program.exit(error);  // help, or the version
+            finish_output();
+            return printed;
+        }
+        throw unreadable_command_line(error, program, words);
+    }
+    finish_output();
+    return status;
+}
+
+// One of several processes that mpirun has started. A sweep is shared: rank 0 is the program, the others do what it tells them
+// and are silent. Any other command is what it is in every process.
+int run_as_rank(const Launch& launch, const std::vector<std::string>& words) {
+    std::optional<Ranks> ranks;
+    try {
+        ranks.emplace(launch);
+    } catch (const InputError&) {
+        // Rank 0 tells it, if it is so there too, and all are ended. One process that fails ends them at once: wait for that.
+        if (launch.rank > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
+        throw;
+    }
+    if (ranks->rank() == 0) return run(words, &*ranks);
+    help_with_sweep(*ranks);
+    return reached_end;
+}
+
+int run_or_throw(const std::vector<std::string>& words) {
+    const bool is_sweep = !words.empty() && words.front() == "sweep";
+    const std::optional<Launch> launch = is_sweep ? find_launch() : std::nullopt;
+    return launch ? run_as_rank(*launch, words) : run(words, nullptr);
+}
+
+}  // namespace
+
+int run_program(const std::vector<std::string>& words) {
+    std::set_terminate(end_in_words);
+    try {
+        return run_or_throw(words);
+    } catch (const InputError& error) {
+        // A message about a place in a file starts with that place, so that editors find it.
+        print_clean(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
+    } catch (const NotEnoughMemory& error) {
+        print_clean(stderr, "achilles: {}\n", error.what());
+        return stopped_early;
+    } catch (const std::bad_alloc&) {
+        std::fputs("achilles: there is not enough memory for this\n", stderr);
+        return stopped_early;
+    } catch (const std::system_error& error) {
+        print_clean(stderr, "achilles: {}\n", error.what());
+        if (error.code() == std::errc::resource_unavailable_try_again ||  // no thread, no process
+            error.code() == std::errc::not_enough_memory)
+            return stopped_early;
+    } catch (const std::exception& error) {
+        print_clean(stderr, "achilles: {}\n", error.what());
+    }
+    return bad_input;
+}
+
+}  // namespace achilles
