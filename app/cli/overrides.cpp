@@ -4,8 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "cli/terminal.hpp"
 #include "expression/nearest.hpp"
@@ -13,6 +14,7 @@
 #include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "system/input_error.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -22,18 +24,21 @@ double number_from(const std::string& option, std::string_view text) {
     try {
         return read_number(text).value;
     } catch (const ParseError& error) {
-        throw InputError(fmt::format("{} {}", option, shown(text)), {}, error.what());
+        const auto apart = measured(text);
+        throw apart ? InputError(fmt::format("{} {}", option, shown(text)), {}, "a value is a number without its unit",
+                                 fmt::format("write {} {}", option, apart->number))
+                    : InputError(fmt::format("{} {}", option, shown(text)), {}, error.what(), error.hint);
     }
 }
 
 namespace {
 
 int integer_from(const std::string& option, std::string_view text) {
-    int value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size())
-        throw InputError(fmt::format("{} {}", option, text), {}, "this is not a whole number");
-    return value;
+    const double value = number_from(option, text);
+    if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
+        throw InputError(fmt::format("{} {}", option, shown(text)), {},
+                         fmt::format("a whole number is expected, at most {}", std::numeric_limits<int>::max()));
+    return static_cast<int>(value);
 }
 
 }  // namespace
@@ -44,9 +49,9 @@ OptionValue value_from(const Option& option, const std::string& flag, const std:
     const auto found = std::find(option.words.begin(), option.words.end(), text);
     if (found != option.words.end()) return *found;
     const std::vector<std::string> choices(option.words.begin(), option.words.end());
-    throw InputError(fmt::format("{} {}", flag, text), {},
-                     fmt::format("there is no '{}' to choose{}", text, did_you_mean(text, choices)),
-                     fmt::format("the choice is {}", fmt::join(choices, " or ")));
+    throw InputError(fmt::format("{} {}", flag, shown(text)), {},
+                     "there is no such choice" + did_you_mean(text, choices),
+                     fmt::format("write {} {}", flag, fmt::join(choices, fmt::format(" or {} ", flag))));
 }
 
 const std::pair<const std::string, OptionValue>* OptionOverrides::given(const Option& option) const {
@@ -87,9 +92,27 @@ Options work_options(const OptionOverrides& overrides) {
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides) {
     Run run = default_run(description);
-    for (const std::string& setting : settings) assign(run, description, setting);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+        const auto has_value = [&](std::size_t k) { return settings[k].find('=') != std::string::npos; };
+        if (i + 1 < settings.size() && !has_value(i) && !has_value(i + 1))
+            throw InputError(fmt::format("--set {} {}", shown(settings[i]), shown(settings[i + 1])), {},
+                             "a name and its value are one word",
+                             fmt::format("write --set {}={}", settings[i], settings[i + 1]));
+        assign(run, description, settings[i]);
+    }
     apply(overrides, run.options);
     return run;
+}
+
+std::vector<std::string> fixed_names(const std::vector<std::string>& settings, const OptionOverrides& overrides) {
+    std::vector<std::string> names;
+    for (const std::string& setting : settings) {
+        std::string name = setting.substr(0, setting.find('='));
+        std::erase(name, ' ');
+        names.push_back(std::move(name));
+    }
+    for (const auto& [flag, value] : overrides.by_flag) names.push_back(flag);
+    return names;
 }
 
 namespace {

@@ -43,6 +43,9 @@ Options work_options(const OptionOverrides& overrides);
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides);
 
+// What a command line gives one value: the names of --set, and the flags of options.
+std::vector<std::string> fixed_names(const std::vector<std::string>& settings, const OptionOverrides& overrides);
+
 // The intervals among settings, which may be NAME=LOW..HIGH; `points` becomes the settings with the middle of each. Throws
 // InputError.
 Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,

@@ -159,18 +159,22 @@ void SweepOutput::make(const std::string& path, const std::function<void(const s
     }
 }
 
-void SweepOutput::draw(const EachRows& each_rows) const {
-    if (pictures_.files().empty()) return;
-    const Figure figure = pictures_.figure(each_rows);
+bool SweepOutput::draw(const EachRows& each_rows) {
+    if (pictures_.files().empty()) return true;
+    const std::optional<Figure> figure = pictures_.figure(each_rows);
+    if (!figure) return false;
     for (const std::string& picture : pictures_.files()) {
-        const std::string bytes = pictures_.bytes(figure, picture);
+        const std::string bytes = pictures_.bytes(*figure, picture);
         make(picture, [&](const std::string& path) { write_file(path, [&](int file) { put(file, bytes, path); }); });
+        made_.push_back(picture);
     }
+    return true;
 }
 
-void SweepOutput::finish() {
-    if (!log_) return;
+bool SweepOutput::finish() {
+    if (!log_) return true;
     if (!csv_.empty()) make(csv_, [&](const std::string& file) { write_csv(file); });
+    if (!csv_.empty() && csv_ != "-") made_.push_back(csv_);
     const EachRows each_rows = [&](const std::function<void(const Rows&)>& take) {
         log_->each([&](Chunk, std::string_view bytes) { take(rows_from(rows_in(bytes), table_)); });
     };
@@ -183,8 +187,10 @@ void SweepOutput::finish() {
                 fail(hdf5_, errno == 0 ? EIO : errno);
             }
         });
-    draw(each_rows);
+    if (!hdf5_.empty()) made_.push_back(hdf5_);
+    const bool is_drawn = draw(each_rows);
     log_->remove();
+    return is_drawn;
 }
 
 std::string SweepOutput::how_to_go_on() {

@@ -40,15 +40,18 @@ class SweepOutput {
     SweepKept kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
     // Takes what is kept of rows, in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
-    // Makes the files. Throws std::runtime_error; the log stays then.
-    void finish();
+    // Makes the files. False where a picture would be empty: it is not made then, and the others are. Throws
+    // std::runtime_error; the log stays then.
+    bool finish();
+    // Those that finish() has made.
+    const std::vector<std::string>& files() const { return made_; }
     // For a message: ": --resume goes on with F.part", "; they are kept in F.part ..." of all runs, or nothing.
     std::string how_to_go_on();
 
  private:
     SweepKey key() const;
     bool keeps_rows() const { return !hdf5_.empty() || !pictures_.files().empty(); }
-    void draw(const EachRows& each_rows) const;
+    bool draw(const EachRows& each_rows);
     std::string name_of_csv() const;
     void write_csv(const std::string& file) const;
     void make(const std::string& path, const std::function<void(const std::string& file)>& write) const;
@@ -59,6 +62,7 @@ class SweepOutput {
     bool units_;
     SweepOrigin origin_;
     OutputFiles files_;  // whether they can be written
+    std::vector<std::string> made_;
     std::unique_ptr<SweepLog> log_;
     int stream_ = -1;  // where there is no log
     std::uint64_t printed_ = 0;

@@ -54,7 +54,7 @@ void SweepPictures::try_to_draw() const {
     }
 }
 
-Figure SweepPictures::figure(const EachRows& each_rows) const {
+std::optional<Figure> SweepPictures::figure(const EachRows& each_rows) const {
     std::uint64_t count = 0;
     each_rows([&](const Rows& rows) { count += rows.count(); });
     const std::uint64_t every = (count + most_drawn_rows - 1) / most_drawn_rows;
@@ -68,7 +68,14 @@ Figure SweepPictures::figure(const EachRows& each_rows) const {
     if (every > 1)
         print_clean(stderr, "achilles: warning: of {} rows every {}th is drawn: a figure has room for {}\n", count,
                     every, most_drawn_rows);
-    return compose_sweep(data, asked_.look);
+    SweepLook look = asked_.look;
+    look.columns = columns_with_values(data, asked_.look);
+    const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one over the other
+    if (look.columns.empty() || (needs_both && look.columns.size() < 2)) {
+        print_clean(stderr, "achilles: nothing is drawn: no run has a value to draw\n");
+        return std::nullopt;
+    }
+    return compose_sweep(data, look);
 }
 
 PictureSize SweepPictures::size_for(const Figure& figure, const std::string& format) const {
@@ -102,10 +109,10 @@ void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, P
             job.check_rows(row_count);
         },
         stop);
-    const Figure figure = pictures.figure([&](const auto& take) {
+    const std::optional<Figure> figure = pictures.figure([&](const auto& take) {
         for (const Rows& rows : all) take(rows);
     });
-    job.keep(pictures.bytes(figure, pictures.files().front()));
+    if (figure) job.keep(pictures.bytes(*figure, pictures.files().front()));
 }
 
 }  // namespace achilles

@@ -1,6 +1,7 @@
 // The pictures of a sweep.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,10 @@ class SweepPictures {
     SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job);
 
     const std::vector<std::string>& files() const { return asked_.files; }
-    // Drawn from all rows at the end, of which it holds most_drawn_rows at most: of more, every second, third, ... one. Throws
+    // Drawn from all rows at the end, of which it holds most_drawn_rows at most: of more, every second, third, ... one. Columns
+    // without a value are left out; nothing where no column has one, which is said on standard error. Throws
     // std::runtime_error where it cannot be drawn.
-    Figure figure(const EachRows& each_rows) const;
+    std::optional<Figure> figure(const EachRows& each_rows) const;
     // As the name of such a file says. A height that is not asked for is no less than what its panels need.
     std::string bytes(const Figure& figure, const std::string& file) const;
 

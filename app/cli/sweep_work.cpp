@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "cli/sweep_summary.hpp"
 #include "cli/terminal.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
@@ -70,7 +71,9 @@ std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk) {
     const Rows rows = table.rows(chunk.first, chunk.count);
     RunFailures failures;
     failures.note(rows);
-    return failures.behind(kept_bytes(table, kept, rows));
+    SweepSummary summary(table);
+    summary.note(rows);
+    return summary.behind(failures.behind(kept_bytes(table, kept, rows)));
 }
 
 // Lines, and the system's file behind them.

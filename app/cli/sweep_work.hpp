@@ -28,7 +28,7 @@ class RunFailures {
     std::map<std::uint8_t, Kind> kinds_;
 };
 
-// The bytes of a chunk: what is kept of its rows, and their failures behind.
+// The bytes of a chunk: what is kept of its rows, behind them their failures and their summary.
 std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk);
 
 // What other processes are told of a sweep: neither files nor options of theirs are asked.

@@ -306,7 +306,10 @@ std::string command_for(const Session& session, const std::string& what) {
         words = {"sweep", name};
         for (const Flag& flag : read_flags(session.sweep_text(), "sweep"))
             words.insert(words.end(), {flag.name, flag.value});
-        words.insert(words.end(), options.begin(), options.end());
+        const Run& file = session.file_run();
+        const Run base = without_axes(session.run(), session.sweep().axes, file, session.description());
+        const Words fixed = run_options(session.description(), file, base);
+        words.insert(words.end(), fixed.begin(), fixed.end());
         words.insert(words.end(), {"--out", stem + "-sweep.svg"});
         return shell_line(words);
     }

@@ -100,8 +100,9 @@ py::dict told(const System& system, const SweepTable& table, Columns columns) {
     return result;
 }
 
-py::dict swept(const std::shared_ptr<const System>& system, const AskedSweep& sweep, const Asked& asked, int threads,
+py::dict swept(const std::shared_ptr<const System>& system, AskedSweep sweep, const Asked& asked, int threads,
                const py::object& progress) {
+    sweep.fixed = fixed_names(asked.settings, overrides_of(asked));
     const SweepTable table(system->model, make_sweep(sweep, run_of(*system, asked), system->model->description()));
     const std::uint64_t points = table.sweep().count();
     Columns columns;
@@ -128,7 +129,7 @@ void bind_sweeps(py::module_& module) {
                            std::vector<std::string> prints, const Text& at, const Text& after, const Text& random,
                            const Text& seed, std::vector<std::string> settings,
                            std::map<std::string, std::string> options, int threads, const py::object& progress) {
-        return swept(system, {std::move(over), std::move(prints), at, after, random, seed},
+        return swept(system, {std::move(over), std::move(prints), at, after, random, seed, {}},
                      {std::move(settings), std::move(options)}, threads, progress);
     });
 }

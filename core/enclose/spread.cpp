@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
+#include <utility>
 
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -28,13 +32,48 @@ Interval& place_of(Claim& claim, const SystemDescription& description, const std
 
 }  // namespace
 
+namespace {
+
+// An interval in another notation, as LOW..HIGH: 0.4:0.6, [0.4, 0.6], 0.5±0.1, 0.5+-0.1, 0.4...0.6; "" where it is none.
+std::string other_interval(std::string text) {
+    std::erase(text, ' ');
+    const auto between = [&](std::string_view sign) -> std::optional<std::pair<std::string, std::string>> {
+        const std::size_t at = text.find(sign);
+        if (at == text.npos || at == 0 || at + sign.size() >= text.size()) return std::nullopt;
+        return std::pair{text.substr(0, at), text.substr(at + sign.size())};
+    };
+    for (const char* sign : {"\u00b1", "+-", "+/-"})
+        if (const auto parts = between(sign)) {
+            try {
+                const double middle = read_number(parts->first).value, half = read_number(parts->second).value;
+                return fmt::format("{:.12g}..{:.12g}", middle - half, middle + half);
+            } catch (const ParseError&) {
+                return "";
+            }
+        }
+    if (text.starts_with("[") && text.ends_with("]")) text = text.substr(1, text.size() - 2);
+    for (const char* sign : {"...", ":", ",", "\u2026"})
+        if (const auto parts = between(sign); parts && parts->second.find_first_of(":,") == std::string::npos)
+            return parts->first + ".." + parts->second;
+    return "";
+}
+
+}  // namespace
+
 std::optional<Spread::Side> read_side(const std::string& setting, const SystemDescription& description) {
+    if (const std::size_t at = setting.find('='); at != setting.npos)
+        if (const std::string right = other_interval(setting.substr(at + 1)); !right.empty())
+            throw InputError("--set " + shown(setting), {}, "an interval is written LOW..HIGH",
+                             fmt::format("write --set {}={}", setting.substr(0, at), right));
     const std::size_t dots = setting.find(".."), equals = setting.find('=');
     if (dots == setting.npos || equals == setting.npos || dots < equals) return std::nullopt;
     Spread::Side side{setting.substr(0, equals)};
     side.name.erase(std::remove(side.name.begin(), side.name.end(), ' '), side.name.end());
     const std::array ends{setting.substr(0, dots), setting.substr(0, equals + 1) + setting.substr(dots + 2)};
     const std::array values{&side.low, &side.high};
+    if (dots == equals + 1 || dots + 2 == setting.size())
+        throw InputError("--set " + shown(setting), {}, "an end of the interval is missing",
+                         fmt::format("write --set {}=LOW..HIGH", side.name));
     for (std::size_t i = 0; i < 2; ++i) {
         Run run = default_run(description);
         assign(run, description, ends[i]);

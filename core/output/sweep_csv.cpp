@@ -1,6 +1,7 @@
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <iterator>
@@ -33,8 +34,13 @@ std::string quoted_cell(const std::string& text) {
 
 std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
     std::vector<SweepHeading> headings;
+    const std::vector<std::string>& prints = table.sweep().prints;
+    // A start that is also printed at the end would be a column of the same name.
+    const auto name_of = [&](const SweepAxis& axis) {
+        return axis.name + (std::find(prints.begin(), prints.end(), axis.name) == prints.end() ? "" : "(0)");
+    };
     for (const SweepAxis& axis : table.sweep().axes)
-        headings.push_back({axis.name, unit_of_axis(table.model().description(), axis.name)});
+        headings.push_back({name_of(axis), unit_of_axis(table.model().description(), axis.name)});
     if (table.is_section()) headings.insert(headings.end(), {{"t", "s"}, {"contact", ""}});
     for (const Column& column : table.measures().columns())
         if (column.kind != Column::Kind::outcome) headings.push_back({column.name, column.unit});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "model/behind.hpp"
 #include "number/ground.hpp"
@@ -124,6 +125,19 @@ void refuse_late(const Sweep& sweep) {
         throw InputError(fmt::format("--after {}", *sweep.at->after), {}, fmt::format("the runs end at {}", end));
 }
 
+// What passes zero along a run. A word that is nearly that of an event was meant to be it.
+Program section_program(const Model& model, const std::string& zero) {
+    try {
+        return behind("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
+    } catch (const InputError&) {
+        const std::vector<std::string> events{"impact", "zeno", "release"};
+        const std::string best = nearest(zero, events);
+        if (best.empty() && zero.find("event") == zero.npos) throw;
+        throw InputError("--at " + shown(zero), {}, "there is no such event",
+                         best.empty() ? "write --at impact, --at zeno or --at release" : "write --at " + best);
+    }
+}
+
 }  // namespace
 
 RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep) : model_(std::move(model)) {
@@ -153,7 +167,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
     if (!quantities.empty()) quantities_.emplace(model_, quantities, "--print");
     if (sweep.at && sweep.at->kind == Section::Kind::zero) {
         const std::string& zero = sweep.at->expression;
-        zero_ = behind("--at", zero, [&](std::span<const Text> one) { return model_->compile_view(one); });
+        zero_ = section_program(*model_, zero);
         zero_along_ = model_->compile_section({zero, {}});
         const std::vector<std::string> asked = names_in(zero);
         zero_has_work_ = std::find(asked.begin(), asked.end(), "work") != asked.end();

@@ -57,6 +57,17 @@ std::vector<const Option*> options_of_axis(std::string_view name) {
     return found;
 }
 
+Run without_axes(Run run, const std::vector<SweepAxis>& axes, const Run& file, const SystemDescription& description) {
+    Run from = file;
+    for (const SweepAxis& axis : axes) {
+        if (double* const place = find_value(description, run, axis.name))
+            *place = *find_value(description, from, axis.name);
+        else
+            for (const Option* option : options_of_axis(axis.name)) option->set(run.options, option->get(file.options));
+    }
+    return run;
+}
+
 std::string unit_of_axis(const SystemDescription& description, std::string_view name) {
     const std::string unit = unit_of(description, name);
     const std::vector<const Option*> options = options_of_axis(name);

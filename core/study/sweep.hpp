@@ -48,7 +48,7 @@ struct Section {
 };
 
 struct Sweep {
-    Run base;                            // what is not varied
+    Run base;                            // what is not varied; what an axis varies is as in the file
     std::vector<SweepAxis> axes;         // the first is slowest
     std::optional<RandomPoints> random;  // else a grid
     std::vector<std::string> prints;     // expressions over the end of a run, or a section of it (see RunMeasures)
@@ -66,6 +66,8 @@ struct Sweep {
 struct AskedSweep {
     std::vector<std::string> over{}, prints{};
     std::optional<std::string> at{}, after{}, random{}, seed{};
+    std::vector<std::string>
+        fixed{};  // names that have one value by --set, and flags of options: no axis may be one of them
 };
 // Throws InputError where it cannot be. Whether the expressions mean something, and a section comes before the end, is for
 // RunMeasures to say.
@@ -94,6 +96,9 @@ class SweepPoints {
     };
     std::vector<Place> places_;
 };
+
+// A run in which everything that an axis varies is as in `file`.
+Run without_axes(Run run, const std::vector<SweepAxis>& axes, const Run& file, const SystemDescription& description);
 
 // The options that a name stands for on an axis; none where it stands for none.
 std::vector<const Option*> options_of_axis(std::string_view name);

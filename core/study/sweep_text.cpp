@@ -1,5 +1,6 @@
 // A sweep as a line of text: what a person types, and what is wrong with it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -38,10 +39,9 @@ double number(std::string_view flag, std::string_view whole, std::string_view te
 std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::string_view text, double least) {
     const double value = number(flag, whole, text);
     if (!(value >= least) || value != std::floor(value))
-        throw refusal(
-            flag, whole,
-            fmt::format("the number of values is a whole number from {} on, and '{}' is none", least, trimmed(text)),
-            least > 1.0 ? "one value is --set" : "");
+        throw refusal(flag, whole,
+                      fmt::format("the number of values is a whole number from {} on, not {}", least, trimmed(text)),
+                      least > 1.0 ? "one value is --set" : "");
     if (value > static_cast<double>(most_points))
         throw refusal(flag, whole, fmt::format("a sweep has at most {} points", most_points));
     return static_cast<std::uint64_t>(value);
@@ -49,6 +49,29 @@ std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::s
 
 constexpr const char* how_to_vary =
     "write --over NAME=LOW:HIGH:COUNT, as in --over e=0:0.95:200, or e=log:1e-3:0.9:100";
+
+// "0:0.9:10" for 0..0.9:10, 0,0.9,10, [0,0.9,10] and linspace(0,0.9,10); "" where a text is none of these.
+std::string with_colons(std::string text) {
+    std::erase(text, ' ');
+    for (const char* call : {"np.linspace(", "linspace(", "["})
+        if (text.starts_with(call)) text = text.substr(std::string_view(call).size());
+    while (text.ends_with(')') || text.ends_with(']')) text.pop_back();
+    if (text.starts_with("lin:")) return text.substr(4);
+    bool changed = false;
+    for (const char* sign : {"...", "..", ","})
+        for (std::size_t at = text.find(sign); at != text.npos; at = text.find(sign), changed = true)
+            text.replace(at, std::string_view(sign).size(), ":");
+    const auto colons = std::count(text.begin(), text.end(), ':');
+    if (!changed || text.starts_with(':') || text.ends_with(':')) return "";
+    return colons == 1 ? text + ":COUNT" : colons == 2 ? text : "";
+}
+
+// LOW:STEP:HIGH, as Matlab has it, in our order; "" where the numbers cannot be that.
+std::string from_steps(double low, double step, double high) {
+    const double count = std::round((high - low) / step) + 1.0;
+    if (!(count >= 2.0 && count <= 1e6)) return "";
+    return fmt::format("{}:{}:{}", low, high, count);
+}
 
 std::vector<std::string_view> parts_of(std::string_view text) {
     std::vector<std::string_view> parts;
@@ -78,14 +101,33 @@ void check_name(const SweepAxis& axis, std::string_view text, const SystemDescri
             throw refusal("--over", text, fmt::format("{} must be positive, and {} is not", axis.name, end));
 }
 
+// The words behind one --over: "e 0 0.9 10" as e=0:0.9:10.
+InputError apart(const std::vector<std::string>& words) {
+    std::string values;
+    for (std::size_t i = 1; i < words.size(); ++i) values += (i == 1 ? "" : ":") + words[i];
+    return refusal("--over", fmt::format("{}", fmt::join(words, " ")), "an axis is one word",
+                   words.size() == 4 ? fmt::format("write --over {}={}", words[0], values) : how_to_vary);
+}
+
 SweepAxis read_axis(std::string_view text, const SystemDescription& description) {
-    const std::size_t equals = text.find('=');
+    const std::size_t equals = text.find('='), first_colon = text.find(':');
+    if (equals == text.npos && first_colon != text.npos)
+        throw refusal("--over", text, "an equals sign is missing",
+                      fmt::format("write --over {}={}", text.substr(0, first_colon), text.substr(first_colon + 1)));
     if (equals == text.npos) throw refusal("--over", text, "there are no values", how_to_vary);
     SweepAxis axis;
     axis.name = trimmed(text.substr(0, equals));
+    const std::string right = with_colons(std::string(text.substr(equals + 1)));
     std::vector<std::string_view> parts = parts_of(text.substr(equals + 1));
+    const bool is_decimal = parts.size() > 2 && right.find("COUNT") == right.npos;  // 0,1:1:3
+    if (!right.empty() && !is_decimal)
+        throw refusal("--over", text, "the limits and the number of values have colons between them",
+                      fmt::format("write --over {}={}", axis.name, right));
     axis.logarithmic = trimmed(parts.front()) == "log";
     if (axis.logarithmic) parts.erase(parts.begin());
+    if (parts.size() == 1 && !axis.logarithmic)
+        throw refusal("--over", text, "this is one value",
+                      fmt::format("write --over {0}=LOW:HIGH:COUNT; one value is --set {0}={1}", axis.name, parts[0]));
     if (parts.size() < 2 || parts.size() > 3)
         throw refusal("--over", text, "it has two limits and a number of values", how_to_vary);
     const std::string unit = unit_of(description, axis.name);
@@ -98,12 +140,21 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     if (!std::isfinite(axis.high - axis.low)) throw refusal("--over", text, "the limits are too far apart");
     if (axis.logarithmic && !(axis.low > 0.0 && axis.high > 0.0))
         throw refusal("--over", text, "the limits of a logarithmic axis are positive");
-    if (parts.size() == 3) axis.count = whole_number("--over", text, parts[2], 2.0);
+    if (parts.size() < 3) return axis;
+    const double count = number("--over", text, parts[2]);
+    const std::string ours = from_steps(axis.low, axis.high, count);
+    if (!ours.empty() && !axis.logarithmic && (count < 2.0 || count != std::floor(count)) && axis.high < count)
+        throw refusal("--over", text, "the order is LOW:HIGH:COUNT, and not LOW:STEP:HIGH",
+                      fmt::format("write --over {}={}", axis.name, ours));
+    axis.count = whole_number("--over", text, parts[2], 2.0);
     return axis;
 }
 
 std::vector<SweepAxis> read_axes(const std::vector<std::string>& over, const SystemDescription& description) {
     std::vector<SweepAxis> axes;
+    const auto has_no_values = [](const std::string& text) { return text.find_first_of("=:") == text.npos; };
+    const auto bare = std::find_if(over.begin(), over.end(), has_no_values);
+    if (const auto end = std::find_if_not(bare, over.end(), has_no_values); end - bare > 1) throw apart({bare, end});
     for (const std::string& text : over) {
         const SweepAxis axis = read_axis(text, description);
         for (const SweepAxis& other : axes)
@@ -137,12 +188,34 @@ std::optional<RandomPoints> read_random(const AskedSweep& asked, const std::vect
     return random;
 }
 
+// What stands between the commas outside of parentheses; digits around a comma are a decimal.
+std::vector<std::string> parts_between_commas(const std::string& text) {
+    std::vector<std::string> parts(1);
+    int depth = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto is_digit = [&](std::size_t k) { return k < text.size() && text[k] >= '0' && text[k] <= '9'; };
+        depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+        if (text[i] == ',' && depth == 0 && !(i > 0 && is_digit(i - 1) && is_digit(i + 1)))
+            parts.emplace_back();
+        else
+            parts.back() += text[i];
+    }
+    for (std::string& part : parts) part = trimmed(part);
+    return parts;
+}
+
 // In one line: a heading of a table has no other.
 std::string read_print(const std::string& text) {
     std::string print = trimmed(text);
     for (char& c : print)
         if (c == '\n' || c == '\t' || c == '\r') c = ' ';
     if (print.empty()) throw InputError("--print", {}, "an expression is missing");
+    if (const std::vector<std::string> several = parts_between_commas(print); several.size() > 1) {
+        std::string right = "write";
+        for (const std::string& one : several)
+            right += one.find(' ') == one.npos ? fmt::format(" --print {}", one) : fmt::format(" --print \"{}\"", one);
+        throw refusal("--print", print, "each expression has a --print of its own", right);
+    }
     return print;
 }
 
@@ -158,18 +231,44 @@ std::optional<Section> read_section(const AskedSweep& asked) {
                    : at == "release" ? Section::Kind::release
                                      : Section::Kind::zero;
     if (section.kind == Section::Kind::zero) section.expression = at;
+    if (!at.empty() && section.kind == Section::Kind::zero && names_in(at).empty())
+        throw refusal("--at", at, "a number never passes zero",
+                      fmt::format("write --at \"t - {}\" for an instant, or impact, zeno, release", at));
     if (at.empty()) throw InputError("--at", {}, "it is impact, zeno, release or an expression");
     if (!asked.after) return section;
     section.after = number("--after", *asked.after, *asked.after);
     return section;
 }
 
+// A name that has one value already.
+void refuse_fixed(const SweepAxis& axis, const std::vector<std::string>& fixed) {
+    for (const std::string& name : fixed) {
+        const std::vector<const Option*> options = options_of_axis(axis.name);
+        const bool is_option = std::any_of(options.begin(), options.end(), [&](const Option* option) {
+            return option->flag == name || "--" + std::string(option->command) == name;
+        });
+        if (name != axis.name && !is_option) continue;
+        const std::string given = is_option ? name : "--set " + name;
+        throw refusal("--over", axis.name, fmt::format("{} gives {} one value", given, axis.name),
+                      fmt::format("leave {} out, or --over {}", given, axis.name));
+    }
+}
+
+// A parameter that varies is a column already; of a start it is another quantity at the end.
+void refuse_axis(const std::string& print, const Sweep& sweep, const SystemDescription& description) {
+    for (const SweepAxis& axis : sweep.axes)
+        if (axis.name == print && std::none_of(description.coordinates.begin(), description.coordinates.end(),
+                                               [&](const auto& c) { return print == c.name || print == c.name + "'"; }))
+            throw refusal("--print", print, fmt::format("{} varies: it is a column already", print), "leave it out");
+}
+
 }  // namespace
 
 Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescription& description) {
     Sweep sweep;
-    sweep.base = base;
     sweep.axes = read_axes(asked.over, description);
+    for (const SweepAxis& axis : sweep.axes) refuse_fixed(axis, asked.fixed);
+    sweep.base = without_axes(base, sweep.axes, default_run(description), description);
     // Of a section one run may be enough.
     if (sweep.axes.empty() && (!asked.at || asked.random))
         throw InputError("--over", {}, "nothing is varied", how_to_vary);
@@ -183,6 +282,7 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
         const std::string print = read_print(text);
         if (std::find(sweep.prints.begin(), sweep.prints.end(), print) != sweep.prints.end())
             throw refusal("--print", print, "it is printed already");
+        refuse_axis(print, sweep, description);
         sweep.prints.push_back(print);
     }
     if (sweep.prints.empty())
@@ -275,7 +375,10 @@ Sweep read_sweep(std::string_view text, const SystemDescription& description) {
             only(asked.seed);
         } else if (flag == "--set") {
             assign(base, description, value);
-        } else if (!set_option(base, flag, value)) {
+            asked.fixed.push_back(trimmed(value.substr(0, value.find('='))));
+        } else if (set_option(base, flag, value)) {
+            asked.fixed.push_back(flag);
+        } else {
             throw InputError("sweep", {},
                              fmt::format("'{}' is not expected here{}", shown(flag), did_you_mean(flag, known)));
         }

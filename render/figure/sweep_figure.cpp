@@ -72,6 +72,17 @@ std::vector<std::string> left_out(const SweepData& data, const SweepLook& look) 
     return names;
 }
 
+std::vector<std::size_t> columns_with_values(const SweepData& data, const SweepLook& look) {
+    std::vector<std::size_t> found;
+    for (const std::size_t column : columns_of(data, look)) {
+        const SweepColumn one(data, column);
+        bool has_value = false;
+        for (std::size_t row = 0; row < data.count() && !has_value; ++row) has_value = one.has_value(row);
+        if (has_value && (one.is_number() || !data.is_section())) found.push_back(column);
+    }
+    return found;
+}
+
 namespace {
 
 // Of a grid over one axis: numbers of one unit share a panel.

@@ -37,6 +37,9 @@ void check_drawn(const SweepData& data, const SweepLook& look);
 // The columns that are left out of the figure: the words of a section have no place in it.
 std::vector<std::string> left_out(const SweepData& data, const SweepLook& look);
 
+// The columns that the figure has and that some row has a value of, as `look` names them: of a section those of numbers.
+std::vector<std::size_t> columns_with_values(const SweepData& data, const SweepLook& look);
+
 // Of a grid over one axis, columns with one unit are curves of a panel: without a value they have a gap, and where the
 // sequence of events changes a break, as what is plotted may jump there. Over two axes every column is a map: numbers in
 // number_color() with their bar, classes in the hues of phases and events, a thin line between cells of different sequences.

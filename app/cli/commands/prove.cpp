@@ -51,12 +51,12 @@ std::vector<double> times_of(const ProveArguments& arguments, const Run& run) {
 }
 
 int run(const ProveArguments& arguments) {
-    const SystemDescription description = read_system(find_system(arguments.system));
+    const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
     std::vector<std::string> points;
     Claim claim = claim_of(arguments, description, points);
     const auto model = std::make_shared<const Model>(description);
-    check(*model, claim);
     check_asked(*model, claim.run, points);
+    check(*model, claim);
     claim.times = times_of(arguments, claim.run);
     warn(description, claim.run);
     OutputFiles files;

@@ -1,5 +1,6 @@
 // sweep: many runs as a table and pictures of it.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -12,6 +13,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/sweep_output.hpp"
+#include "cli/sweep_summary.hpp"
 #include "cli/sweep_work.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
@@ -66,11 +68,25 @@ void warn_of(const SystemDescription& description, const Sweep& sweep) {
     }
 }
 
+// On standard error where files hold the table or a person reads: what the runs came to, and which files there are. What
+// exists in no run is said in any case.
+void print_summary(const SweepSummary& summary, const SweepOutput& output) {
+    const std::vector<std::string> files = output.files();
+    if (files.empty() && ::isatty(STDERR_FILENO) == 0) {
+        for (const std::string& sentence : summary.nowhere()) print_clean(stderr, "achilles: warning: {}\n", sentence);
+        return;
+    }
+    print_clean(stderr, "{}", summary.text());
+    for (const std::string& file : files) print_clean(stderr, "wrote {}\n", file);
+}
+
 // `ranks`: the other processes that share it; may be null.
 int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = asked_run(description, arguments.settings, arguments.overrides);
-    const Sweep sweep = make_sweep(arguments.asked, base, description);
+    AskedSweep asked = arguments.asked;
+    if (!job.reproduces()) asked.fixed = fixed_names(arguments.settings, arguments.overrides);
+    const Sweep sweep = make_sweep(asked, base, description);
     job.check(sweep);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
     if (job.reproduces()) {
@@ -85,9 +101,10 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     Progress progress(points - output.done(), "runs");
     const std::uint64_t before = output.done();
     RunFailures failures;
+    SweepSummary summary(table);
     const auto task = [&](Chunk chunk) { return sweep_chunk(table, output.kept(), chunk); };
     const auto write = [&](Chunk chunk, const std::string& bytes) {
-        output.append(chunk, failures.take(bytes));
+        output.append(chunk, failures.take(summary.take(bytes)));
         progress.show(chunk.first + chunk.count - before);
     };
     const auto do_all = [&] {
@@ -97,10 +114,11 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     };
     try {
         if (do_all()) {
-            output.finish();
+            const bool is_drawn = output.finish();
             progress.end();
+            print_summary(summary, output);
             failures.tell(table);
-            return reached_end;
+            return is_drawn ? reached_end : stopped_early;
         }
     } catch (const std::system_error& problem) {
         progress.end();
