@@ -194,10 +194,20 @@ def test_figures(program, tmp_path):
         run.figure(size=(10, 10))
     with pytest.raises(ValueError, match="ends in none of .svg, .png and .pdf"):
         figure.save(tmp_path / "f.jpg")
-    with pytest.raises(TypeError, match="size: .width, height. in pixels is expected, not 600"):
+    with pytest.raises(TypeError, match="size: .width, height. in pixels is expected, as .1200, 800., not 600"):
         run.figure(size=600)
     with pytest.raises(TypeError, match="scale: a number is expected, not str"):
         run.figure(scale="large")
+    with pytest.raises(TypeError, match=r"size: two numbers are expected, not a text; write size=\(800, 600\)"):
+        run.figure(size="800x600")
+    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, as \(1200, 800\), not 'large'"):
+        run.figure(size="large")
+    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, as \(1200, 800\), not \(1, 2, 3\)"):
+        run.figure(size=(1, 2, 3))
+    with pytest.raises(achilles.InputError, match="size: a whole number from 64 to 16384 is expected, not 600.5"):
+        run.figure(size=(800, 600.5))
+    with pytest.raises(achilles.InputError, match="columns: a whole number from 0 to 20 is expected, not 1.5"):
+        run.figure(columns=1.5)
     assert not (tmp_path / "f.jpg").exists()
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import numbers
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from . import _core
@@ -41,6 +41,23 @@ def number_in(name: str, value: object, least: float, most: float) -> float:
     if not least <= number <= most:
         raise InputError(f"{name}: {value} does not lie in [{least}, {most}]")
     return number
+
+
+def whole_number_in(name: str, value: object, least: int, most: int) -> int:
+    """A whole number that lies between these."""
+    number = number_in(name, value, least, most)
+    if number != int(number):
+        raise InputError(f"{name}: a whole number from {least} to {most} is expected, not {value}")
+    return int(number)
+
+
+def texts_in(name: str, value: object, example: str) -> list[str]:
+    """A text, or several."""
+    texts = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [value]
+    for text in texts:
+        if not isinstance(text, str):
+            raise TypeError(f"{name}: a text such as {example!r} is expected, or a list of them, not {_kind(text)}")
+    return texts
 
 
 def _kind(value: object) -> str:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from typing import Any
 
 from . import _core
-from ._asked import number_in
+from ._asked import number_in, whole_number_in
 from ._errors import InputError
 
 
@@ -51,11 +52,21 @@ def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tupl
         if view not in known:
             guess = _core.did_you_mean(view, list(known)) if isinstance(view, str) else ""
             raise InputError(f"this system has no view '{view}'{guess}\nits views are: {', '.join(known)}")
-    try:
-        width, height = size
-    except TypeError:
-        raise TypeError(f"size: (width, height) in pixels is expected, not {size!r}") from None
-    pixels = (int(number_in("size", width, 64, 16384)), int(number_in("size", height, 64, 16384)))
+    pixels = _pixels(size)
     page = tuple(number_in(name, value, 0, 1e6) for name, value in paper.items())
     return Figure(drawn, (list(views), pixels, number_in("scale", scale, 0.25, 8), page,
-                          int(number_in("columns", columns, 0, 20)), bool(dark), bool(transparent)))
+                          whole_number_in("columns", columns, 0, 20), bool(dark), bool(transparent)))
+
+
+def _pixels(size: Any) -> tuple[int, int]:
+    """Width and height; "800x600" is how the command line has them."""
+    typed = re.fullmatch(r"\s*(\d+)\s*[x*,]\s*(\d+)\s*", size) if isinstance(size, str) else None
+    if typed:
+        raise TypeError(f"size: two numbers are expected, not a text; write size=({typed[1]}, {typed[2]})")
+    try:
+        if isinstance(size, str):
+            raise TypeError
+        width, height = size
+    except (TypeError, ValueError):
+        raise TypeError(f"size: (width, height) in pixels is expected, as (1200, 800), not {size!r}") from None
+    return whole_number_in("size", width, 64, 16384), whole_number_in("size", height, 64, 16384)

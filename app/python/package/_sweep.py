@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._asked import Asked, text_of, with_options
+from ._asked import Asked, text_of, texts_in, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._system import System, system_of
 
@@ -115,10 +115,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
     if progress is not None and not callable(progress):
         raise TypeError("progress: a function of (done, count) is expected")
     asked = Asked(what._core, set, values)
-    prints = [print] if isinstance(print, str) else list(print)
-    for one in prints:
-        if not isinstance(one, str):
-            raise TypeError(f"print: a text such as \"zeno_time(2)\" is expected, not {type(one).__name__}")
+    prints = texts_in("print", print, "zeno_time(2)")
 
     def text(name: str, value: object) -> str | None:
         return None if value is None else text_of(name, value)
