@@ -68,8 +68,8 @@ std::string with_colons(std::string text) {
 
 // LOW:STEP:HIGH, as Matlab has it, in our order; "" where the numbers cannot be that.
 std::string from_steps(double low, double step, double high) {
-    const double count = std::round((high - low) / step) + 1.0;
-    if (!(count >= 2.0 && count <= 1e6)) return "";
+    const double steps = (high - low) / step, count = std::round(steps) + 1.0;
+    if (!(count >= 2.0 && count <= 1e6) || std::abs(steps - std::round(steps)) > 1e-6) return "";
     return fmt::format("{}:{}:{}", low, high, count);
 }
 

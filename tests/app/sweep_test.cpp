@@ -1,4 +1,5 @@
 // `achilles sweep` as a user meets it: its files, what ends it early, and what goes on from there.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -204,7 +205,8 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
         {"sweep ./drop.toml --over y=1:2:0 --print t --csv a.csv", "--over y=1:2:0: the number of values is a whole"},
         {"sweep ./drop.toml --over y=1:2:5 --print tt --csv a.csv",
          "--print tt: unknown name 'tt'; did you mean 't'?\n    tt\n    ^\n"},
-        {sweep + "--at impcat", "--at impcat: unknown name 'impcat'"},
+        {sweep + "--at impcat", "--at impcat: there is no such event\nwrite --at impact"},
+        {sweep + "--set y=1.5", "--over y: --set y gives y one value\nleave --set y out, or --over y"},
         {sweep + "--threads 0", "--threads 0: a whole number from 1 to 1024 is expected"},
         {sweep + "--units --hdf5 a.h5", "--units: this needs --csv F"},
         {sweep + "--hdf5 -", "--hdf5 -: HDF5 is written into a file"},
@@ -276,6 +278,51 @@ TEST(SweepCommand, PrintsDerivatives) {
     EXPECT_EQ(refused.status, 2);
     EXPECT_EQ(refused.err.rfind("--print d(impacts, e): 'impacts' is a whole number", 0), 0u) << refused.err;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "b.csv"));
+}
+
+TEST(SweepCommand, SaysWhatItCameToWhereAFileIsNamed) {
+    const Folder folder;
+    const std::string sweep = "sweep ball_on_sine --over e=0:0.95:9 --print \"zeno_time(2)\" ";
+    const Answer answer = folder.run(sweep + "--csv curve.csv");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.out, "");
+    // The range is that of the column.
+    double low = 1e9, high = -1e9;
+    int there = 0;
+    const auto lines = lines_of(content(folder.path() / "curve.csv"));
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+        const std::string cell = cells_of(lines[i])[1];
+        if (cell.empty()) continue;
+        ++there, low = std::min(low, std::stod(cell)), high = std::max(high, std::stod(cell));
+    }
+    ASSERT_TRUE(there > 0 && there < 9) << there;
+    const std::string range = fmt::format("zeno_time(2)   {:.6g} to {:.6g} s in {} runs; does not exist in {} (", low,
+                                          high, there, 9 - there);
+    EXPECT_EQ(
+        answer.err.rfind("Ball bouncing on a sinusoidal surface: 9 runs, all reached the end time\n  " + range, 0), 0U)
+        << answer.err << range;
+    EXPECT_NE(answer.err.find(")\nwrote curve.csv\n"), std::string::npos) << answer.err;
+    EXPECT_EQ(folder.run(sweep).err, "") << "standard output is the table, and nobody reads the other stream";
+}
+
+TEST(SweepCommand, SaysWhatExistsInNoRunAndDrawsNothingOfIt) {
+    const Folder folder;
+    const std::string sweep = "sweep ball_on_sine --over e=0.1:0.5:3 --end 1 --print \"zeno_time(1)\" ";
+    EXPECT_EQ(folder.run(sweep).err, "achilles: warning: zeno_time(1) exists in none of the 3 runs\n");
+    const Answer nothing = folder.run(sweep + "--csv a.csv --out a.svg");
+    EXPECT_EQ(nothing.status, 3);
+    EXPECT_NE(nothing.err.find("nothing is drawn"), std::string::npos) << nothing.err;
+    EXPECT_NE(nothing.err.find("zeno_time(1)   exists in none of the 3 runs\nwrote a.csv\n"), std::string::npos)
+        << nothing.err;
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"a.csv"});
+    const Answer other = folder.run(sweep + "--print x --out b.svg");
+    EXPECT_EQ(other.status, 0) << other.err;
+    EXPECT_EQ(content(folder.path() / "b.svg").find("Zeno time"), std::string::npos) << "it has no panel";
+}
+
+TEST(SweepCommand, HasNoTwoColumnsOfOneName) {
+    const Answer answer = Folder().run("sweep ball_on_sine --over x=0:1:3 --over \"x'=1:2:2\" --print x --end 1");
+    EXPECT_EQ(answer.out.substr(0, answer.out.find('\n')), "x(0),x',x,outcome");
 }
 
 // ---- HDF5 ----

@@ -48,8 +48,7 @@ const Change with_advice[] = {
      "f.toml:4:6: not valid TOML: expected '=', saw ':'\n    start: 1\n         ^\nwrite an equals sign: start = 1"},
     {"[truncation]", "[run]",
      "f.toml:22:1: not valid TOML: cannot redefine existing table 'run'\n    [run]\n    ^\nits keys stand in one "
-     "table: put "
-     "them together"},
+     "table: write them all under the first [run]"},
     {"[[coordinate]]", "[coordinate]",
      "f.toml:6:1: not valid TOML: cannot redefine existing table 'coordinate' as array-of-tables\n    [[coordinate]]\n "
      "   "
@@ -71,17 +70,33 @@ const Change with_advice[] = {
      "values "
      "in degrees as \"30 deg\""},
     {"start = 1\n", "start = \"1.0 m\"\n",
-     "f.toml:4:14: 'start' in [[coordinate]]: '1.0 m' is not a finite number: 'm' may not follow a number: it is "
-     "written without its unit (a file has the key unit for that), and a product with '*'\n    start = \"1.0 m\"\n     "
-     "            ^"},
+     "f.toml:4:10: 'start' in [[coordinate]] is a number without its unit\n    start = \"1.0 m\"\n             "
+     "^\nwrite "
+     "start = 1.0, and unit = \"m\" in a line of its own"},
     {"start = 1\n", "start = 1 m\n",
      "f.toml:4:11: not valid TOML: expected a comment or whitespace, saw 'm'\n    start = 1 m\n              ^\nwrite "
      "the "
      "number alone, without its unit: start = 1"},
     {"value = 2\n", "value = \"5 s\"\n",
-     "f.toml:10:12: 's' may not follow a number: it is written without its unit (a file has the key unit for that), "
-     "and a product with '*'\n    "
-     "value = \"5 s\"\n               ^"},
+     "f.toml:10:10: 'value' in [[parameter]] is a number without its unit\n    value = \"5 s\"\n             ^\nwrite "
+     "value "
+     "= 5, and unit = \"s\" in a line of its own"},
+    {"[[parameter]]", "[parameter]",
+     "f.toml:11:1: not valid TOML: cannot redefine existing table 'parameter' as array-of-tables\n    [[parameter]]\n  "
+     "  "
+     "^\nwrite [[parameter]] each time: one above has single brackets"},
+    {"[lagrangian]", "[[lagrangian]]",
+     "f.toml:14:1: [lagrangian] must be a table, not an array\n    [[lagrangian]]\n    ^\nwrite [lagrangian] once, and "
+     "its "
+     "keys below"},
+    {"gap = \"x", "friction = 0.3\ngap = \"x",
+     "f.toml:18:1: unknown key 'friction' in [[constraint]]\n    friction = 0.3\n    ^\ncontacts have no friction "
+     "here: "
+     "leave it out"},
+    {"\"m*x\"", "\"0.5x\u00b2\"",
+     "f.toml:16:17: an operator is missing here; write '*' for a product\n    potential = \"0.5x\u00b2\"\n             "
+     "   "
+     "    ^\nwrite 0.5*x^2"},
     {"rate = 0.5", "rate = \"20 deg\"\nunit = \"m\"",
      "f.toml:5:12: 'rate' in [[coordinate]]: '20 deg' is not a finite number: 'deg' may follow a number where the unit "
      "is "
@@ -91,27 +106,31 @@ INSTANTIATE_TEST_SUITE_P(Lines, Advice, testing::ValuesIn(with_advice));
 
 const Change of_other_languages[] = {
     {"\"m*x\"", "\"m\u00b7x\"",
-     "f.toml:16:15: unexpected '\u00b7'; write '*' for a product\n    potential = \"m\u00b7x\"\n                  ^"},
+     "f.toml:16:15: unexpected '\u00b7'; write '*' for a product\n    potential = \"m\u00b7x\"\n                  "
+     "^\nwrite m*x"},
     {"\"m*x\"", "\"m*x\u00b2\"",
-     "f.toml:16:17: unexpected '\u00b2'; write ^2\n    potential = \"m*x\u00b2\"\n                    ^"},
+     "f.toml:16:17: unexpected '\u00b2'; write ^2\n    potential = \"m*x\u00b2\"\n                    ^\nwrite m*x^2"},
     {"\"m*x\"", "\"m*x \u2212 1\"",
      "f.toml:16:18: unexpected '\u2212'; write the minus sign of the keyboard, -\n    potential = \"m*x \u2212 1\"\n   "
      "     "
-     "             ^"},
-    {"\"m*x\"", "\"m.*x\"", "f.toml:16:15: unexpected '.'; write '*'\n    potential = \"m.*x\"\n                  ^"},
+     "             ^\nwrite m*x - 1"},
+    {"\"m*x\"", "\"m.*x\"",
+     "f.toml:16:15: unexpected '.'; write '*'\n    potential = \"m.*x\"\n                  ^\nwrite m*x"},
     {"\"m*x\"", "\"pi()*x\"",
      "f.toml:16:14: 'pi' is not a function; write '*' for a product\n    potential = \"pi()*x\"\n                 ^"},
     {"\"m*x\"", "\"V = m*x\"",
-     "f.toml:16:14: an expression stands alone, without 'V' and '='\n    potential = \"V = m*x\"\n                 ^"},
+     "f.toml:16:14: an expression stands alone, without 'V' and '='\n    potential = \"V = m*x\"\n                 "
+     "^\nwrite m*x"},
     {"\"m*x\"", "\"pow(x, 2)\"",
-     "f.toml:16:14: unknown function 'pow'; a power is written x^2\n    potential = \"pow(x, 2)\"\n                 ^"},
+     "f.toml:16:14: unknown function 'pow'; a power is written x^2\n    potential = \"pow(x, 2)\"\n                 "
+     "^\nwrite x^2"},
     {"\"m*x\"", "\"np.sin(x)\"",
      "f.toml:16:14: unknown name 'np'; functions stand alone: sin(x)\n    potential = \"np.sin(x)\"\n                 "
-     "^"},
+     "^\nwrite sin(x)"},
     {"\"x - sin(theta)/9\"", "\"x >= 0\"",
      "f.toml:18:10: unexpected '>'; an expression stands alone: a gap is open where it is positive\n    gap = \"x >= "
      "0\"\n    "
-     "         ^"},
+     "         ^\nwrite x"},
     {"y = [\"gap'\"]", "y = [\"h\", \"v\", \"E\"]",
      "f.toml:31:7: unknown name 'h'; the gap is called gap\n    y = [\"h\", \"v\", \"E\"]\n          "
      "^\n\nf.toml:31:12: "
