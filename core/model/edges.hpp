@@ -8,6 +8,9 @@
 //     sqrt(u), u^a (a no integer), log(u)     d = sqrt(u)
 //     asin(u), acos(u)                        d = sqrt(1 - u^2)
 //
+//     a/b, b^-n, tan(u)                       d = b^2 of each factor of the divisor, of cos(u)
+//
+// Quotients have poles there, which a coefficient below the tolerance hides from the series of the motion.
 // The series of d changes its sign where u touches the edge, and comes close to zero where u nearly does.
 //
 // In the same way a function may hide: exp(-400 (x - 1)^2) is nothing at x = 0.6, in all the digits of the terms that a

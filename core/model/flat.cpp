@@ -1,8 +1,38 @@
 #include "model/flat.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 
+#include "expression/graph.hpp"
+
 namespace achilles {
+
+namespace {
+
+// The factors of a product, as text, that depend on coordinates or the time.
+void add_factors(const Model& model, Expression product, std::vector<std::string>& factors) {
+    const Graph::Node& node = Builder::node(product);
+    if (node.operation == Operation::multiply) {
+        add_factors(model, {&product.graph(), node.a}, factors);
+        return add_factors(model, {&product.graph(), node.b}, factors);
+    }
+    const Layout& layout = model.layout();
+    std::vector<std::uint32_t> moving{layout.t()};
+    for (std::size_t i = 0; i < layout.dof; ++i) moving.push_back(layout.q(i));
+    if (depends_on(product, moving)) factors.push_back(to_text(product, model.slot_names()));
+}
+
+}  // namespace
+
+std::string product_hint(const Model& model, std::size_t contact) {
+    std::vector<std::string> factors;
+    add_factors(model, model.equations().gaps[contact], factors);
+    if (factors.size() < 2) return "";
+    return fmt::format("the gap is a product; write one [[constraint]] for each factor: gap = \"{}\"",
+                       fmt::join(factors, "\", gap = \""));
+}
 
 bool is_flat(const Model& model, std::span<const double> parameters, const State& state, std::size_t contact) {
     const Layout& layout = model.layout();

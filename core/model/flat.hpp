@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "model/model.hpp"
 
@@ -13,5 +14,8 @@ bool is_flat(const Model& model, std::span<const double> parameters, const State
 
 // What would be right.
 inline constexpr const char* flat_hint = "write a gap whose dh is not 0 where h = 0, as x in place of x^2 or x^3";
+
+// Where a gap is a product of several factors that move, as y*(y - x): one for each of them. Empty for other gaps.
+std::string product_hint(const Model& model, std::size_t contact);
 
 }  // namespace achilles

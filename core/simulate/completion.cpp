@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "model/flat.hpp"
 #include "simulate/execution.hpp"
 
 namespace achilles {
@@ -242,9 +243,10 @@ void Execution::release(std::size_t which) {
         return gone.empty() ? carry_on() : leave(gone);
     }
     if (!leaves) {
-        stop(Outcome::Kind::undecided,
-             "the contact force touches zero and h''' > 0 is not proved at " + where(next_.state));
-        return;
+        const std::string hint = product_hint(*model_, which);
+        return stop(Outcome::Kind::undecided,
+                    fmt::format("the contact force touches zero and h''' > 0 is not proved at {}{}{}",
+                                where(next_.state), hint.empty() ? "" : "; ", hint));
     }
     next_.held = held.without(which);
     next_.starts[which] = {{0.0, 0.0}, 3};

@@ -103,6 +103,24 @@ TEST(Domain, AFlatGapIsToldWithAdvice) {
     EXPECT_NE(message.find("; write a gap whose dh is not 0 where h = 0"), std::string::npos) << message;
 }
 
+// Where the factors of a gap meet, no normal is left: the advice is a constraint for each.
+TEST(Domain, AProductOfGapsIsToldWithAdvice) {
+    const auto with_gap = [](const std::string& gap) {
+        const auto model = test::typed(
+            "title = \"corner\"\n[[coordinate]]\nname = \"x\"\nstart = 0.5\nrate = 0.2\n[[coordinate]]\nname = \"y\"\n"
+            "start = 0.9\n[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"9.81*y\"\n[[constraint]]\ngap = "
+            "\"" +
+            gap + "\"\nrestitution = 0.5\n");
+        return simulate(model, model->default_run()).outcome;
+    };
+    const Outcome corner = with_gap("2*y*(y - x + 1)");
+    EXPECT_EQ(corner.kind, Outcome::Kind::undecided);
+    EXPECT_NE(corner.message.find("; the gap is a product; write one [[constraint]] for each factor: gap = \""),
+              std::string::npos)
+        << corner.message;
+    EXPECT_NE(corner.message.find("gap = \"y - x + 1\""), std::string::npos) << corner.message;
+}
+
 // A run away to infinity crosses no edge: it has another outcome.
 TEST(Domain, InfinityIsNoEdge) {
     const auto model = test::typed(
