@@ -61,7 +61,8 @@ class Model {
         ProgramOf<Definition7Terms> definition7_terms;
     };
     const ContactPrograms& programs_of(std::size_t contact, ContactSet held = {}) const;
-    // Whether hddot of a contact is 0 at every state along the motion that holds these: its gap stays 0 with theirs.
+    // Whether hddot of a contact, along the motion that holds these, is proved to be 0 wherever h = hdot = 0 of it and of those,
+    // whatever the parameters: its gap stays 0 with theirs, and nothing presses it (theory-gaps.md 2.7).
     bool is_carried(std::size_t contact, ContactSet held) const;
 
     // Programs, compiled once.
