@@ -51,9 +51,11 @@ std::string other_interval(std::string text) {
                 return "";
             }
         }
-    if (text.starts_with("[") && text.ends_with("]")) text = text.substr(1, text.size() - 2);
+    const bool is_list = text.starts_with("[") && text.ends_with("]");  // else a comma is a decimal's
+    if (is_list) text = text.substr(1, text.size() - 2);
     for (const char* sign : {"...", ":", ",", "\u2026"})
-        if (const auto parts = between(sign); parts && parts->second.find_first_of(":,") == std::string::npos)
+        if (const auto parts = between(sign);
+            parts && (is_list || *sign != ',') && parts->second.find_first_of(":,") == std::string::npos)
             return parts->first + ".." + parts->second;
     return "";
 }

@@ -34,7 +34,8 @@ class Reader {
                 // With a guess in it, nothing but another name can be blamed.
                 const bool is_told = error.name.empty() ? !is_certain : excuse(error.name, scope);
                 if (!is_told) mistakes_.add({place_in(text, error.offset), error.what(), error.hint});
-                if (error.name.empty() || !go_on(error.name, scope)) return std::nullopt;
+                // A hint is the whole text as it was meant.
+                if (error.name.empty() || !error.hint.empty() || !go_on(error.name, scope)) return std::nullopt;
             }
         }
     }

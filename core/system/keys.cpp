@@ -135,7 +135,7 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
         {"constraint", "contact collision impact guard unilateral"},
         {"view", "plot figure"},
         {"drawing", "graphics geometry visual"},
-        {"lagrangian", "energy dynamics"}};
+        {"lagrangian", "energy dynamics lagrange"}};
     for (const Other& other : others) {
         const bool is_here = std::find(keys.begin(), keys.end(), other.key) != keys.end();
         if (is_here && has_word(other.words, word)) return std::string(other.key);

@@ -151,6 +151,7 @@ class CommandLine {
         const CLI::Option* option = named_in(what);
         if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr && option != nullptr) {
             std::string choices = option->get_type_name();
+            choices.resize(std::min(choices.find(":{"), choices.size()));  // CLI11 repeats them
             for (std::size_t bar = choices.find('|'); bar != choices.npos; bar = choices.find('|'))
                 choices.replace(bar, 1, choices.find('|', bar + 1) == choices.npos ? " or " : ", ");
             return message(fmt::format("{} is {}", option->get_name(), choices), "");
