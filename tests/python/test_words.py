@@ -90,9 +90,9 @@ def test_mistakes_of_a_file_are_told_with_their_places(tmp_path, program):
     ({"e": 2}, "^e=2: "),
     ({"e": float("nan")}, "^e=nan: "),
     ({"e": "1/0"}, "^e=1/0: "),
-    ({"method": "tailor"}, "there is no 'tailor' to choose; did you mean 'taylor'"),
+    ({"method": "tailor"}, "there is no such choice; did you mean 'taylor'"),
     ({"end": -1}, "^end"),
-    ({"max_steps": 1.5}, "max_steps 1.5: this is not a whole number"),
+    ({"max_steps": 1.5}, "max_steps 1.5: a whole number is expected"),
     ({"set": {"y": -3}}, "^y=-3: "),
 ])
 def test_what_is_wrong(words, told):
