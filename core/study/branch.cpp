@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "model/model.hpp"
 #include "study/orbit_start.hpp"
 
 namespace achilles {
@@ -39,7 +40,7 @@ class Walk {
                 }
                 next = stepped(ds);
             } catch (const NoOrbit& none) {
-                if ((ds *= 0.5) < shortest_step) return none.what();
+                if ((ds *= 0.5) < shortest_step) return end_reason(none);
                 continue;
             }
             const double turn = at_.tangent.dot(next->tangent);
@@ -100,6 +101,31 @@ class Walk {
         if (at_.tangent.dot(end.tangent) < 0.0) end.tangent = -end.tangent;
         find_events(end, std::nullopt);
         points_.push_back(point);
+    }
+
+    // The largest value of any gap at step ends, in the middle of steps and at events.
+    double largest_gap() const {
+        const Trajectory& run = at_.shot.run;
+        const Model& model = *run.model;
+        double largest = 0.0;
+        for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
+            Evaluator<double> gap = model.evaluator(model.gap(contact), run.run.parameters);
+            for (const Piece& piece : run.pieces)
+                for (const double t : {0.5 * (piece.start + piece.end), piece.end}) {
+                    set_state(gap, state_in(piece, run.coefficients, model.dof(), t));
+                    gap.run();
+                    largest = std::max(largest, gap.output(0));
+                }
+        }
+        return largest;
+    }
+
+    // Why no step leads further: the flights shrink to nothing as the parameter approaches its value, or what the search says.
+    std::string end_reason(const NoOrbit& none) const {
+        constexpr double low = 1e-7;  // of the way that the system moves in a period
+        const double way = at_.shot.run.run.v.cwiseAbs().maxCoeff() * at_.lap.period, gap = largest_gap();
+        if (!(gap < low * way)) return none.what();
+        return fmt::format("the flights shrink to nothing: the gap is never above {:.1e} at {:.6g}", gap, value_of(at_));
     }
 
     // ---- what happens between two points ----

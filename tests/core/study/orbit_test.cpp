@@ -153,6 +153,16 @@ TEST(Branch, OfTheBallDownAWaveLosesItsZenoPointWhereItIsPinned) {
 const std::vector<std::string> ones{"L1=1",   "L2=1",        "g=1",         "d=0",          "tau=0.2",
                                     "om=0.8", "theta1=0.98", "theta2=0.08", "theta1'=0.64", "theta2'=0.3"};
 
+// At b = 0 nothing drives the ball: its flights become lower and lower on the way there, and the branch ends for that reason.
+TEST(Branch, SaysThatTheFlightsVanish) {
+    const auto model = load("ball_down_a_wave");
+    const Branch branch = followed(model, asked(*model, {}), "b", 0.0, 0.06);
+    EXPECT_LT(branch.value(branch.points.front()), 1e-6);
+    EXPECT_NE(branch.ends[0].find("the flights shrink to nothing: the gap is never above"), std::string::npos)
+        << branch.ends[0];
+    EXPECT_EQ(branch.value(branch.points.back()), 0.06);
+}
+
 TEST(Orbit, OfTheDrivenPendulumIsThePinnedOne) {
     const auto model = load("driven_double_pendulum");
     const OrbitAsked question = asked(*model, ones, "2*pi/om", 1.2 / 0.8);
