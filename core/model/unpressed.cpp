@@ -41,7 +41,7 @@ class ClosedStates {
         std::vector<Expression> zeros = rates_;
         zeros.insert(zeros.end(), gaps_.begin(), gaps_.end());
         if (vanishes_where(at_known(expression), zeros, slots_of_state(layout_))) return true;
-        // Rates that no velocity can be taken from in numbers: v - n hdot in place of v makes them 0 (section 2).
+        // Rates that no velocity can be taken from in numbers: v - n hdot in place of v makes them 0 (theory-gaps.md 2).
         for (const std::uint32_t slot : known_.slots)
             if (slot < 2 * layout_.dof) return false;
         return vanishes_where(at_known(along_surfaces(expression)), gaps_, slots_of_state(layout_));

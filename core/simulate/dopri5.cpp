@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "simulate/gap_units.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {
@@ -22,7 +23,7 @@ namespace achilles {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-// q, v, then of each contact, in its unit (gap_units), h, hdot where it is open, hddot, 0 where it is held.
+// q, v, then of each contact, in its unit (GapUnits), h, hdot where it is open, hddot, 0 where it is held.
 using Values = std::vector<double>;
 using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
 
@@ -39,7 +40,7 @@ class Dopri5 : public Stepper {
           model_(&model),
           parameters_(run.parameters),
           gaps_(model.contacts()),
-          units_(gap_units(model, run)) {}
+          units_(model, run) {}
 
     void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
@@ -91,7 +92,7 @@ class Dopri5 : public Stepper {
     double time_ = 0.0;      // s, where it starts,
     double begun_ = 0.0;     // by Odeint's own clock
     std::vector<Gap> gaps_;  // at `from`
-    std::vector<double> units_;
+    GapUnits units_;
     bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
     std::array<Values, 5> nodes_;
     long evaluations_ = 0;
@@ -131,6 +132,7 @@ void Dopri5::initialize(ContactSet held, const State& state, std::span<const Gap
     if (motion_ == nullptr || held != held_) motion_ = &model_->lazily(motions_, held, parameters_);
     held_ = held;
     to_ = state;
+    units_.at(state);
     time_ = state.t;
     begun_ = 0.0;
     gaps_.assign(gaps.begin(), gaps.end());

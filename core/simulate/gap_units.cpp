@@ -1,8 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulate/impact.hpp"
-#include "simulate/stepper.hpp"
+#include "simulate/gap_units.hpp"
 
 namespace achilles {
 
@@ -25,16 +24,25 @@ double size_of(ContactKinematics& surface, const State& start) {
 
 }  // namespace
 
-std::vector<double> gap_units(const Model& model, const Run& run) {
-    constexpr double step = 8.0;  // of the exponent: what is about 1 is 1
-    std::vector<double> units;
-    for (std::size_t i = 0; i < model.contacts(); ++i) {
-        ContactKinematics surface(model, run, i);
-        const double size = size_of(surface, run.start());
+GapUnits::GapUnits(const Model& model, const Run& run) : units_(model.contacts(), 1.0) {
+    for (std::size_t i = 0; i < model.contacts(); ++i) surfaces_.emplace_back(model, run, i);
+    find(run.start());
+}
+
+void GapUnits::find(const State& state) {
+    constexpr double step = 8.0;  // of the exponent: a size of about 1 gives 1
+    place_ = state.q;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        const double size = size_of(surfaces_[i], state);
         const bool is_usable = size > 0.0 && std::isfinite(size);
-        units.push_back(is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0);
+        units_[i] = is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0;
     }
-    return units;
+}
+
+const std::vector<double>& GapUnits::at(const State& state) {
+    constexpr double far = 1.0;
+    if ((state.q - place_).cwiseAbs().maxCoeff() > far) find(state);
+    return units_;
 }
 
 }  // namespace achilles

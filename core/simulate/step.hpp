@@ -28,7 +28,7 @@ struct StepRequest {
     ContactSet carried;
     ContactSet unwatched;  // of the held ones: no event of theirs is looked for, since others share what they bear
     ContactSet
-        unpressed;  // of the held ones: no event of theirs is looked for, since nothing presses them (section 2.7)
+        unpressed;  // of the held ones: no event of theirs is looked for, since nothing presses them (theory-gaps.md 2.7)
     State state;
     std::vector<EventStart> starts;  // at that state, of each contact
     double until = 0.0;              // s, > state.t

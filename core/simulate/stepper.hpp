@@ -55,10 +55,6 @@ class Stepper {
     virtual long evaluations() const = 0;
 };
 
-// Of each contact the power of 256 that is nearest to |dh| at the start of a run: what 1 m of a coordinate makes of its gap. In
-// it tolerances are meant, so that no course depends on the unit that a gap is written in (theory-gaps.md 2.7).
-std::vector<double> gap_units(const Model& model, const Run& run);
-
 std::unique_ptr<Stepper> make_dopri5(const Model& model, const Run& run);
 std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run);
 

@@ -28,10 +28,8 @@ Taylor::Taylor(const Model& model, const Run& run)
       tolerance_(std::max(run.options.tolerance, unit_roundoff)),
       model_(&model),
       parameters_(run.parameters),
-      step_(dof_, model.contacts(), tolerance_) {
-    const std::vector<double> units = gap_units(model, run);
-    for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
-}
+      step_(dof_, model.contacts(), tolerance_),
+      gap_units_(model, run) {}
 
 void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || held != held_) {
@@ -43,6 +41,8 @@ void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap
         motion_ = &known->second;
         held_ = held;
     }
+    const std::vector<double>& units = gap_units_.at(state);
+    for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
     for (std::size_t i = 0; i < gaps.size(); ++i) step_.gap(i) = gaps[i];
     to_ = state;
     evaluated_ = true;

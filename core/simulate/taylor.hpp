@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "series/order_policy.hpp"
+#include "simulate/gap_units.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {
@@ -48,6 +49,7 @@ class Taylor : public Stepper {
     Expansion* motion_ = nullptr;              // of them, that of held_
     ContactSet held_;
     TaylorStep<double> step_;
+    GapUnits gap_units_;
     State to_;
     bool evaluated_ = true;  // to_ is the step's end, not its start
     double span_ = 0.0;

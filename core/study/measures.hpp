@@ -19,7 +19,7 @@ namespace achilles {
 // (k): of the last one), zeno_points, impacts, releases, and least_gap. What does not exist is not a number.
 //
 // d(QUANTITY, NAME) is the derivative of such a quantity by a start x, a rate x' or a parameter, through all impacts and Zeno
-// points (theory-derivatives.md): at the end at fixed time, at an event following it as it moves. A run that stopped early has
+// points (theory-derivatives.md 7): at the end at fixed time, at an event following it as it moves. A run that stopped early has
 // no derivatives of its end.
 class RunMeasures {
  public:

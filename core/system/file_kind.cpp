@@ -74,8 +74,9 @@ void refuse_other_files(std::string_view text, const std::string& name) {
     if (first == text.npos) throw InputError(name, {}, "the file is empty", std::string(start_from_new));
     text.remove_prefix(first);
     for (const Kind& kind : of_texts) {
+        if (!text.starts_with(kind.begins)) continue;
         const bool is_key = kind.begins.ends_with(' ') && text.substr(kind.begins.size()).starts_with("=");
-        if (text.starts_with(kind.begins) && !is_key) refuse(name, kind.what, kind.advice);
+        if (!is_key) refuse(name, kind.what, kind.advice);
     }
     if (is_table(text)) refuse(name, "a table, and a system file is TOML", start_from_new);
 }

@@ -136,6 +136,18 @@ void read_derived(Reading& reading, const Fields& fields, DerivedDescription der
                               {}});
 }
 
+// Whether every name in an expression is that of a parameter, so that "2*m" is twice the mass m and not two meters.
+bool has_parameters_alone(const std::string& expression, const TomlValue& root) {
+    std::vector<std::string> known;
+    for (const TomlEntry& entry : root.entries)
+        if (entry.key == "parameter")
+            for (const TomlValue& table : entry.value.items)
+                for (const TomlEntry& key : table.entries)
+                    if (key.key == "name") known.push_back(key.value.text.text);
+    const std::vector<std::string> names = names_in(expression);
+    return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return contains(known, name); });
+}
+
 void read_parameters(Reading& reading) {
     for (Fields& fields : named_tables(reading, "parameter")) {
         Mistakes& mistakes = reading.mistakes;
@@ -146,7 +158,7 @@ void read_parameters(Reading& reading) {
         mistakes.attempt([&] { parameter.about = fields.string_or("about", ""); });
         const TomlValue* value = fields.find("value");
         if (value != nullptr && value->kind == TomlValue::Kind::string && has_names(value->text.text) &&
-            !measured(value->text.text)) {
+            (!measured(value->text.text) || has_parameters_alone(value->text.text, reading.root))) {
             if (is_named) read_derived(reading, fields, {parameter.name, parameter.unit, parameter.about, {}});
             continue;
         }

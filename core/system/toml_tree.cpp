@@ -266,7 +266,7 @@ std::string right_value(const std::string& line) {
     if (const std::size_t dots = value.find("..");
         dots != value.npos && value.find_first_not_of("+-.0123456789eE") == value.npos)
         return fmt::format("two numbers stand in square brackets: {} = [{}, {}]", key, value.substr(0, dots),
-                           value.substr(value.find_first_not_of('.', dots)));
+                           value.substr(std::min(value.find_first_not_of('.', dots), value.size())));
     if (value[0] == '[' || value[0] == '{') {
         const std::vector<std::string> names = names_in(value);
         const bool has_names = std::any_of(names.begin(), names.end(), [](const std::string& name) {

@@ -88,7 +88,7 @@ TEST(Library, StopsASweepWhenItIsTold) {
     EXPECT_GE(columns.rows(), 100u);
     EXPECT_LT(columns.rows(), 100000u);
     EXPECT_EQ(columns.all[0].numbers.size(), columns.rows());
-    EXPECT_EQ(columns.all[0].name, "x");
+    EXPECT_EQ(columns.all[0].name, "x(0)") << "the start, beside the x at the end";
     EXPECT_EQ(columns["outcome"].words[7], "end time");
     EXPECT_NE(told([&] { columns["outcme"]; }).find("the sweep has no column 'outcme'; did you mean 'outcome'?"),
               std::string::npos);

@@ -66,7 +66,7 @@ struct Shared {
 // The work of rank 0, with others that do what `begin` of their rank says.
 using Begin = std::function<Share(int rank, std::string_view order)>;
 Shared share(int size, std::uint64_t count, const Begin& begin, const std::atomic<bool>& stop = false,
-              const ChunkWriter& also = {}) {
+             const ChunkWriter& also = {}) {
     Boxes boxes(size);
     std::vector<std::jthread> others;
     for (int rank = 1; rank < size; ++rank)

@@ -23,11 +23,11 @@ const Change in_toml[] = {
     {"start = 1\n", "start 1\n",
      "f.toml:4:7: not valid TOML: expected '=', saw '1'\n    start 1\n          ^\nwrite an equals sign: start = 1"},
     {"[lagrangian]", "[lagrangian",
-     "f.toml:14:12: not valid TOML: expected ']', saw '\\n'\n    [lagrangian\n               ^"},
+     "f.toml:14:12: not valid TOML: expected ']', saw '\\n'\n    [lagrangian\n               ^\nwrite [lagrangian]"},
     {"value = 2\n", "value = 2\nvalue = 3\n",
      "f.toml:11:9: not valid TOML: cannot redefine existing integer 'value'\n    value = 3\n            ^\na key "
      "stands "
-     "once in a table: one of the two goes"},
+     "once in a table: leave one of the two out"},
     {"start = 1\n", "start = 1e\n",
      "f.toml:4:11: not valid TOML: expected decimal digit, saw '\\n'\n    start = 1e\n              ^"},
 };
@@ -101,7 +101,7 @@ const Change in_types[] = {
      "f.toml:17:2: 'constraint' must be an array of tables, not a table\n    [constraint]\n     ^\nwrite "
      "[[constraint]], once for each"},
     {"[run]\nend_time = 5\n", "[[run]]\nend_time = 5\n",
-     "f.toml:20:1: [run] must be a table, not an array\n    [[run]]\n    ^"},
+     "f.toml:20:1: [run] must be a table, not an array\n    [[run]]\n    ^\nwrite [run] once, and its keys below"},
     {"end_time = 5", "end_time = \"soon\"",
      "f.toml:21:13: 'end_time' in [run]: 'soon' is not a finite number: no name but pi has a value here\n    "
      "end_time = \"soon\"\n                ^"},
@@ -257,9 +257,10 @@ const Change in_expression[] = {
     {"\"m*x\"", "\"m*x)\"", "f.toml:16:17: this ')' closes nothing\n    potential = \"m*x)\"\n                    ^"},
     {"\"m*x\"", "\"m x\"",
      "f.toml:16:16: an operator is missing here; write '*' for a product\n    potential = \"m x\"\n                   "
-     "^"},
+     "^\nwrite m*x"},
     {"\"m*x\"", "\"2x\"",
-     "f.toml:16:15: an operator is missing here; write '*' for a product\n    potential = \"2x\"\n                  ^"},
+     "f.toml:16:15: an operator is missing here; write '*' for a product\n    potential = \"2x\"\n                  "
+     "^\nwrite 2*x"},
     {"\"m*x\"", "\"m*x +\"",
      "f.toml:16:19: the expression ends where a value is expected\n    potential = \"m*x +\"\n                      ^"},
     {"\"m*x\"", "\"m**x\"",
@@ -296,9 +297,10 @@ const Change in_expression[] = {
     {"\"m*x\"", "\"sni(x)\"",
      "f.toml:16:14: unknown function 'sni'; did you mean 'sin'?\n    potential = \"sni(x)\"\n                 ^"},
     {"\"m*x\"", "\"ln(x)\"",
-     "f.toml:16:14: unknown function 'ln'; did you mean 'log'?\n    potential = \"ln(x)\"\n                 ^"},
+     "f.toml:16:14: unknown function 'ln'\n    potential = \"ln(x)\"\n                 ^\nwrite log(x)"},
     {"\"m*x\"", "\"sin x\"",
-     "f.toml:16:14: the function 'sin' needs parentheses: sin(...)\n    potential = \"sin x\"\n                 ^"},
+     "f.toml:16:14: the function 'sin' needs parentheses: sin(...)\n    potential = \"sin x\"\n                 "
+     "^\nwrite sin(x)"},
     {"\"m*x\"", "\"sin(x, m)\"",
      "f.toml:16:19: the function 'sin' takes one argument\n    potential = \"sin(x, m)\"\n                      ^"},
     {"\"m*x\"", "\"m*x # y\"", "f.toml:16:18: unexpected '#'\n    potential = \"m*x # y\"\n                     ^"},
