@@ -98,6 +98,7 @@ std::string figure_bytes(const Session& session, const Plots& plots, const comma
     PublicationStyle style;
     style.columns = plots.columns();
     style.dark = what.dark;
+    style.size = resolution_of(page_of(what), {}, format, style.shape);
     const Figure figure = figure_of(session, plots, style);
     const PictureSize size = size_of(page_of(what), {}, figure, format);
     return picture_of(figure, size, notes_of(session, figure_words(session, plots, session.system()), what), format);
@@ -167,6 +168,13 @@ PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing&
     return in_pixels;
 }
 
+Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format, double shape) {
+    const bool is_page = page.width > 0.0;
+    const PictureSize size = is_page ? on_page(page_for(page, format), format, 1.0, shape) : in_pixels;
+    const double fineness = is_page && format != "png" ? 4.0 : 1.0;
+    return {fineness * size.width, fineness * size.height};
+}
+
 Drawing mechanism_of(const Session& session, const Theme& theme) {
     if (session.mechanism().is_empty())
         throw InputError({}, {}, "this system draws no mechanism", "[[drawing]] in its file makes one");
@@ -190,7 +198,7 @@ Figure figure_of(const Session& session, const PublicationStyle& style) {
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style) {
     const Theme theme = style.dark ? dark_theme() : light_theme();
     std::vector<Panel> panels =
-        plots.compose(session.trajectory(), session.samples(), theme, Plots::Medium::print, session.horizon());
+        plots.compose(session.trajectory(), session.samples(), theme, session.horizon(), style.size);
     std::vector<const PinnedRun*> pinned;
     for (const PinnedRun& run : session.pinned())
         if (run.shown) pinned.push_back(&run);
@@ -198,7 +206,7 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
     std::vector<std::vector<Panel>> others;
     for (const PinnedRun* run : pinned) {
         compared.push_back({run->trajectory.get(), run->name, run_color(theme, run->place), run->horizon()});
-        others.push_back(plots.compose(*run->trajectory, *run->samples, theme, Plots::Medium::print, run->horizon()));
+        others.push_back(plots.compose(*run->trajectory, *run->samples, theme, run->horizon(), style.size));
     }
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const Plot& plot = plots.list()[i];
@@ -207,6 +215,7 @@ Figure figure_of(const Session& session, const Plots& plots, const PublicationSt
             behind.push_back({&others[k][i], pinned[k]->name, pinned[k]->place});
         Framing framing = plot.framing;
         framing.for_print = true;
+        framing.size = style.size;
         if (const Proof* proof = session.proof())
             panels[i] = with_proof(std::move(panels[i]), session.trajectory(), *proof, *plot.prepared, framing, theme);
         panels[i] = framing.difference

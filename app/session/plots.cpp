@@ -235,19 +235,20 @@ void Plots::perform(const command::Link& command) {
 }
 
 std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                                  Medium medium, std::optional<double> horizon) const {
+                                  std::optional<double> horizon, const std::optional<Resolution>& page) const {
     std::vector<Panel> panels;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
         // What belongs to the differences is none of the quantities' own.
         if (framing.difference) framing.x.reset(), framing.y.reset();
         framing.legend = false;
-        framing.for_print = medium == Medium::print;
+        framing.for_print = page.has_value();
         // On a large screen the grid is about as wide as a page; a plot has its part of it.
         framing.size.width /= std::sqrt(columns_);
         framing.size.height /= std::sqrt(rows_);
+        if (page) framing.size = *page;
         panels.push_back(achilles::compose(trajectory, samples, *plot.prepared, theme, framing, horizon));
-        if (medium == Medium::screen) panels.back().title.clear();
+        if (!page) panels.back().title.clear();
     }
     return panels;
 }

@@ -46,11 +46,11 @@ class Plots {
     void perform(const command::Link& command);
     void perform(const command::PlotDifference& command);
 
-    // Of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
-    // panels; for print they are in them. Pale after the horizon of the run, where that comes before its end.
-    enum class Medium { screen, print };
+    // The panels of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
+    // panels. In print, where `page` is the size of the picture, they are in the panels, and curves are as fine as that size
+    // needs. Pale after the horizon of the run, where that comes before its end.
     std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
-                               Medium medium = Medium::screen, std::optional<double> horizon = {}) const;
+                               std::optional<double> horizon = {}, const std::optional<Resolution>& page = {}) const;
     int revision() const { return revision_; }
     const std::shared_ptr<const Model>& model() const { return model_; }
     // Whether they show the same, whatever led there.

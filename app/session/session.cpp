@@ -28,9 +28,9 @@ Session::System::System(const std::string& name_as_opened, const SystemDescripti
       mechanism(*model),
       file_run(model->default_run()) {}
 
-Session::Simulated::Simulated(std::shared_ptr<const System> of, const Run& run, const Plots& plotted,
-                              const Theme& theme, Watch* watch)
-    : trajectory(simulate(of->model, run, watch)),
+Session::Simulated::Simulated(std::shared_ptr<const System> of, Trajectory made, const Plots& plotted,
+                              const Theme& theme)
+    : trajectory(std::move(made)),
       system(std::move(of)),
       sampler(trajectory),
       samples(plot_samples(trajectory)),
@@ -232,7 +232,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     at_once.request_stop();
     Watch watch;
     watch.stop = at_once.get_token();
-    simulated_ = std::make_shared<Simulated>(system_, run, plots_, theme_, &watch);
+    simulated_ = std::make_shared<Simulated>(system_, simulate(system_->model, run, &watch), plots_, theme_);
     compose_pinned();
     move_to(run.options.start_time);
 }
@@ -312,7 +312,10 @@ void Session::rerun(const Run& run) {
     began_ = std::chrono::steady_clock::now();
     worker_->start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
-        return std::make_shared<Simulated>(system, run, plots, theme, watch.get());
+        Trajectory trajectory = simulate(system->model, run, watch.get());
+        // Plots of a long run that was stopped would keep the next run, and a window that closes, waiting.
+        if (stop.stop_requested()) return std::shared_ptr<Simulated>();
+        return std::make_shared<Simulated>(system, std::move(trajectory), plots, theme);
     });
     receive(patience_);
     if (library_.budget && watch_ == nullptr) library_.budget->charge(trajectory());
@@ -413,8 +416,7 @@ void Session::compose_plots() {
     if (simulated_->revision == plots_.revision() && simulated_->dark == theme_.dark) return;
     simulated_->revision = plots_.revision();
     simulated_->dark = theme_.dark;
-    simulated_->plots =
-        plots_.compose(simulated_->trajectory, simulated_->samples, theme_, Plots::Medium::screen, horizon());
+    simulated_->plots = plots_.compose(simulated_->trajectory, simulated_->samples, theme_, horizon());
     compose_pinned();
 }
 

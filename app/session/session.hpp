@@ -213,8 +213,7 @@ class Session {
     };
     // One run and what is shown of it.
     struct Simulated {
-        Simulated(std::shared_ptr<const System> of, const Run& run, const Plots& plotted, const Theme& theme,
-                  Watch* watch);
+        Simulated(std::shared_ptr<const System> of, Trajectory made, const Plots& plotted, const Theme& theme);
         ~Simulated();
         Simulated(const Simulated&) = delete;  // the stage refers to the others
         Simulated& operator=(const Simulated&) = delete;

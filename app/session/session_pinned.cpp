@@ -241,7 +241,7 @@ void Session::compose_pinned() {
             run.touch = std::make_shared<const Touch>(mechanism(), *run.trajectory, run.touched_size);
         }
         if (run.revision != plots_.revision() || run.dark != theme_.dark || run.plots.size() != plots_.list().size())
-            run.plots = plots_.compose(*run.trajectory, *run.samples, theme_, Plots::Medium::screen, run.horizon());
+            run.plots = plots_.compose(*run.trajectory, *run.samples, theme_, run.horizon());
         run.revision = plots_.revision();
         run.dark = theme_.dark;
         compared.push_back({run.trajectory.get(), run.name, run_color(theme_, run.place), run.horizon()});

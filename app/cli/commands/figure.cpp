@@ -109,6 +109,7 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     if (arguments.mechanism) return put_mechanism(arguments, session, format, job);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
+    style.size = resolution_of(arguments.page, arguments.size, format, style.shape);
     return put(arguments, session.trajectory(), session.error_estimate(), figure_of(session, style), session.proof(),
                format, job);
 }
@@ -142,13 +143,8 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     const Trajectory trajectory = simulate(model, run);
     PublicationStyle style = arguments.style;
     style.ordered = !arguments.views.empty();
-    const PictureSize size = arguments.page.width > 0.0
-                                 ? on_page(page_for(arguments.page, format), format, 1.0, style.shape)
-                                 : arguments.size;
+    style.size = resolution_of(arguments.page, arguments.size, format, style.shape);
     style.shape = double{1} * arguments.size.width / arguments.size.height;
-    // A printer tells more apart than the points that a page in a vector format is measured in.
-    const double fineness = arguments.page.width > 0.0 && format != "png" ? 4.0 : 1.0;
-    style.size = {fineness * size.width, fineness * size.height};
     std::optional<Proof> proof;
     if (spread) proof = proof_of(trajectory, *spread);
     const Proof* const drawn = proof ? &*proof : nullptr;
