@@ -214,8 +214,11 @@ void show_status(const Session& session, const PanelState& state) {
                     with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
                     s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
                     to_text(trajectory.run.options.method));
+    const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+    const bool is_cut = width_of(text) > room;
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
-    ImGui::TextUnformatted(text.c_str());
+    ImGui::TextUnformatted(is_cut ? fitted(text, room).c_str() : text.c_str());
+    if (is_cut) tooltip(text);
     show_estimate(session);
     ImGui::PopStyleColor();
     show_legend(session);
