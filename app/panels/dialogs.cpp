@@ -73,11 +73,7 @@ Verdict to_take_away(const Session& session, const PanelState& state, const std:
     const TakeAwayNote note = is_data ? TakeAwayNote() : take_away_note(session, form);
     if (note.is_wrong) return refuse(note.text);
     // A picture of the dialog knows no folder.
-    Verdict verdict = state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
-    // Without ffmpeg there is no film, but its pictures.
-    if (is_film(path) && verdict.is_good && !verdict.asks && find_program("ffmpeg").empty())
-        verdict.note = "goes to " + frames_folder(verdict.note.substr(std::string_view("goes to ").size())).string();
-    return verdict;
+    return state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
 }
 
 // "contact force" as a part of a file's name.

@@ -40,7 +40,7 @@ void Session::perform(const command::Export& command) {
     }
     film->wait();
     if (film->is_made()) return;
-    if (film->has_frames()) return warn(film->said());  // without ffmpeg
+    if (film->has_frames()) return warn(film->said());  // ffmpeg failed
     throw InputError(command.file, {}, film->said());
 }
 

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
@@ -68,8 +70,25 @@ bool can_press(const test::Hands& hands, const std::string& name) {
     return std::any_of(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.name == name; });
 }
 
+// The only folder in which programs are found, as long as this lives.
+class ProgramFolder : public test::Folder {
+ public:
+    ProgramFolder() { ::setenv("PATH", path().c_str(), 1); }
+    ~ProgramFolder() { ::setenv("PATH", before_.c_str(), 1); }
+    // A program that does nothing.
+    void add(const std::string& name) const {
+        put(name, "#!/bin/sh\n");
+        std::filesystem::permissions(path() / name, std::filesystem::perms::owner_all);
+    }
+
+ private:
+    std::string before_ = std::getenv("PATH") == nullptr ? "" : std::getenv("PATH");
+};
+
 // Every entry of the menu opens a dialog that is ready: Enter alone writes what it says.
 TEST(TakeAway, EntryOfTheMenuIsReady) {
+    const ProgramFolder programs;
+    programs.add("ffmpeg");
     const std::pair<const char*, const char*> entries[] = {
         {"Film as MP4\u2026", "mp4"},  {"Figure as SVG\u2026", "svg"}, {"Figure as PNG\u2026", "png"},
         {"Run as JSON\u2026", "json"}, {"Run as CSV\u2026", "csv"},    {"Session as journal\u2026", "journal"}};
@@ -85,6 +104,30 @@ TEST(TakeAway, EntryOfTheMenuIsReady) {
         EXPECT_EQ(hands.state.take_away.what == TakeAwayForm::What::film, is_film);
         EXPECT_EQ(hands.says("1280 \u00d7 800 px"), is_film) << entry;
     }
+}
+
+// The dialog says what is missing before a name is typed, and Enter draws no frames.
+TEST(TakeAway, FilmNeedsFfmpeg) {
+    const ProgramFolder programs;  // an empty one
+    const test::Folder folder;
+    test::Hands hands("ball_on_sine");
+    hands.click("menu File");
+    hands.click("menu Film as MP4\u2026");
+    hands.rest(3);
+    EXPECT_EQ(hands.state.editor.path, "ball_on_sine.mp4");
+    EXPECT_FALSE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.says("ffmpeg, which joins the pictures of a film, is not installed"));
+    hands.type((folder.path() / "short").string());
+    hands.press(key::enter);
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("ffmpeg, which joins the pictures of a film, is not installed")) << "the dialog is closed";
+    EXPECT_TRUE(folder.files().empty());
+    EXPECT_EQ(hands.session.error(), "");
+    // It is there: the same dialog exports.
+    programs.add("ffmpeg");
+    hands.rest(2);
+    EXPECT_TRUE(can_press(hands, "dialog Export"));
+    EXPECT_TRUE(hands.says((folder.path() / "short.mp4").string()));
 }
 
 // What is typed takes the place of the whole name, and what has no ending gets the kind's.
