@@ -36,6 +36,8 @@ done_with() {
     [ "$actions" -eq "$is" ] || fail "the task '$1' takes $actions actions, and not $is"
     now=$((now + actions)) before=$((before + was)) done=$((done + 1)) actions=0
 }
+# Every palette that was shown is hidden again: until then keys are the palette's.
+is_palette_closed() { [ "$(grep -c '^show palette$' "$folder/record")" -eq "$(grep -c '^hide palette$' "$folder/record")" ]; }
 # What nobody asked for: back to how the window was.
 back() {
     xdotool mousemove --window "$window" 640 4
@@ -43,6 +45,8 @@ back() {
         xdotool key ctrl+shift+p sleep 0.25 type --delay 8 "$line"
         xdotool key Return sleep 0.15
         recorded "^${line}\$" "the window is not as it was"
+        await is_palette_closed || fail "the palette stays open"
+        settle
     done
     actions=0
 }
