@@ -94,7 +94,7 @@ TEST(SweepPicture, IsAsHighAsItsPanelsNeedUnlessASizeIsGiven) {
     EXPECT_FALSE(is_as_ever(many));
     EXPECT_EQ(folder.run("reproduce a.svg").status, 0);
     EXPECT_TRUE(is_as_ever(many + " --size 1200x800"));
-    EXPECT_TRUE(is_as_ever("sweep ball_on_floor --over e=0:0.5:3 --out a.svg --print e"));
+    EXPECT_TRUE(is_as_ever("sweep ball_on_floor --over e=0:0.5:3 --out a.svg --print 2*e"));
 }
 
 TEST(SweepPicture, SaysWhatItLeavesOut) {

@@ -54,6 +54,7 @@ TEST(Trace, NumberOfPointsDoesNotGrowWithTheRun) {
 // The rod turns by 10 rad/s, and its end lies on the ring for most of the run: what is drawn of its way is a circle.
 TEST(Trace, TrailIsSampledWhereItIsDrawn) {
     const auto model = test::typed(R"toml(
+title = ""
 [[coordinate]]
 name = "r"
 start = 0.3
@@ -62,6 +63,7 @@ name = "phi"
 rate = 10
 [lagrangian]
 kinetic = "0.5*r'^2 + 0.5*r^2*phi'^2 + 0.5*phi'^2"
+potential = "0"
 [[constraint]]
 gap = "0.6 - r"
 restitution = "0"
@@ -116,6 +118,7 @@ radius = "0.04"
 // A ramp of 40 m with waves of 1 m: 20 pixels each.
 TEST(Boundaries, LineOfAWavyRampIsSmooth) {
     const auto model = test::typed(R"toml(
+title = ""
 [[coordinate]]
 name = "x"
 rate = 8
