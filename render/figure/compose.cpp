@@ -298,8 +298,8 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
 
 // Fills the curves and sets the axes. The samples say about how large the picture is; the curves, exactly. Returns the instant of
 // each point of each curve (s).
-std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent, const PreparedView& view,
-                 Values& values, const Framing& framing) {
+std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent,
+                                             const PreparedView& view, Values& values, const Framing& framing) {
     const std::size_t curves = panel.curves.size() / 2;
     Range x_range, y_range;
     x_range.positive = framing.log_x;
@@ -379,7 +379,7 @@ void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sa
     for (std::vector<Curve>* const curves : {&panel.curves, &panel.beyond.curves})
         for (Curve& curve : *curves)
             if (!curve.stroke.dash.empty() && !framing.log_x && !framing.log_y)
-                curve.points = without_retraced(curve.points, panel.x, panel.y);
+                curve.points = without_retraced(curve.points, panel.x, panel.y, framing.size);
     panel.boundary.stroke = {theme.surface, 1.0, {}};
     panel.boundary.points = boundary(trajectory, samples, view, panel, {}, framing.size);
     if (panel.equal_axes && !framing.x && !framing.y && !panel.boundary.points.empty())

@@ -155,7 +155,7 @@ class PathThinner : public Thinner {
 
  private:
     static constexpr double cell = 0.45;  // pixels: its diagonal is 0.64
-    static constexpr std::size_t most_points = 20000;
+    static constexpr std::size_t most_points = 15000;
 
     void start_covering() {
         cells_.assign(columns_ * rows_, false);
@@ -212,6 +212,14 @@ double distance_to_chord(const Point& p, const Point& a, const Point& b) {
     return std::hypot(p.x - a.x - s * x, p.y - a.y - s * y);
 }
 
+// How far a motion along its chord from a to b may go beyond an end, as where it turns back: at most what it lags at `share` of the
+// time behind an even one, less the lag of a motion that does not turn.
+double overshoot(const Point& p, const Point& a, const Point& b, double share) {
+    constexpr double lag_without_turn = 0.2;  // of the chord; of a parabola that turns at an end 0.23 or more
+    const double lag = std::hypot(p.x - a.x - share * (b.x - a.x), p.y - a.y - share * (b.y - a.y));
+    return lag - lag_without_turn * std::hypot(b.x - a.x, b.y - a.y);
+}
+
 class Tracer {
  public:
     Tracer(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read)
@@ -250,7 +258,7 @@ class Tracer {
 
  private:
     static constexpr int most_halvings = 24;
-    static constexpr int most_of_step = 20000;  // samples of one step
+    static constexpr int most_of_step = 200000;  // samples of one step
 
     void read_node(const Sample& sample, Node& node) {
         node.t = sample.t;
@@ -291,7 +299,7 @@ class Tracer {
                 const double s = r.x > p.x ? (q.x - p.x) / (r.x - p.x) : 0.5;
                 off = std::abs(q.y - p.y - s * (r.y - p.y));
             } else {
-                off = distance_to_chord(q, p, r);
+                off = std::max(distance_to_chord(q, p, r), overshoot(q, p, r, (m.t - a.t) / (b.t - a.t)));
             }
             most = std::max(most, off / tolerances_[i]);
         }
@@ -339,7 +347,8 @@ class Tracer {
     // before, too, both halves are near enough.
     void refine(const Piece& piece, const Node& a, const Node& b, double before, int halvings) {
         const double t = 0.5 * (a.t + b.t);
-        if (halvings >= most_halvings || samples_of_step_ > most_of_step || !(t > a.t && t < b.t)) return take(b);
+        if (samples_of_step_ > most_of_step) return leave_out(b);
+        if (halvings >= most_halvings || !(t > a.t && t < b.t)) return take(b);
         Node& middle = levels_[static_cast<std::size_t>(halvings)];
         read_at(piece, t, middle);
         const double off = deviation(a, middle, b);
@@ -358,6 +367,11 @@ class Tracer {
 
     Thinner& thinner(std::size_t quantity, Phase::Kind phase) const {
         return *thinners_[2 * quantity + (phase == Phase::Kind::hybrid ? 0 : 1)];
+    }
+    // A gap is true; a chord between two samples of a motion that turns many times between them is not.
+    void leave_out(const Node& node) {
+        for (const std::size_t i : request_.shown) thinner(i, node.phase).lift();
+        take(node);
     }
     // Where the phase changes one curve ends and the other goes on from the same point.
     void take(const Node& node) {

@@ -130,7 +130,7 @@ TEST(Panels, AreBoundedForManyImpacts) {
     const Panel panel = compose(trajectory, samples, PreparedView(*model, description.views[0]), light_theme());
     double highest = 0.0;
     for (const Curve& curve : panel.curves) {
-        EXPECT_LE(curve.points.size(), 8100u);
+        EXPECT_LE(curve.points.size(), 4u * 4u * 1600u) << "four points in a quarter of a pixel's column";
         for (const Point& p : curve.points) highest = std::max(highest, std::isnan(p.y) ? 0.0 : p.y);
     }
     for (const Markers& markers : panel.markers) EXPECT_LE(markers.points.size(), 8000u);
