@@ -91,8 +91,9 @@ void show_tooltip(const std::string& text) {
 }
 
 ImVec2 tooltip_size(const std::string& text) {
-    const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(tooltip_width));
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    // The position at which a window wraps counts from its edge.
+    const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(tooltip_width) - padding.x);
     return {words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
 }
 

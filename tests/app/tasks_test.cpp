@@ -217,6 +217,7 @@ TEST(TasksOnDisplay, the_window_answers_what_its_record_says) {
         const Rectangle area =
             std::string(task) == "read" ? [&] { hands.rest(4); return hands.tooltip(); }() : answer_of(task, hands);
         ASSERT_GT(area.width * area.height, 1000.0F) << task;
+        ASSERT_LE(area.y + area.height, static_cast<float>(expected.height)) << task << ": it goes beyond the screen";
         const int wrong = differences(screen((folder / "screen").string()), expected, area, hands.hand);
         if (wrong > 0) write_png(expected, folder / "expected.png");
         EXPECT_EQ(wrong, 0) << task << ": of " << area.width << " x " << area.height << " at " << area.x << ", "
