@@ -41,13 +41,14 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 }  // namespace
 
 int told_of(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate* estimate) {
+    const bool is_whole = trajectory.outcome.kind == Outcome::Kind::end_time;
+    if (!is_whole)
+        print_clean(stderr, "achilles: the run stopped early: {}\n",
+                    with_reasons ? trajectory.outcome.message : std::string(to_text(trajectory.outcome.kind)));
     if (with_reasons)
         for (const Remark& remark : estimate != nullptr ? remarks(trajectory, *estimate) : remarks(trajectory))
             print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
-    if (trajectory.outcome.kind == Outcome::Kind::end_time) return reached_end;
-    print_clean(stderr, "achilles: the run stopped early: {}\n",
-                with_reasons ? trajectory.outcome.message : std::string(to_text(trajectory.outcome.kind)));
-    return stopped_early;
+    return is_whole ? reached_end : stopped_early;
 }
 
 int told_of(const Enclosure& proof, bool with_reason) {

@@ -44,7 +44,7 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale,
 // --width-mm and what belongs to it, in the place of --size and --scale.
 void add_page_options(CLI::App& command, PaperSize& page);
 
-// Prints on standard error what a person may not expect of a finished run: its remarks and why it stopped early; where these stand
+// Prints on standard error what a person may not expect of a finished run: why it stopped early and its remarks; where these stand
 // elsewhere only that it did. With an estimate also the time after which the run is not trusted. The exit status.
 int told_of(const Trajectory& trajectory, bool with_reasons = true, const ErrorEstimate* estimate = nullptr);
 // The same of a proof: where it ends undecided, and why, unless that stands elsewhere.
