@@ -32,18 +32,18 @@ void put(int file, std::string_view bytes, const std::string& path) {
     }
 }
 
-// Opens it, or standard output, and closes it.
-void write_file(const std::string& path, const std::function<void(int file)>& write) {
+// Opens the file, or standard output, and closes it. Messages call it `name`, as the user did.
+void write_file(const std::string& path, const std::string& name, const std::function<void(int file)>& write) {
     const bool is_standard = path == "-";
     const int file = is_standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) fail(path, errno);
+    if (file < 0) fail(name, errno);
     try {
         write(file);
     } catch (...) {
         if (!is_standard) ::close(file);
         throw;
     }
-    if (!is_standard && ::close(file) != 0) fail(path, errno);
+    if (!is_standard && ::close(file) != 0) fail(name, errno);
 }
 
 // Standard output, or a device.
@@ -131,9 +131,10 @@ void SweepOutput::append(Chunk chunk, const std::string& bytes) {
 }
 
 void SweepOutput::write_csv(const std::string& path) const {
-    write_file(path, [&](int file) {
-        put(file, sweep_csv_heading(table_, units_), path);
-        log_->each([&](Chunk, std::string_view bytes) { put(file, text_in(bytes), path); });
+    const std::string name = name_of_csv();
+    write_file(path, name, [&](int file) {
+        put(file, sweep_csv_heading(table_, units_), name);
+        log_->each([&](Chunk, std::string_view bytes) { put(file, text_in(bytes), name); });
     });
 }
 
@@ -165,7 +166,8 @@ bool SweepOutput::draw(const EachRows& each_rows) {
     if (!figure) return false;
     for (const std::string& picture : pictures_.files()) {
         const std::string bytes = pictures_.bytes(*figure, picture);
-        make(picture, [&](const std::string& path) { write_file(path, [&](int file) { put(file, bytes, path); }); });
+        make(picture,
+             [&](const std::string& path) { write_file(path, picture, [&](int file) { put(file, bytes, picture); }); });
         made_.push_back(picture);
     }
     return true;
