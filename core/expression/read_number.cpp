@@ -101,8 +101,8 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
         given.value = value_of_constant(parse(text, scope, graph));
     } catch (const ParseError& error) {
         const bool is_unknown = !error.name.empty() && !scope.forbidden.contains(error.name);
-        std::vector<std::string> known{"pi"};
-        for (const Function& function : functions) known.emplace_back(function.name);
+        // No functions: a word without parentheses is none, and ten was not meant to be tan.
+        const std::vector<std::string> known{"pi"};
         fail(text, begin + error.offset,
              is_unknown ? "no name but pi has a value here" + did_you_mean(error.name, known) : error.what(),
              error.name, error.hint);

@@ -73,6 +73,8 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
     EXPECT_EQ(told("0,4"), "0 '0,4' is not a finite number: decimals have a point, 0.4");
     EXPECT_EQ(told("abc"), "0 'abc' is not a finite number: no name but pi has a value here");
     EXPECT_EQ(told("p/6"), "0 'p/6' is not a finite number: no name but pi has a value here; did you mean 'pi'?");
+    EXPECT_EQ(told("ten"), "0 'ten' is not a finite number: no name but pi has a value here");
+    EXPECT_EQ(told("tam(1)"), "0 'tam(1)' is not a finite number: unknown function 'tam'; did you mean 'tan'?");
     EXPECT_EQ(told(" 2*x'"), "3 '2*x'' is not a finite number: no name but pi has a value here");
     EXPECT_EQ(told(""), "0 a number is missing");
     EXPECT_EQ(told("  "), "0 a number is missing");
