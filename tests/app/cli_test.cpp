@@ -168,7 +168,8 @@ TEST(Cli, TheMemoryOfARunIsLimited) {
     const Answer systems = folder.run(run + "--memory 1e12", "ulimit -v 300000;");
     EXPECT_EQ(systems.status, 3);
     EXPECT_NE(systems.out.find("outcome: out of memory"), std::string::npos) << systems.out;
-    EXPECT_NE(systems.err.find("the system has no memory for more"), std::string::npos) << systems.err;
+    EXPECT_NE(systems.out.find("and the system has no memory for more)"), std::string::npos) << systems.out;
+    EXPECT_EQ(systems.err, "achilles: the run stopped early: out of memory\n");
 #endif
 }
 

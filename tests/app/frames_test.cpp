@@ -198,8 +198,8 @@ TEST(Frames, TooLittleMemoryIsAMessage) {
     const Folder folder;
     const Answer answer =
         folder.run("frames ball_on_sine --end 1 --fps 1 --size 16384x16384 --jobs 1 --out film", "ulimit -v 1200000;");
-    EXPECT_EQ(answer.status, 2);
-    EXPECT_EQ(answer.err.rfind("achilles: ", 0), 0u) << answer.err;
+    EXPECT_EQ(answer.status, 3);
+    EXPECT_EQ(answer.err.rfind("achilles: there is not enough memory for drawing", 0), 0u) << answer.err;
     EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
     EXPECT_TRUE(folder.files().empty());
 }

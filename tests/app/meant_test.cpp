@@ -86,7 +86,8 @@ TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
          "     "
          "    ^\n"},
         {with("y'^2/2", "v^2/2"),
-         "f.toml:9:12: unknown name 'v'; rates are written y'\n    kinetic = \"v^2/2\"\n               ^\n"},
+         "f.toml:9:12: unknown name 'v'; rates are written y'\n    kinetic = \"v^2/2\"\n               ^\nwrite "
+         "y'^2/2\n"},
         {with("9.81*y", "9.81*θ1"),
          "f.toml:10:19: names have Latin letters: write theta1 for 'θ1'\n    potential = \"9.81*θ1\"\n               "
          "       ^\n"},

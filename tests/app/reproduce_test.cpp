@@ -382,8 +382,8 @@ TEST(Figure, TooLittleMemoryIsAMessage) {
     const Folder folder;
     const Answer answer =
         folder.run("figure ball_on_sine --view gap --size 16384x16384 --out a.png", "ulimit -v 1200000;");
-    EXPECT_EQ(answer.status, 2);
-    EXPECT_NE(answer.err.find("achilles: "), std::string::npos) << answer.err;
+    EXPECT_EQ(answer.status, 3);
+    EXPECT_EQ(answer.err.rfind("achilles: there is not enough memory for drawing", 0), 0u) << answer.err;
     EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
     EXPECT_TRUE(folder.files().empty());
 }

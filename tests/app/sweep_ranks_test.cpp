@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/program.hpp"
+#include "cli/sweep_summary.hpp"
 #include "cli/sweep_work.hpp"
 #include "model/read_system.hpp"
 
@@ -51,9 +52,15 @@ TEST_F(SweepRanks, WriteTheSameBytesHoweverMany) {
     const Answer one = folder_.run(sweep + files("one") + " --threads 1");
     ASSERT_EQ(one.status, 0) << one.err;
     EXPECT_EQ(count_of("\n", file("one.csv")), 3001);
+    const auto renamed = [](std::string text, const std::string& name) {
+        for (const char* ending : {".csv\n", ".h5\n"})
+            if (const std::size_t at = text.find(std::string("wrote one") + ending); at != text.npos)
+                text.replace(at, 9, "wrote " + name);
+        return text;
+    };
     const auto expect_same = [&](const Answer& answer, const char* name) {
         EXPECT_EQ(answer.status, 0) << answer.err;
-        EXPECT_EQ(answer.err, one.err) << "what is told of the runs, once";
+        EXPECT_EQ(answer.err, renamed(one.err, name)) << "the summary and warnings, once";
         EXPECT_EQ(answer.out, "");
         EXPECT_EQ(file((std::string(name) + ".csv").c_str()), file("one.csv")) << name;
         EXPECT_EQ(file((std::string(name) + ".h5").c_str()), file("one.h5")) << name;
@@ -167,8 +174,11 @@ TEST(SweepWork, IsTheSameFromItsOrder) {
     EXPECT_THROW(sweep_share("0.0.1" + order.substr(order.find('\n'))), std::runtime_error);
     // The failures are behind what is kept.
     RunFailures failures, none;
-    const std::string bytes = failures.take(sweep_chunk(table, kept, {0, 120}));
+    SweepSummary summary(table), whole(table);
+    const std::string bytes = failures.take(summary.take(sweep_chunk(table, kept, {0, 120})));
     EXPECT_EQ(bytes, kept_bytes(table, kept, table.rows(0, 120)));
+    whole.note(table.rows(0, 120));
+    EXPECT_EQ(summary.text(), whole.text());
     EXPECT_EQ(none.behind("a"), std::string("a\0", 2));
     EXPECT_GT(failures.behind("").size(), 1u) << "some cannot start";
     EXPECT_EQ(none.take(failures.behind("rows")), "rows");
