@@ -151,7 +151,9 @@ Sheet told(const Lie& lie, Sheet sheet) {
 }
 
 Easel::Easel(const std::string& system) : surface_(page()) {
-    const Figure figure = gallery_figure(gallery_run(system));
+    PublicationStyle style;
+    style.size = {figure_width, figure_height};
+    const Figure figure = gallery_figure(gallery_run(system), style);
     const Rectangle area{0.0F, 0.0F, static_cast<float>(figure_width), static_cast<float>(figure_height)};
     surface_.step([&] { truth_ = layout(figure, label_width, area, figure_scale); });
 }

@@ -67,7 +67,7 @@ Trajectory run_of(const std::string& system, std::optional<Conditions> condition
 std::vector<Layer> figure_layers(const std::string& system) {
     const Trajectory trajectory = gallery_run(system);
     return {{"trajectory.txt", to_text(trajectory)},
-            {"figure.txt", to_text(gallery_figure(trajectory))},
+            {"figure.txt", to_text(gallery_figure(trajectory, {}))},
             {image_name, image_of(figure_command(system))}};
 }
 
@@ -191,10 +191,10 @@ std::vector<Picture> pictures() {
 Trajectory gallery_run(const std::string& system) { return run_of(system, {}); }
 
 // All views, those over time first, as `achilles figure` orders them.
-Figure gallery_figure(const Trajectory& trajectory) {
+Figure gallery_figure(const Trajectory& trajectory, const PublicationStyle& style) {
     std::vector<ViewDescription> views = trajectory.model->description().views;
     std::stable_partition(views.begin(), views.end(), [](const ViewDescription& view) { return view.x.text == "t"; });
-    return publication(trajectory, views, {});
+    return publication(trajectory, views, style);
 }
 
 Image image_of(const std::string& command, const std::string& environment) {

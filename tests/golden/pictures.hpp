@@ -20,7 +20,7 @@ constexpr double figure_size = 0.7;                     // --scale
 constexpr double figure_scale = figure_size * publication_scale;
 
 Trajectory gallery_run(const std::string& system);
-Figure gallery_figure(const Trajectory& trajectory);
+Figure gallery_figure(const Trajectory& trajectory, const PublicationStyle& style);
 
 // The image a command of the program makes; `environment`: variables before it, as a shell reads them. Throws
 // std::runtime_error with what the program said.
