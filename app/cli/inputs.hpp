@@ -25,7 +25,7 @@ struct Source {
 class Inputs {
  public:
     Inputs() = default;
-    // Of a picture, which this command made.
+    // Reads the inputs that are kept in a picture; `command` is the command that made it.
     Inputs(std::vector<Source> kept, const std::string& command);
 
     // What the journals may do with files: nothing, until this is said. A picture's have no file to lose.
@@ -33,8 +33,8 @@ class Inputs {
         if (!from_picture_) trust_ = trust;
     }
 
-    // Of the work that is done with these; null: it has no limits. A picture's begins at once, with the time limit, another one
-    // with the first journal that is not trusted.
+    // Limits the work done with these inputs; null means no limits. The budget of a picture begins at once, with the
+    // time limit; any other begins with the first journal that is not trusted.
     const std::shared_ptr<Budget>& budget() const { return trust_.budget; }
     // What follows is short, and must not be ended in the middle.
     void end_time_limit() { time_limit_.disarm(); }

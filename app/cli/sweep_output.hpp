@@ -45,7 +45,8 @@ class SweepOutput {
     bool finish();
     // Those that finish() has made.
     const std::vector<std::string>& files() const { return made_; }
-    // For a message: ": --resume goes on with F.part", "; they are kept in F.part ..." of all runs, or nothing.
+    // The end of a message that says where the runs are kept: ": --resume goes on with F.part", or
+    // "; they are kept in F.part ..." once all runs are done. Empty if none are kept.
     std::string how_to_go_on();
 
  private:

@@ -25,7 +25,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// What stands here, and the words of other programs for it.
+// An option or command of achilles, and what other programs call it.
 struct OtherWords {
     std::string_view known, typed;
 };
@@ -91,7 +91,7 @@ constexpr OtherWords other_options[] = {
     {"simultaneous", "moreau"},
 };
 
-// No option stands for these.
+// Options of other programs that achilles does not need, and what to do instead.
 constexpr OtherWords no_options[] = {
     {"the step follows from --tolerance, and --samples N chooses the rows of a file",
      "dt step stepsize step-size timestep"},
@@ -139,7 +139,7 @@ class CommandLine {
         name_ = chosen.empty() ? "" : command_->get_name();
     }
 
-    // The first option that nobody knows, before anything else that is wrong: it takes its value along.
+    // Report the first unknown option before any other mistake: its value would be reported as one.
     InputError explain(const CLI::ParseError& error) const {
         const Words rest = program_.remaining(true);
         const auto unknown = std::find_if(rest.begin(), rest.end(), is_option);

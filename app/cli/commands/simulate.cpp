@@ -100,7 +100,7 @@ int run(const SimulateArguments& arguments) {
         dependence->quantities = quantities.of(trajectory, dependence->derivatives);
     }
     const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
-    // It takes longer than the run: of a run that is written as CSV alone nobody waits for it.
+    // The estimate takes longer than the run, so it is left out where only CSV is written.
     std::optional<ErrorEstimate> estimate;
     if (is_summed_up || !arguments.json.empty()) estimate = estimate_error(trajectory);
     const ErrorEstimate* const known = estimate ? &*estimate : nullptr;
