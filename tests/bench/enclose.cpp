@@ -27,7 +27,7 @@ double widest_zeno(const Enclosure& proof) {
     return result;
 }
 
-// A line of README's table; what is not there is a dash.
+// A row of the table in assets/manual/accuracy.md; a missing value is a dash.
 void tell(const std::string& name, const Enclosure& proof) {
     const auto size = [](double x) { return x > 0.0 ? fmt::format("{:.1e}", x) : "-"; };
     const auto count = [&](Event::Kind kind) {

@@ -1,5 +1,5 @@
-// The theory stands in chapters of its own, the Markdown files of core, in numbered sections. Comments, README and the
-// chapters cite them by the file's name and the section's number: every citation is followed here.
+// The theory has chapters, the Markdown files of core, with numbered sections. Comments, README, the manual and the chapters
+// cite them by the file's name and the section's number: every citation is followed here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -108,7 +108,7 @@ class Citations {
  public:
     explicit Citations(const Texts& texts) {
         for (const auto& [path, text] : texts)
-            if (fs::path(path).parent_path() == "core" && ends_with(path, ".md")) read_chapter(path, text);
+            if (fs::path(path).parent_path() == "core" && path != "core/README.md" && ends_with(path, ".md")) read_chapter(path, text);
         for (const auto& [path, text] : texts) {
             path_ = path;
             is_code_ = !ends_with(path, ".md");
@@ -188,7 +188,8 @@ Texts source_tree() {
         texts[fs::relative(file, root).generic_string()] = text.str();
     };
     add(root / "README.md");
-    for (const char* room : {"core", "app", "render", "tests"})
+    add(root / ".github" / "CONTRIBUTING.md");
+    for (const char* room : {"core", "app", "render", "tests", "assets"})
         for (const auto& entry : fs::recursive_directory_iterator(root / room)) {
             const std::string ending = entry.path().extension().string();
             if (ending == ".cpp" || ending == ".hpp" || ending == ".inc" || ending == ".md") add(entry.path());

@@ -1,4 +1,4 @@
-"""Systems, errors, the stub, README, the example, the installed module."""
+"""Systems, errors, the stub, the examples of README and the manual, the installed module."""
 
 import ast
 import inspect
@@ -176,25 +176,26 @@ def test_every_option_of_the_table_is_an_argument(program):
         assert "tolerance: local error per step" in function.__doc__
 
 
-def python_of(text, heading):
-    """The indented lines below a heading of README that a Python reads."""
-    lines = text.split(heading, 1)[1].split("\n### ", 1)[0].splitlines()
-    code, is_code = [], False
+def python_of(text):
+    """The first indented block of a page that begins with `import achilles`."""
+    lines = text[text.index("    import achilles\n"):].splitlines()
+    code = []
     for line in lines:
-        is_code = line.startswith("    ") or (is_code and not line)
-        if is_code:
-            code.append(line[4:])
+        if line and not line.startswith("    "):
+            break
+        code.append(line[4:])
     return "\n".join(code)
 
 
-def test_the_example_of_readme_runs(source, tmp_path, monkeypatch):
+@pytest.mark.parametrize("page", ["README.md", "assets/manual/python.md"])
+def test_the_example_of_a_page_runs(source, tmp_path, monkeypatch, page):
     monkeypatch.chdir(tmp_path)
-    text = python_of((source / "README.md").read_text(), "\n### From Python\n")
-    lines = [line for line in text.splitlines() if not line.startswith("app/run")]
+    text = python_of((source / page).read_text())
     names = {}
-    exec("\n".join(lines), names)
-    assert len(lines) >= 8 and (tmp_path / "ball.pdf").exists()
-    assert names["curve"]["zeno_time(2)"].shape == (200,)
+    exec(text, names)
+    assert len(text.splitlines()) >= 6 and names["curve"]["zeno_time(2)"].shape == (200,)
+    assert (tmp_path / "ball.pdf").exists() == ("ball.pdf" in text)
+    assert page == "README.md" or "ball.pdf" in text
 
 
 def test_the_example_draws_the_papers_figure(source, tmp_path):
