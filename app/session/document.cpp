@@ -14,82 +14,39 @@ constexpr const char* template_text =
     R"toml(# A ball in a bowl. Change anything: what can be read takes effect when you pause.
 title = "A new system"
 
-[[coordinate]]
-name  = "x"
-start = -1.0
-rate  = 1.5
-unit  = "m"
+coordinate = [
+    {name = "x", start = -1.0, rate = 1.5, unit = "m"},
+    {name = "y", start = 1.5, unit = "m"},
+]
 
-[[coordinate]]
-name  = "y"
-start = 1.5
-rate  = 0.0
-unit  = "m"
-
-[[parameter]]
-name  = "m"
-value = 1.0
-range = [0.1, 10.0]
-unit  = "kg"
-about = "mass"
-
-[[parameter]]
-name  = "g"
-value = 9.81
-range = [0.1, 20.0]
-unit  = "m/s^2"
-about = "gravity"
-
-[[parameter]]
-name  = "e"
-value = 0.6
-range = [0.0, 1.0]
-about = "restitution: normal speed after an impact over that before"
+parameter = [
+    {name = "m", value = 1.0, unit = "kg", range = [0.1, 10.0], about = "mass"},
+    {name = "g", value = 9.81, unit = "m/s^2", range = [0.1, 20.0], about = "gravity"},
+    {name = "e", value = 0.6, range = [0.0, 1.0], about = "restitution: normal speed after an impact over that before"},
+]
 
 # x' is the rate of x.
-[lagrangian]
-kinetic   = "m/2*(x'^2 + y'^2)"
-potential = "m*g*y"
+lagrangian.kinetic   = "m/2*(x'^2 + y'^2)"
+lagrangian.potential = "m*g*y"
 
 # The motion keeps the gap at zero or above; at an impact its rate is reversed and scaled.
-[[constraint]]
-gap         = "y - x^2/8"
-restitution = "e"
+constraint = [{gap = "y - x^2/8", restitution = "e"}]
 
-[run]
-end_time = 6.0
+run = {end_time = 6.0}
 
 # The surface, and the ball.
-[[drawing]]
-shape = "curve"
-over  = ["s", -4.0, 4.0]
-at    = ["s", "s^2/8"]
-
-[[drawing]]
-shape  = "disc"
-at     = ["x", "y"]
-radius = 0.05
+drawing = [
+    {shape = "curve", over = ["s", -4.0, 4.0], at = ["s", "s^2/8"]},
+    {shape = "disc", at = ["x", "y"], radius = 0.05},
+]
 
 # The plots.
-[[view]]
-name = "height"
-x = "t"
-y = ["y"]
-
-[[view]]
-name = "path"
-x = "x"
-y = ["y"]
-
-[[view]]
-name = "energy"
-x = "t"
-y = ["energy"]
-
-[[view]]
-name = "contact force"
-x = "t"
-y = ["lambda"]
+view = [
+    {name = "height", x = "t", y = ["y"]},
+    {name = "path", x = "x", y = ["y"]},
+    {name = "energy", x = "t", y = ["energy"]},
+    {name = "contact force", x = "t", y = ["lambda"]},
+]
 )toml";
 
 // The same file, whatever it is called.

@@ -10,7 +10,7 @@ namespace achilles {
 std::span<const FileTable> file_tables() {
     static const std::vector<FileTable> tables{
         {"",
-         {{"title", "text, needed", "what lists, windows and figures call the system"},
+         {{"title", "text, the file's name", "what lists, windows and figures call the system"},
           {"source", "text", "where it is from"},
           {"coordinate", "tables, 1 to 8", "[[coordinate]], in the order in which states are written"},
           {"parameter", "tables", "[[parameter]]"},

@@ -27,6 +27,12 @@ Mistake missing(const std::string& part) {
     return {{1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples", false};
 }
 
+// "mine" of some/folder/mine.toml: the title of a system whose file states none.
+std::string name_without_folder(const std::string& file) {
+    const std::string name = file.substr(file.find_last_of('/') + 1);
+    return name.ends_with(".toml") && name.size() > 5 ? name.substr(0, name.size() - 5) : name;
+}
+
 bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
@@ -357,10 +363,7 @@ FileReading read_tables(std::string text, std::string name) {
     for (const TomlEntry& entry : root.entries)  // an unknown table may hold names
         if (entry.value.kind == TomlValue::Kind::array || entry.value.kind == TomlValue::Kind::table)
             reading.names.complete = reading.names.complete && contains(keys, entry.key);
-    mistakes.attempt([&] {
-        fields.need("title", missing("title"));
-        system.title = fields.string("title").text;
-    });
+    mistakes.attempt([&] { system.title = fields.string_or("title", name_without_folder(system.file)); });
     mistakes.attempt([&] { system.source = fields.string_or("source", ""); });
     const TomlValue* constraints = fields.find("constraint");
     read.names.has_several_gaps = constraints != nullptr && constraints->items.size() > 1;

@@ -1,4 +1,4 @@
-// help and new: the manual, and a system to start from.
+// help, show and new: the manual, a gallery file, and a system to start from.
 #include "cli/manual.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/write_files.hpp"
 #include "pictures/origin.hpp"
@@ -25,8 +26,8 @@ std::string contents() {
     return text + "\nachilles COMMAND --help tells the options of a command, achilles --help the commands.\n";
 }
 
-// Writes the skeleton where nothing is yet.
-void write_new(const std::string& name) {
+// Writes `text` to NAME.toml, which must not exist.
+void write_new(const std::string& name, const std::string& text) {
     if (name.find_first_not_of(' ') == std::string::npos)
         throw InputError("new", {}, "the name is empty", "write achilles new mine: that is mine.toml");
     std::filesystem::path file = name;
@@ -36,7 +37,7 @@ void write_new(const std::string& name) {
         throw InputError(file.string(), {}, "this file is there already", "choose another name");
     OutputFiles files;
     files.add(file.string());
-    files.put(file.string(), skeleton_system());
+    files.put(file.string(), text);
     files.commit();
     const std::string path = (file.has_parent_path() ? "" : "./") + file.string();
     fmt::print("{} is written; {} runs it\n", file.string(), shell_line({"simulate", path}));
@@ -56,11 +57,23 @@ void add_manual(CLI::App& program, int& status) {
         std::fwrite(text.data(), 1, text.size(), stdout);
         status = reached_end;
     });
-    CLI::App* skeleton = program.add_subcommand("new", "Writes NAME.toml, a system to start from, with every key");
-    const auto name = std::make_shared<std::string>();
-    skeleton->add_option("NAME", *name, "the file, with or without .toml")->required()->type_name("");
-    skeleton->callback([name, &status] {
-        write_new(*name);
+    CLI::App* show = program.add_subcommand("show", "Prints a system file, such as one of the gallery");
+    const auto shown_system = std::make_shared<std::string>();
+    show->add_option("SYSTEM", *shown_system, "the path of a .toml file, or a name from 'achilles list'")
+        ->required()
+        ->type_name("");
+    show->callback([shown_system, &status] {
+        const std::string text = read_text(find_system(*shown_system));
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        status = reached_end;
+    });
+    CLI::App* create = program.add_subcommand("new", "Writes NAME.toml, a system file to start from");
+    const auto name = std::make_shared<std::string>(), from = std::make_shared<std::string>();
+    create->add_option("NAME", *name, "the file, with or without .toml")->required()->type_name("");
+    create->add_option("--from", *from, "a system to copy (default: a ball on a floor, with every key explained)")
+        ->type_name("SYSTEM");
+    create->callback([name, from, &status] {
+        write_new(*name, from->empty() ? skeleton_system() : read_text(find_system(*from)));
         status = reached_end;
     });
 }
