@@ -16,7 +16,7 @@ struct Collision {
     State before;        // (q, v-) at tau_k, h(q) = 0
     double speed = 0.0;  // w = |hdot| before
     Vector tangential;   // s = v- - n hdot
-    Vector restart;      // after re-initialisation: s, or v*
+    Vector restart;      // after reinitialization: s, or v*
     // The same place and time with another velocity.
     State with(const Vector& v) const { return {before.q, v, before.t}; }
 };

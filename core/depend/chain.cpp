@@ -68,7 +68,7 @@ void Chain::check(const Run& run) {
     if (run.options.truncation.reinitialization != Reinitialization::euclidean) return;
     throw InputError(
         "derivatives", {},
-        "they need the kinetic re-initialisation: past the Euclidean one they are wrong by about the speed at "
+        "they need the kinetic reinitialization: past the Euclidean one they are wrong by about the speed at "
         "the cut times its logarithm, and third-order in it past the kinetic one",
         "reinitialization = \"kinetic\"");
 }

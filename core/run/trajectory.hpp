@@ -129,7 +129,7 @@ struct Event {
     int impacts = 0;     // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
     struct Truncation {  // zeno: the impact where the bouncing was cut, and what restarted from it
         double t = 0.0;
-        Vector q, v_before, v;  // v: after re-initialisation
+        Vector q, v_before, v;  // v: after reinitialization
         double impact_speed = 0.0;
     };
     std::optional<Truncation> truncation;

@@ -1,4 +1,4 @@
-// The surface h(q) = 0 and what happens on it: Newton's law, the tangential velocity, projection, re-initialisation.
+// The surface h(q) = 0 and what happens on it: Newton's law, the tangential velocity, projection, reinitialization.
 #pragma once
 
 #include <optional>

@@ -80,7 +80,7 @@ struct OrbitSearch {
     std::string why;  // where there is none: a sentence
 };
 
-// Throws InputError for what is no question: a drive without a period, a period that is none, Euclidean re-initialisation. What
+// Throws InputError for what is no question: a drive without a period, a period that is none, Euclidean reinitialization. What
 // happens on the way is `why`. The run's tolerances are how exactly it closes.
 OrbitSearch find_orbit(const std::shared_ptr<const Model>& model, const OrbitAsked& asked);
 

@@ -105,7 +105,7 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
 TEST(Cli, ToleranceBelowWhatDoublesServeIsToldOnceAndRaised) {
     const Folder folder;
     const std::string warning =
-        "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n";
+        "achilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n";
     const Answer answer = folder.run("simulate ball_on_sine --end 1 --tolerance 1e-30 --json -");
     EXPECT_EQ(answer.status, 0);
     EXPECT_EQ(answer.err, warning);

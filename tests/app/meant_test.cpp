@@ -51,7 +51,7 @@ TEST(Meant, WhatACommandOverstepsIsTold) {
                   "written 45 deg\n"
                   "achilles: warning: seek 99: the run ends at t = 3 s\n"
                   "achilles: warning: seek -1: the run begins at t = 0 s\n"
-                  "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n")
+                  "achilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n")
             << command;
     }
 }
@@ -177,7 +177,7 @@ TEST(Meant, StepsWarnAsOptionsDo) {
         "figure double_pendulum --end 0.1 --set m1=7 --do \"tolerance 1e-30\" --do \"set theta1 3\" --out a.svg");
     EXPECT_EQ(answer.err,
               "achilles: warning: m1 = 7 kg is outside its range, 0.1 to 5\n"
-              "achilles: warning: tolerance = 1e-30 is less than double precision can serve: 1e-15 is used\n"
+              "achilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n"
               "achilles: warning: theta1 = 3 rad is outside its range, -1.5708 to 1.5708\n");
 }
 

@@ -90,7 +90,7 @@ TEST(OrbitCommand, RefusesWhatItCannotBeAsked) {
           std::pair{"ball_down_a_wave --shift z=1", "there is no coordinate 'z'"},
           std::pair{"ball_down_a_wave --shift x=2*pie", "unknown name 'pie'; did you mean 'pi'?"},
           std::pair{"ball_down_a_wave --from nothing.json", "nothing.json: there is no such file"},
-          std::pair{"ball_down_a_wave --reinitialization euclidean", "they need the kinetic re-initialisation"},
+          std::pair{"ball_down_a_wave --reinitialization euclidean", "they need the kinetic reinitialization"},
           std::pair{"ball_on_table", "the period of its drive must be given"},
           std::pair{"ball_on_table --period 1", "do not repeat after that time"},
           std::pair{"ball_down_a_wave --set e=2", "restitution"}})

@@ -28,7 +28,7 @@ struct Tally {
     double least(Ratio ratio) const;
 };
 
-// By conditions, re-initialisation, and whether the tolerances were met.
+// By conditions, reinitialization, and whether the tolerances were met.
 using Tallies = std::map<std::tuple<Conditions, Reinitialization, bool>, Tally>;
 void add(Tallies& tallies, const Trial& trial, const Model& model);
 std::string table_head();

@@ -1,4 +1,4 @@
-// Executions that must agree: two tolerances, two methods, two re-initialisations, two runs of the same.
+// Executions that must agree: two tolerances, two methods, two reinitializations, two runs of the same.
 #include "floor/agreement.hpp"
 #include "laws/laws.hpp"
 #include "output/output.hpp"

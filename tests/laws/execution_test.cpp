@@ -13,7 +13,7 @@ std::string listed(const Violations& violations) {
     return text;
 }
 
-// Every law is asked of the file's run, of the other conditions and of the other re-initialisation.
+// Every law is asked of the file's run, of the other conditions and of the other reinitialization.
 template <class F>
 void on_every_run(const Case& one, F law) {
     for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {

@@ -253,7 +253,7 @@ TEST(StartTime, IsTheTimeThatForcesAndGapsSee) {
     EXPECT_GT(distance(now.end, to_its_end(shifted("0")).end), 1e-3);
 }
 
-// E(end) - E(start) = work - loss, whatever moves, is held and is struck meanwhile; re-initialisations included.
+// E(end) - E(start) = work - loss, whatever moves, is held and is struck meanwhile; reinitializations included.
 TEST(PowerBalance, HoldsWithEveryContactThatMoves) {
     const auto with_gaps = [](const char* name, const std::vector<std::string>& gaps) {
         SystemDescription system = model_of(name)->description();

@@ -177,7 +177,7 @@ def test_none_is_told():
     ({"from_": {"q": [1, 2], "v": [1]}}, "from_: v is a finite number for each of x, y, not"),
     ({"from_": {"q": [1, np.nan], "v": [1, 1]}}, "from_: q is a finite number for each of x, y, not"),
     ({"from_": {"q": [1, 1], "v": [1, 1], "t": np.inf}}, "from_: t: inf does not lie in"),
-    ({"reinitialization": "euclidean"}, "they need the kinetic re-initialisation"),
+    ({"reinitialization": "euclidean"}, "they need the kinetic reinitialization"),
     ({"e": 2}, "^e=2: "),
     ({"tolerence": 1e-9}, "there is no value or option 'tolerence'; did you mean 'tolerance'"),
     ({"period": "2*pie"}, "unknown name 'pie'"),

@@ -48,11 +48,11 @@ int check(const CheckArguments& arguments) {
 void add_check(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<CheckArguments>();
     CLI::App* command =
-        program.add_subcommand("check", "Validates a system; its equations of motion and Zeno condition");
-    command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
+        program.add_subcommand("check", "Checks a system file and prints its equations of motion and Zeno condition");
+    command->add_option("SYSTEM", arguments->system, "the path of a .toml file, or a name from 'achilles list'")
         ->required()
         ->type_name("");
-    command->add_flag("--latex", arguments->latex, "as a LaTeX document");
+    command->add_flag("--latex", arguments->latex, "print a LaTeX document");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = check(*arguments); });
 }

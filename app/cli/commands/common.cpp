@@ -19,12 +19,22 @@ namespace achilles {
 
 namespace {
 
+// Headings of --help.
+constexpr const char* advanced_options = "Advanced";
+constexpr const char* paper_options = "Size on paper";
+
 template <class Number>
 std::optional<Number> parse(std::string_view text) {
     Number value{};
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
     return value;
+}
+
+// Help lists the options that most runs need first, the others under a heading of their own.
+const char* group_of(const Option& option) {
+    const bool is_usual = option.key == "end_time" || option.key == "tolerance";
+    return is_usual ? "Options" : advanced_options;
 }
 
 void add_option(CLI::App& command, const Option& option, const std::string& flag, const std::string& about,
@@ -35,7 +45,7 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
     const std::string value = !option.words.empty() ? fmt::format("{}", fmt::join(option.words, "|"))
                               : std::holds_alternative<int>(option.get({})) ? "N"
                                                                             : "X";
-    command.add_option_function<std::string>(flag, take, about)->type_name(value);
+    command.add_option_function<std::string>(flag, take, about)->type_name(value)->group(group_of(option));
 }
 
 }  // namespace
@@ -59,7 +69,7 @@ int told_of(const Enclosure& proof, bool with_reason) {
 }
 
 void add_system_argument(CLI::App& command, std::string& system) {
-    command.add_option("SYSTEM", system, "a path to a .toml file, or a name from 'achilles list'")
+    command.add_option("SYSTEM", system, "the path of a .toml file, or a name from 'achilles list'")
         ->required()
         ->type_name("");
 }
@@ -67,7 +77,7 @@ void add_system_argument(CLI::App& command, std::string& system) {
 void add_format_option(CLI::App& command, std::string& format, const std::string& about) {
     command.add_option("--format", format, about)
         ->type_name("png|svg|pdf")
-        ->check(CLI::IsMember({"png", "svg", "pdf"}));
+        ->check(CLI::IsMember({"png", "svg", "pdf"}).description(""));
 }
 
 void add_view_option(CLI::App& command, std::vector<std::string>& views, const std::string& about) {
@@ -79,21 +89,20 @@ void add_view_option(CLI::App& command, std::vector<std::string>& views, const s
 
 void add_run_options(CLI::App& command, std::vector<std::string>& settings, OptionOverrides& overrides) {
     command
-        .add_option("--set", settings,
-                    "a parameter, a coordinate x=0.3 or a rate x'=1.5, with pi/6 or \"30 deg\" for an angle; may be "
-                    "given again")
+        .add_option(
+            "--set", settings,
+            "value of a parameter, a start x=0.3 or a rate x'=1.5; pi/6 and \"30 deg\" are values, too; repeatable")
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     for (const Option* option : told_options()) {
         const std::string flag(option->flag), common = common_flag(*option);
         if (common != flag && option == &options_set_by(option->command)[0])
-            add_option(command, *option, common,
-                       "what a cut may cost in position, in velocity at the Zeno time, and in that time: all three of"
-                       " those below",
-                       overrides);
+            add_option(command, *option, common, "set --eps-q, --eps-v and --eps-t together", overrides);
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
-        add_option(command, *option, flag, std::string(option->about) + unit, overrides);
+        add_option(command, *option, flag,
+                   fmt::format("{}{} (default: the file's, else {})", option->about, unit, to_text(option->get({}))),
+                   overrides);
     }
 }
 
@@ -103,17 +112,17 @@ void add_width_option(CLI::App& command, double& width, const std::string& about
             "--width",
             [&width](const std::string& text) {
                 width = number_from("--width", text);
-                if (!(width >= 0.0)) throw InputError("--width " + text, {}, "a half width is not negative");
+                if (!(width >= 0.0)) throw InputError("--width " + text, {}, "the half-width must be 0 or more");
             },
-            about + "a half width for all coordinates and rates of the start (default 0)")
+            about + "half-width of the initial box in every coordinate and rate (default 0)")
         ->type_name("W");
 }
 
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files) {
-    command.add_flag("--allow-files", allow_files,
-                     "trust the journal: it may write files, read those that it names by a path, and take as much time "
-                     "and memory as it asks for");
-    command.add_option("--do", steps, "a command as in a journal, --do \"seek 3.2\"; may be given again")
+    command.add_flag(
+        "--allow-files", allow_files,
+        "trust the journal: let it write files, read the files it names, and take the time and memory it wants");
+    command.add_option("--do", steps, "command of the explorer, such as \"seek 3.2\"; repeatable")
         ->type_name("COMMAND")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -134,7 +143,7 @@ void add_size_options(CLI::App& command, int& width, int& height, double& scale,
         const auto w = parse<int>(std::string_view(text).substr(0, x));
         const auto h = x == std::string::npos ? std::nullopt : parse<int>(std::string_view(text).substr(x + 1));
         if (!w || !h || *w < 64 || *h < 64 || *w > 16384 || *h > 16384)
-            throw InputError("--size " + text, {}, "this is no size in pixels",
+            throw InputError("--size " + text, {}, "this is not a size in pixels",
                              "write WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384");
         width = *w;
         height = *h;
@@ -152,12 +161,15 @@ void add_page_options(CLI::App& command, PaperSize& page) {
         command
             .add_option_function<std::string>(
                 option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
-            ->type_name(type);
+            ->type_name(type)
+            ->group(paper_options);
     };
-    add("--width-mm", page.width, "MM", "its width on paper, in place of --size: 85 is a column, 170 a page");
-    add("--height-mm", page.height, "MM", "with --width-mm (default: as the plots need)");
-    add("--font-pt", page.font, "PT", fmt::format("with --width-mm, of the text (default {:g})", default_font));
-    add("--dpi", page.dpi, "N", fmt::format("with --width-mm, of a PNG (default {:g})", default_dpi));
+    add("--width-mm", page.width, "MM", "width on paper instead of --size, mm: 85 is a column, 170 a page");
+    add("--height-mm", page.height, "MM", "with --width-mm: height, mm (default: what the plots need)");
+    add("--font-pt", page.font, "PT",
+        fmt::format("with --width-mm: size of the text, pt (default {:g})", default_font));
+    add("--dpi", page.dpi, "N",
+        fmt::format("with --width-mm: resolution of a PNG, dots per inch (default {:g})", default_dpi));
 }
 
 }  // namespace achilles

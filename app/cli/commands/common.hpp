@@ -36,7 +36,7 @@ void add_width_option(CLI::App& command, double& width, const std::string& about
 // --do COMMAND, a line of a journal; may be given again. --allow-files.
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files);
 // --scale S.
-void add_scale_option(CLI::App& command, double& scale, const std::string& about = "of text and strokes (default 1)");
+void add_scale_option(CLI::App& command, double& scale, const std::string& about = "factor for text and strokes (default 1)");
 
 // --size WxH and --scale S. `about` replaces what they say of themselves.
 void add_size_options(CLI::App& command, int& width, int& height, double& scale, const std::string& about = {});

@@ -165,32 +165,30 @@ void take_columns(const std::string& text, int& columns) {
 
 void add_figure(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FigureArguments>();
-    CLI::App* command = program.add_subcommand("figure", "A publication figure of a run, as PNG, SVG or PDF");
+    CLI::App* command = program.add_subcommand("figure", "Draws plots of a run for print, as PNG, SVG or PDF");
     add_system_argument(*command, arguments->system);
-    command->add_option("--out", arguments->out, "the picture; - is standard output")
+    command->add_option("--out", arguments->out, "picture to write; - is standard output")
         ->required()
         ->type_name("F.png|F.svg|F.pdf");
-    add_view_option(*command, arguments->views, "a view of the system; may be given again (default: all)");
-    command
-        ->add_option("--journal", arguments->journal,
-                     "a journal to replay in the explorer first: then its plots are drawn")
+    add_view_option(*command, arguments->views, "view of the system; repeatable (default: all)");
+    command->add_option("--journal", arguments->journal, "journal to replay first; its plots are drawn")
         ->type_name("F");
     add_step_option(*command, arguments->steps, arguments->allow_files);
     add_format_option(*command, arguments->format, "where the name of --out does not tell");
     command
         ->add_option_function<std::string>(
             "--columns", [arguments](const std::string& text) { take_columns(text, arguments->style.columns); },
-            "of panels (default: by their number)")
+            "number of columns of panels (default: by the number of panels)")
         ->type_name("N");
-    command->add_flag("--transparent", arguments->style.transparent, "no background");
-    command->add_flag("--dark", arguments->style.dark, "light on dark, for a screen");
-    command->add_flag("--mechanism", arguments->mechanism, "the mechanism in place of plots");
-    command->add_flag(
-        "--proof", arguments->proof,
-        "prove the run as `achilles prove` does, and draw in plots over time where it is proved to be; --set "
-        "NAME=LOW..HIGH for an interval");
+    command->add_flag("--transparent", arguments->style.transparent, "leave out the background");
+    command->add_flag("--dark", arguments->style.dark, "draw light on dark, for a screen");
+    command->add_flag("--mechanism", arguments->mechanism, "draw the mechanism instead of plots");
+    command->add_flag("--proof", arguments->proof,
+                      "prove the run as `achilles prove` does and draw the proved tube in plots over time; --set "
+                      "NAME=LOW..HIGH gives an interval");
     add_width_option(*command, arguments->width, "with --proof: ");
-    command->add_option("--at", arguments->at, "of the mechanism: the instant, s (default: the start)")->type_name("T");
+    command->add_option("--at", arguments->at, "with --mechanism: instant to draw, s (default: the start)")
+        ->type_name("T");
     add_page_options(*command, arguments->page);
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);

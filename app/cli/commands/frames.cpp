@@ -236,7 +236,7 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<FramesArguments>();
     arguments->jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
     CLI::App* command =
-        program.add_subcommand("frames", "The mechanism in motion beside its plots: a film, or numbered PNGs");
+        program.add_subcommand("frames", "Draws the mechanism in motion beside its plots: a film, or numbered PNGs");
     add_system_argument(*command, arguments->system);
     command
         ->add_option(
@@ -253,25 +253,24 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
                 about)
             ->type_name("X");
     };
-    add_number("--fps", arguments->fps, 0.001, 1000.0, "frames for a second of the film (default 30)");
-    add_number("--speed", arguments->speed, 1e-9, 1e9, "seconds of the run in a second of the film (default 1)");
-    add_view_option(*command, arguments->views, "a view of the system; may be given again (default: the first three)");
+    add_number("--fps", arguments->fps, 0.001, 1000.0, "frames per second of the film (default 30)");
+    add_number("--speed", arguments->speed, 1e-9, 1e9, "seconds of the run per second of the film (default 1)");
+    add_view_option(*command, arguments->views, "view of the system; repeatable (default: the first three)");
     command
         ->add_option_function<std::string>(
             "--camera", [arguments](const std::string& text) { arguments->camera = camera_from(text); },
-            "where the mechanism's picture looks: fit (all of the run, the default), follow (the body), zeno (closer "
-            "and "
-            "closer towards a Zeno point)")
+            "camera: fit (the whole run, the default), follow (the body), zeno (closer and closer to a Zeno point)")
         ->type_name("fit|follow|zeno");
     command
         ->add_option_function<std::string>(
             "--jobs", [arguments](const std::string& text) { arguments->jobs = jobs_from(text); },
-            "processes that draw (default: as many as the machine has processors)")
+            "number of drawing processes (default: one per core)")
         ->type_name("N");
     add_step_option(*command, arguments->steps, arguments->allow_files);
-    command->add_flag("--dark", arguments->size.dark, "light on dark");
+    command->add_flag("--dark", arguments->size.dark, "draw light on dark");
     command->add_flag("--overwrite", arguments->overwrite, "replace frames of other commands");
-    command->add_flag("--progress", arguments->progress, "lines of progress on standard error, for a program to read");
+    command->add_flag("--progress", arguments->progress,
+                      "print progress lines on standard error, for a program to read");
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status, &job] { status = draw_frames(*arguments, job); });

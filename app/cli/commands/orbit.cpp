@@ -86,29 +86,29 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
 void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     const auto arguments = std::make_shared<OrbitArguments>();
     CLI::App* command =
-        program.add_subcommand("orbit", "A periodic run, with its multipliers, and its branch in a parameter");
+        program.add_subcommand("orbit", "Finds a periodic orbit, its multipliers, and its branch in a parameter");
     add_system_argument(*command, arguments->system);
     const auto add = [&](const char* flag, std::string& place, const char* type, const char* about) {
         command->add_option(flag, place, about)->type_name(type);
     };
     add("--from", arguments->asked.from, "start|end|FILE",
-        "where the search begins: the start of the run, its end, or the state in a file that orbit --json or simulate "
-        "--json wrote (default: [orbit] of the system, else the start)");
+        "initial guess: the start of the run, its end, or the state in a file written by orbit --json or simulate "
+        "--json (default: [orbit] of the system, else the start)");
     add("--period", arguments->asked.period, "EXPRESSION",
-        "that of a drive, an expression in the parameters: 2*pi/om; without a drive a guess");
+        "period, an expression in the parameters such as 2*pi/om: that of the drive, or without a drive a guess, s");
     command
         ->add_option("--shift", arguments->asked.shifts,
-                     "a coordinate that has moved on by so much after a period: x=2*pi; may be given again")
+                     "shift of a coordinate after one period, such as x=2*pi; repeatable")
         ->type_name("NAME=EXPRESSION")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add("--continue", arguments->asked.along, "NAME=LOW:HIGH",
-        "follow its branch in a parameter, both ways, through folds; it ends where a Zeno point is lost");
+        "follow the branch in a parameter, in both directions and through folds, until a Zeno point is lost");
     add("--json", arguments->json, "F", "where to write all of it as JSON, instead of text; - is standard output");
-    add("--out", arguments->out, "F.png|F.svg|F.pdf", "a picture of one period, or of the branch");
-    add_view_option(*command, arguments->views, "of --out: a view of the system; may be given again (default: all)");
-    command->add_flag("--transparent", arguments->style.transparent, "of --out: no background");
-    command->add_flag("--dark", arguments->style.dark, "of --out: light on dark, for a screen");
+    add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
+    add_view_option(*command, arguments->views, "with --out: view of the system; repeatable (default: all)");
+    command->add_flag("--transparent", arguments->style.transparent, "with --out: leave out the background");
+    command->add_flag("--dark", arguments->style.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, arguments->page);
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
     add_run_options(*command, arguments->asked.settings, arguments->overrides);

@@ -70,10 +70,10 @@ void add_paper(CLI::App& program, int& status, PictureJob& job) {
     };
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command =
-        program.add_subcommand("paper", "Figure 4 (a)-(f) of the paper, its numbers beside ours, and the proofs");
-    command->add_option("--out", arguments->out, "the folder for the pictures (default ./achilles-paper)")
+        program.add_subcommand("paper", "Draws Fig. 4 (a)-(f) of the paper and compares its numbers with ours");
+    command->add_option("--out", arguments->out, "folder for the pictures (default ./achilles-paper)")
         ->type_name("DIR");
-    add_format_option(*command, arguments->format, "of the pictures (default png)");
+    add_format_option(*command, arguments->format, "format of the pictures (default png)");
     add_scale_option(*command, arguments->scale);
     command->callback(
         [arguments, &status, &job] { status = draw_paper(arguments->out, arguments->format, arguments->scale, job); });

@@ -73,7 +73,7 @@ void finish_output() {
 }
 
 int run(std::vector<std::string> words, Messages* ranks) {
-    CLI::App program("Lagrangian hybrid systems, simulated past their Zeno points", "achilles");
+    CLI::App program("Simulates mechanical systems with impacts past their Zeno points", "achilles");
     program.set_version_flag("--version", "achilles " + version());
     program.require_subcommand(1);
     int status = reached_end;

@@ -77,7 +77,7 @@ int run(const ProveArguments& arguments) {
 void add_prove(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<ProveArguments>();
     CLI::App* command =
-        program.add_subcommand("prove", "A whole run as a theorem: boxes around every member of a set of runs");
+        program.add_subcommand("prove", "Encloses every run from a box of initial states and parameters, with proof");
     add_system_argument(*command, arguments->system);
     add_width_option(*command, arguments->width, "");
     command
@@ -89,11 +89,9 @@ void add_prove(CLI::App& program, int& status) {
                     throw InputError("--split " + text, {}, "a whole number from 1 to 1000 is expected");
                 arguments->parts = static_cast<int>(parts);
             },
-            "parts that each side of the box is cut into, proved on all cores (default 1)")
+            "number of parts each side of the box is cut into; the parts are proved on all cores (default 1)")
         ->type_name("K");
-    command
-        ->add_option("--json", arguments->json,
-                     "where to write the proof as JSON, instead of text; - is standard output")
+    command->add_option("--json", arguments->json, "write the proof as JSON instead of text; - is standard output")
         ->type_name("F");
     command
         ->add_option_function<std::string>(
@@ -104,13 +102,13 @@ void add_prove(CLI::App& program, int& status) {
                     throw InputError("--samples " + text, {}, "a whole number from 2 to 100000 is expected");
                 arguments->samples = static_cast<int>(count);
             },
-            "instants at equal distances, both ends included, at which the state is enclosed")
+            "number of equidistant instants, both ends included, at which the state is enclosed")
         ->type_name("N");
-    command->add_option("--times", arguments->times, "the same for the instants in a file, one a line")->type_name("F");
+    command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->get_option("--set")->description(
-        "a parameter, a coordinate x=0.3 or a rate x'=1.5, or an interval of it: x=0.1..0.2; may be given again");
+        "value of a parameter, a start x=0.3 or a rate x'=1.5, or an interval x=0.1..0.2; repeatable");
     // How a run is computed means nothing to a proof.
     for (const char* idle : {"--tolerance", "--method", "--memory", "--simultaneous", "--conditions",
                              "--reinitialization", "--eps", "--eps-q", "--eps-v"})

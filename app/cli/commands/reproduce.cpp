@@ -93,14 +93,13 @@ void add_reproduce(CLI::App& program, int& status) {
     };
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
-        "reproduce", "Prints the command a picture was made by, and makes the same bytes again from what it carries");
+        "reproduce", "Prints the command that made a picture, and makes the same bytes again from the picture alone");
     command
         ->add_option("PICTURE", arguments->picture,
-                     "a PNG, SVG or PDF file of figure, sweep, orbit, frames, paper or screenshot")
+                     "PNG, SVG or PDF made by figure, sweep, orbit, frames, paper or screenshot")
         ->required()
         ->type_name("");
-    command->add_option("--out", arguments->out, "where to put it; without, the bytes are only compared")
-        ->type_name("F");
+    command->add_option("--out", arguments->out, "picture to write (default: only compare the bytes)")->type_name("F");
     command->callback([arguments, &status] { status = reproduce(arguments->picture, arguments->out); });
 }
 

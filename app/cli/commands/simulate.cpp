@@ -124,30 +124,31 @@ int run(const SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& program, int& status) {
     const auto arguments = std::make_shared<SimulateArguments>();
-    CLI::App* command = program.add_subcommand("simulate", "One completed execution, as a summary, JSON or CSV");
-    command->add_option("SYSTEM", arguments->system, "a path to a .toml file, or a name from 'achilles list'")
+    CLI::App* command = program.add_subcommand("simulate", "Simulates one run: a summary, JSON or CSV");
+    command->add_option("SYSTEM", arguments->system, "the path of a .toml file, or a name from 'achilles list'")
         ->required()
         ->type_name("");
     command
         ->add_option("--json", arguments->json,
-                     "where to write the trajectory as JSON, instead of the summary; - is standard output")
+                     "write the trajectory as JSON instead of the summary; - is standard output")
         ->type_name("F");
-    command->add_option("--csv", arguments->csv, "the same as CSV: times in s, angles in rad")->type_name("F");
+    command->add_option("--csv", arguments->csv, "write the trajectory as CSV: times in s, angles in rad")
+        ->type_name("F");
     command
         ->add_option_function<std::string>(
             "--samples", [arguments](const std::string& text) { arguments->samples = samples_from(text); },
-            "instants at equal distances, both ends included, for the rows of --csv and `samples` of --json")
+            "number of equidistant instants, both ends included, for the rows of --csv and `samples` of --json")
         ->type_name("N");
-    command->add_option("--times", arguments->times, "the same for the instants in a file, one a line")->type_name("F");
+    command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
     command->add_flag("--plain-names", arguments->plain_names,
-                      "columns of --csv have names that Python can use: theta1_rate for theta1'");
-    command->add_flag("--units", arguments->units, "a second line of --csv has the units of the columns");
-    command->add_flag("--derivatives", arguments->derivatives,
-                      "of the times of events, of what happens there and of the end, by every start and parameter");
+                      "name the columns of --csv as Python can: theta1_rate for theta1'");
+    command->add_flag("--units", arguments->units, "add a second line with the units of the columns to --csv");
+    command->add_flag(
+        "--derivatives", arguments->derivatives,
+        "also compute derivatives of every event and of the final state with respect to starts and parameters");
     command
-        ->add_option(
-            "--of", arguments->of,
-            "with --derivatives: also of this expression at the end, as --print of a sweep; may be given again")
+        ->add_option("--of", arguments->of,
+                     "with --derivatives: an expression to differentiate, as --print of a sweep; repeatable")
         ->type_name("EXPRESSION")
         ->allow_extra_args(false);
     command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");

@@ -153,18 +153,19 @@ void add_texts(CLI::App& command, const char* flag, std::vector<std::string>& te
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks) {
     const auto arguments = std::make_shared<SweepArguments>();
     CLI::App* command = program.add_subcommand("sweep",
-                                               "Many runs as a table, CSV or HDF5, and as a figure: over values of "
-                                               "parameters, starts and options");
+                                               "Simulates many runs over parameters, starts and options: a table, a "
+                                               "curve, a map");
     add_system_argument(*command, arguments->system);
     AskedSweep& asked = arguments->asked;
-    add_texts(*command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
-              "what varies: a parameter, x or x' of the start, or an option that is a number (end), over COUNT values "
-              "from LOW to HIGH, or log:LOW:HIGH:COUNT; given again, the first is the slowest");
+    add_texts(
+        *command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
+        "axis of the sweep: a parameter, a start x, a rate x' or a numeric option such as end, with COUNT values from "
+        "LOW to HIGH; log:LOW:HIGH:COUNT is logarithmic; repeatable, the first varies slowest");
     add_texts(
         *command, "--print", asked.prints, "WHAT",
-        "what is asked of a run: an expression over its end, with zeno_time(k), impact_time(k), impact_speed(k), "
-        "release_time(k), zeno_points, impacts, releases, least_gap; its derivative, d(zeno_time(1), e); or held, or "
-        "outcome; may be given again");
+        "quantity to tabulate: an expression at the end of the run, zeno_time(k), impact_time(k), impact_speed(k), "
+        "release_time(k), zeno_points, impacts, releases, least_gap, their derivatives such as d(zeno_time(1), e), "
+        "held or outcome; repeatable");
     const auto text_option = [&](const char* flag, std::optional<std::string>& place, const char* type,
                                  const char* about) {
         command
@@ -173,26 +174,26 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
             ->type_name(type);
     };
     text_option("--at", asked.at, "impact|zeno|release|EXPRESSION",
-                "a row at every such event, or where the expression passes zero upwards, in place of the end");
-    text_option("--after", asked.after, "T", "of --at: not before this time");
-    text_option("--random", asked.random, "N", "so many points at random, of --over NAME=LOW:HIGH without COUNT");
-    text_option("--seed", asked.seed, "S", "another S, other points (default 1)");
+                "tabulate at every such event, or where the expression crosses zero upward, instead of at the end");
+    text_option("--after", asked.after, "T", "with --at: tabulate from this time on, s (default: the start)");
+    text_option("--random", asked.random, "N",
+                "number of random points instead of a grid; --over then takes NAME=LOW:HIGH");
+    text_option("--seed", asked.seed, "S", "seed of the random points (default 1)");
     SweepOutputAsked& output = arguments->output;
-    command->add_option("--csv", output.csv, "where to write the table; without a file, to standard output")
-        ->type_name("F");
-    command->add_option("--hdf5", output.hdf5, "the same as HDF5: /axes/NAME, /values/WHAT")->type_name("F");
+    command->add_option("--csv", output.csv, "file for the table (default: standard output)")->type_name("F");
+    command->add_option("--hdf5", output.hdf5, "HDF5 file for the table: /axes/NAME, /values/WHAT")->type_name("F");
     add_texts(*command, "--out", arguments->pictures.files, "F.png|F.svg|F.pdf",
-              "the picture: curves over one axis, a map over two, a diagram of --at; may be given again");
-    command->add_flag("--units", output.units, "a second line of --csv has the units of the columns");
-    command->add_flag("--resume", output.resume, "go on with the same sweep where it was interrupted");
+              "picture: curves over one axis, a map over two, a diagram with --at; repeatable");
+    command->add_flag("--units", output.units, "add a second line with the units of the columns to --csv");
+    command->add_flag("--resume", output.resume, "continue an interrupted sweep");
     command
         ->add_option_function<std::string>(
             "--threads", [arguments](const std::string& text) { arguments->threads = threads_from(text); },
-            "so many at once in each process (default: one for every core); the files are the same")
+            "worker threads per process (default: one per core); does not change the output")
         ->type_name("N");
     SweepPicturesAsked& pictures = arguments->pictures;
-    command->add_flag("--transparent", pictures.look.transparent, "of --out: no background");
-    command->add_flag("--dark", pictures.look.dark, "of --out: light on dark, for a screen");
+    command->add_flag("--transparent", pictures.look.transparent, "with --out: leave out the background");
+    command->add_flag("--dark", pictures.look.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, pictures.page);
     add_size_options(*command, pictures.size.width, pictures.size.height, pictures.size.scale);
     add_run_options(*command, arguments->settings, arguments->overrides);

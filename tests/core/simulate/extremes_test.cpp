@@ -22,8 +22,8 @@ TEST(SmallTolerances, AreToldAndRaised) {
     run.options.tolerance = 1e-30;
     run.options.truncation.eps_v = 9e-16;
     EXPECT_EQ(warnings(run.options),
-              (std::vector<std::string>{"tolerance = 1e-30 is less than double precision can serve: 1e-15 is used",
-                                        "eps_v = 9e-16 is less than double precision can serve: 1e-15 is used"}));
+              (std::vector<std::string>{"tolerance = 1e-30 is below what double precision supports; using 1e-15",
+                                        "eps_v = 9e-16 is below what double precision supports; using 1e-15"}));
     const Trajectory raised = simulate(model, run);
     EXPECT_EQ(raised.run.options.tolerance, 1e-15);
     EXPECT_EQ(raised.run.options.truncation.eps_v, 1e-15);
