@@ -121,9 +121,9 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
 std::string stability_text(const OrbitPoint& point) {
     const std::size_t first = point.has_flow ? 1 : 0;
     const double most = point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
-    if (!point.stable) return fmt::format("not stable: a small change becomes {:.4g} times as large in a period", most);
-    if (most == 0.0) return "stable: of a small change nothing is left";
-    return fmt::format("stable: of a small change {:.4g} is left after a period", most);
+    if (!point.stable) return fmt::format("unstable: perturbations grow by a factor {:.4g} per period", most);
+    if (most == 0.0) return "stable: perturbations vanish within a period";
+    return fmt::format("stable: perturbations shrink to {:.4g} of their size per period", most);
 }
 
 std::string margins_text(const OrbitPoint& point) {
@@ -198,6 +198,67 @@ std::string orbit_text(const Orbit& orbit, const Branch* branch) {
     text += fmt::format("multipliers {}\n{}\n\n{}\n{}", multipliers_text(orbit, 11), stability_text(orbit),
                         events_of(orbit), margins_text(orbit));
     if (branch != nullptr) text += branch_text(*branch, description);
+    return text;
+}
+
+namespace {
+
+// One period as a line: "release at 0 s, 17 impacts from 1.886 s before the cut, Zeno point at 2.43686 s".
+std::string period_line(const Orbit& orbit) {
+    std::string text;
+    int impacts = 0;
+    double first = 0.0;
+    const auto add = [&](const std::string& what) { text += (text.empty() ? "" : ", ") + what; };
+    const auto add_impacts = [&](const char* cut) {
+        if (impacts > 0) add(fmt::format("{} impact{} from {:.7g} s{}", impacts, impacts == 1 ? "" : "s", first, cut));
+        impacts = 0;
+    };
+    if (orbit.is_at_release) add(fmt::format("release at {:.7g} s", orbit.state.t));
+    for (const Event& event : orbit.run.events) {
+        if (event.kind == Event::Kind::impact) {
+            if (impacts++ == 0) first = event.t;
+            continue;
+        }
+        const bool is_release = event.kind == Event::Kind::release, is_plastic = is_plastic_landing(event);
+        add_impacts(is_release || is_plastic ? "" : " before the cut");
+        add(fmt::format("{} at {:.7g} s", is_release ? "release" : is_plastic ? "contact" : "Zeno point", event.t));
+    }
+    add_impacts("");
+    return text.empty() ? "no events" : text;
+}
+
+std::string branch_answer(const Branch& branch, const SystemDescription& description) {
+    const std::string& name = description.parameters[branch.parameter].name;
+    std::string text =
+        fmt::format("\nbranch in {}, {:.6g} to {:.6g} ({} points)\n", name, branch.value(branch.points.front()),
+                    branch.value(branch.points.back()), branch.points.size());
+    const auto add = [&](const char* what, const std::vector<OrbitPoint>& all) {
+        for (const OrbitPoint& point : all)
+            text += fmt::format("  {} = {:.9g}   {}, period {:.9g} s\n", name, branch.value(point), what, point.period);
+    };
+    add("fold", branch.folds);
+    add("period doubling (multiplier -1)", branch.flips);
+    add("Neimark-Sacker (complex multipliers of size 1)", branch.circles);
+    add("Zeno point lost", branch.lost);
+    add("other events from here on", branch.changes);
+    return text + fmt::format("  first point: {}\n  last point: {}\n", branch.ends[0], branch.ends[1]);
+}
+
+}  // namespace
+
+std::string orbit_answer(const Orbit& orbit, const Branch* branch) {
+    const SystemDescription& description = orbit.run.model->description();
+    std::string text = fmt::format("{}: {} periodic orbit, period {:.14g} s\n\n", description.title,
+                                   orbit.stable ? "stable" : "unstable", orbit.period);
+    text += fmt::format("  {}\n", stability_text(orbit));
+    text += fmt::format("  multipliers   {}\n", multipliers_text(orbit, 8));
+    text += fmt::format("  one period    {}\n", period_line(orbit));
+    text += fmt::format("  start         {}, {}\n", named(description, orbit.state.q, ""),
+                        named(description, orbit.state.v, "'"));
+    if (branch != nullptr) text += branch_answer(*branch, description);
+    text += fmt::format(
+        "\nNumerical result, not a proof (Newton residual {:.0e}). Margins, impacts, options: --verbose.{}\n",
+        orbit.error, branch == nullptr ? " Branch: --continue NAME=LOW:HIGH" : "");
     return text;
 }
 

@@ -10,6 +10,8 @@ namespace achilles {
 // Numbers in the shortest form that reads back the same double; no wall clock. Without a branch its member is null.
 std::string to_json(const Orbit& orbit, const Branch* branch = nullptr);
 std::string orbit_text(const Orbit& orbit, const Branch* branch = nullptr);
+// The default output: period and stability first, then multipliers, one period, the start, and what the branch meets.
+std::string orbit_answer(const Orbit& orbit, const Branch* branch = nullptr);
 // Parts of it: "1 (along the motion), -0.7, 0, 0 (the last 2 exactly)", with so many digits; how stable it is, in a sentence; its
 // margins.
 std::string multipliers_text(const OrbitPoint& point, int digits);

@@ -15,6 +15,8 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
 // No more than to_json() claims: hypotheses as a person wrote them, or rounded inward; conclusions rounded outward, as numbers
 // with how far the truth is from them at most.
 std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof);
+// The default output: the time reached, a row per change of the contact state, the hypotheses. The same rounding.
+std::string proof_answer(const Model& model, const Claim& claim, const Enclosure& proof);
 
 // The time until which all is proved, s: the end time, or another one rounded down to so many digits.
 std::string reach_text(const Enclosure& proof, int digits = 6);

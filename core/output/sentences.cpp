@@ -66,12 +66,17 @@ std::string Sentences::energy(double value, double error) const {
     return digits == "0" ? "" : with_unit(digits, energy_unit_);
 }
 
-// ", 0.4 J lost"; nothing of an elastic impact.
-std::string Sentences::lost(double energy, const Event& event) const {
+// The same for an energy that changes at this event.
+std::string Sentences::energy(double value, const Event& event) const {
     Sample before;
     before.t = event.t;
     before.state = {event.q, event.v_before, event.t};
-    const std::string text = this->energy(energy, precision_.of_energy(before));
+    return energy(value, precision_.of_energy(before));
+}
+
+// ", 0.4 J lost"; nothing of an elastic impact.
+std::string Sentences::lost(double energy, const Event& event) const {
+    const std::string text = this->energy(energy, event);
     if (text.empty()) return "";
     return energy_unit_.empty() ? ", energy lost " + text : ", " + text + " lost";
 }
@@ -112,12 +117,54 @@ std::string Sentences::impact(std::size_t index) const {
     return text;
 }
 
+// What the file says of the start of this contact, else "contact begins" or "knee is held".
+std::string Sentences::beginning(const Event& event) const {
+    const bool is_one = event.contacts.count() == 1;
+    const std::string words = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
+    if (!words.empty()) return words;
+    if (!is_of_several_) return "contact begins";
+    return joined_names(*trajectory_.model, event.contacts, " and ") + (is_one ? " is held" : " are held");
+}
+
+std::string Sentences::change(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    if (event.kind == Event::Kind::impact)
+        return fmt::format("impact of {} opens {}", joined_names(*trajectory_.model, event.contacts, " and "),
+                           joined_names(*trajectory_.model, event.opened, " and "));
+    if (event.kind == Event::Kind::release) {
+        const bool is_one = event.contacts.count() == 1;
+        const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";
+        if (!ends.empty()) return ends + ": its contact force reached zero";
+        return is_of_several_
+                   ? "force of " + joined_names(*trajectory_.model, event.contacts, " and ") + " reached zero"
+                   : "contact force reached zero";
+    }
+    if (is_plastic_landing(event)) return beginning(event) + "; plastic impact";
+    const Pile pile = pile_of(trajectory_, index);
+    std::string text = beginning(event);
+    if (pile.impacts == 0) return text;
+    text += fmt::format("; impacts since {} s",
+                        known_digits(trajectory_.events[pile.first].t, precision_.of_event(pile.first), 4));
+    const std::string loss = energy(pile.loss, event);
+    if (loss.empty()) return text;
+    return text + (energy_unit_.empty() ? " dissipated the energy " : " dissipated ") + loss;
+}
+
+std::string Sentences::holding(ContactSet held, const char* flight) const {
+    if (held.empty()) return flight;
+    return is_of_several_ ? "held by " + joined_names(*trajectory_.model, held, " and ") : "in contact";
+}
+
+std::string Sentences::state_at_start() const {
+    return holding(trajectory_.phases.empty() ? trajectory_.end_held : trajectory_.phases.front().held, "free flight");
+}
+
+std::string Sentences::state_at_end() const { return holding(trajectory_.end_held, "in flight"); }
+
 std::string Sentences::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
-    const std::string names = is_of_several_ ? joined_names(*trajectory_.model, event.contacts, " and ") : "";
     const bool is_one = event.contacts.count() == 1;
-    std::string begins = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
-    if (begins.empty()) begins = names.empty() ? "contact begins" : names + (is_one ? " is held" : " are held");
+    const std::string begins = beginning(event);
     // Its impact has told what is lost.
     if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
     const Pile pile = pile_of(trajectory_, index);

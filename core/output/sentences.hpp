@@ -14,8 +14,7 @@ namespace achilles {
 
 // "knee is held: 10 impacts before the cut, 1.3 J lost, certified to 1e-6 s from the cut": the Zeno time of the exact motion from
 // the computed state at the cut is that near to the event's, by the certificate; "proved" is said of whole runs alone
-// (proof.hpp). In the units of the file, but gap speeds in deg/s where
-// angles are shown in degrees.
+// (proof.hpp). In the units of the file, but gap speeds in deg/s where angles are shown in degrees.
 class Sentences {
  public:
     enum class Angles { radians, degrees };
@@ -31,6 +30,12 @@ class Sentences {
     // "start at 0 s: in free flight" and "end at 20 s: knee is held"; of a run that ended early, why.
     std::string start() const;
     std::string end() const;
+    // A change of the contact state in a few words, for a table: "contact begins; impacts since 1.694 s dissipated 0.301 J".
+    std::string change(std::size_t event) const;
+    // "free flight", "in contact", "held by left and right".
+    std::string state_at_start() const;
+    // The same, with "in flight".
+    std::string state_at_end() const;
     // "24 impacts before the cuts", of the whole run.
     std::string impacts() const;
     // "2.13 J", or nothing where it is rounding: of an energy with such an error.
@@ -43,6 +48,9 @@ class Sentences {
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
     std::string state(ContactSet held) const;
+    std::string holding(ContactSet held, const char* flight) const;
+    std::string beginning(const Event& event) const;
+    std::string energy(double value, const Event& event) const;
     std::string lost(double energy, const Event& event) const;
     // Of one contact, what the file says of it; may be empty.
     std::string own_words(ContactSet contact, std::string ConstraintDescription::*words) const;

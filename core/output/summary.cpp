@@ -280,10 +280,10 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n",
-                        Sentences(trajectory).impacts(), s.steps, s.evaluations, has_power ? " beside the work" : "",
-                        drift_text(s.energy_drift),
-                        least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
+    text +=
+        fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", Sentences(trajectory).impacts(),
+                    s.steps, s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
+                    least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
     if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";

@@ -29,6 +29,7 @@ struct OrbitArguments {
     PublicationStyle style;
     PictureSize size;
     PaperSize page;
+    bool verbose = false;
 };
 
 int run(const OrbitArguments& arguments, PictureJob& job) {
@@ -57,13 +58,17 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
     if (text != arguments.out) job.add(text);
     const OrbitAnswer found = answer_to(question, model);
     if (!found.orbit) {
-        print_clean(stderr, "achilles: no periodic run was found: {}\n", found.why);
+        print_clean(
+            stderr,
+            "achilles: no periodic orbit found: {}. Try another guess: --from end, --from FILE or --set NAME=VALUE\n",
+            found.why);
         return stopped_early;
     }
     const Branch* const followed = found.branch ? &*found.branch : nullptr;
     if (text != arguments.out)
-        job.put_text(text, arguments.json.empty() ? printable(orbit_text(*found.orbit, followed))
-                                                  : to_json(*found.orbit, followed));
+        job.put_text(text, arguments.json.empty()
+                               ? printable((arguments.verbose ? orbit_text : orbit_answer)(*found.orbit, followed))
+                               : to_json(*found.orbit, followed));
     if (!arguments.out.empty()) {
         PublicationStyle style = arguments.style;
         style.ordered = !arguments.views.empty();
@@ -107,6 +112,7 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     add("--json", arguments->json, "F", "where to write all of it as JSON, instead of text; - is standard output");
     add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
     add_view_option(*command, arguments->views, "with --out: view of the system; repeatable (default: all)");
+    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, margins, options");
     command->add_flag("--transparent", arguments->style.transparent, "with --out: leave out the background");
     command->add_flag("--dark", arguments->style.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, arguments->page);

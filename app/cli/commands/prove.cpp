@@ -28,7 +28,7 @@ struct ProveArguments {
     int parts = 1;
     std::string times;
     std::optional<int> samples;
-    bool verbose = false;
+    bool verbose = false, timing = false;
 };
 
 // The start and the parameters as boxes. `points` becomes the settings with the middle of each interval.
@@ -65,10 +65,10 @@ int run(const ProveArguments& arguments) {
     const std::string out = arguments.json.empty() ? "-" : arguments.json;
     files.add(out);
     const Enclosure proof = arguments.parts > 1 ? prove_in_parts(model, claim, arguments.parts) : prove(model, claim);
-    files.put(out,
-              arguments.json.empty() ? printable(proof_text(*model, claim, proof)) : to_json(*model, claim, proof));
+    const auto text = [&] { return (arguments.verbose ? proof_text : proof_answer)(*model, claim, proof); };
+    files.put(out, arguments.json.empty() ? printable(text()) : to_json(*model, claim, proof));
     files.commit();
-    if (arguments.verbose) print_clean(stderr, "achilles: {:.3g} s\n", proof.statistics.seconds);
+    if (arguments.verbose || arguments.timing) print_clean(stderr, "achilles: {:.3g} s\n", proof.statistics.seconds);
     return told_of(proof, !arguments.json.empty());
 }
 
@@ -105,7 +105,8 @@ void add_prove(CLI::App& program, int& status) {
             "number of equidistant instants, both ends included, at which the state is enclosed")
         ->type_name("N");
     command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
-    command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
+    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, velocities, wall time");
+    command->add_flag("--timing", arguments->timing, "print the wall time on standard error");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->get_option("--set")->description(
         "value of a parameter, a start x=0.3 or a rate x'=1.5, or an interval x=0.1..0.2; repeatable");

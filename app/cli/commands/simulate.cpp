@@ -16,7 +16,9 @@
 #include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "output/answer.hpp"
 #include "output/output.hpp"
+#include "pictures/origin.hpp"
 
 namespace achilles {
 
@@ -29,7 +31,7 @@ struct SimulateArguments {
     std::string times;
     std::optional<int> samples;
     std::vector<std::string> of;
-    bool verbose = false, plain_names = false, units = false, derivatives = false;
+    bool verbose = false, timing = false, plain_names = false, units = false, derivatives = false;
     int width = 0, height = 0;  // common options that mean nothing here
     double scale = 1.0;
 };
@@ -75,6 +77,16 @@ Instants instants_of(const SimulateArguments& arguments, const Run& run) {
     return read_instants(text, arguments.times, start, end);
 }
 
+// The command line that proves this run.
+std::string prove_command(const SimulateArguments& arguments) {
+    std::vector<std::string> words{"prove", arguments.system};
+    for (const std::string& setting : arguments.settings) words.insert(words.end(), {"--set", setting});
+    for (const char* key : {"start_time", "end_time"})
+        if (const auto* given = arguments.overrides.given(option(key)))
+            words.insert(words.end(), {given->first, to_text(given->second)});
+    return shell_line(words);
+}
+
 int run(const SimulateArguments& arguments) {
     check_files(arguments);
     const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
@@ -110,11 +122,13 @@ int run(const SimulateArguments& arguments) {
         files.put(arguments.csv, to_csv(trajectory, {instants, arguments.plain_names, arguments.units}));
     if (is_summed_up) {
         files.add("-");
-        files.put("-", printable(summary(trajectory, known) + (dependence ? summary(trajectory, *dependence) : "")));
+        const std::string text =
+            arguments.verbose ? summary(trajectory, known) : answer(trajectory, *known, prove_command(arguments));
+        files.put("-", printable(text + (dependence ? summary(trajectory, *dependence) : "")));
     }
     files.commit();
     // Not in the files: the same run gives the same bytes.
-    if (arguments.verbose)
+    if (arguments.verbose || arguments.timing)
         print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
                     trajectory.statistics.certificate_seconds);
     return told_of(trajectory, !is_summed_up, known);
@@ -151,7 +165,9 @@ void add_simulate(CLI::App& program, int& status) {
                      "with --derivatives: an expression to differentiate, as --print of a sweep; repeatable")
         ->type_name("EXPRESSION")
         ->allow_extra_args(false);
-    command->add_flag("--verbose", arguments->verbose, "tell on standard error how long it took");
+    command->add_flag("--verbose", arguments->verbose,
+                      "print everything: impacts, certificates, assumptions, statistics, wall time");
+    command->add_flag("--timing", arguments->timing, "print the wall time on standard error");
     add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures");
     // Common options are taken; those that mean nothing here are not listed.
     for (const char* idle : {"--size", "--scale"}) command->get_option(idle)->group("");
