@@ -168,7 +168,7 @@ Markers opened_markers(const Theme& theme) {
     return markers;
 }
 
-std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
+std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "in flight" : "in contact"; }
 
 std::string event_name(const Event& event) {
     return is_plastic_landing(event) ? "landing" : event_markers({}, event.kind).label;

@@ -363,7 +363,7 @@ TEST(Session, SaysAtACutWhatThePictureShows) {
         const Sample now = session.at(t);
         const PhaseLabel label = phase_label(now);
         EXPECT_EQ(label.color == Phase::Kind::constrained, now.contact) << t;
-        EXPECT_EQ(label.text, t < cut ? "hybrid" : t < zeno.t ? "cut, in contact" : "constrained") << t;
+        EXPECT_EQ(label.text, t < cut ? "in flight" : t < zeno.t ? "cut, in contact" : "in contact") << t;
     }
 }
 

@@ -62,8 +62,8 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     Animation animation(trajectory, views, {1600, 1000, 1.0}, 1.0 / 30.0);
     const Still before = animation.at(1.0), after = animation.at(3.2);
     EXPECT_EQ(to_text(before).substr(0, to_text(before).find("shape")),
-              "Ball bouncing on a sinusoidal surface\n𝑡 = 1.00 s\nhybrid\n");
-    EXPECT_NE(to_text(after).find("𝑡 = 3.20 s\nconstrained\n"), std::string::npos);
+              "Ball bouncing on a sinusoidal surface\n𝑡 = 1.00 s\nin flight\n");
+    EXPECT_NE(to_text(after).find("𝑡 = 3.20 s\nin contact\n"), std::string::npos);
 
     const Panel &first = before.plots.panels[0], &second = after.plots.panels[0];
     EXPECT_EQ(first.y.low, second.y.low);

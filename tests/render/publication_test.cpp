@@ -69,12 +69,12 @@ TEST_F(Publication, the_legend_tells_what_occurs_and_nothing_else) {
     const ViewDescription y = view("height", "t", {"y"});
     std::string labels;
     for (const Key& key : of({y}).keys) labels += key.label + "|";
-    EXPECT_EQ(labels, "hybrid|constrained|impact|Zeno point, 𝜏_{∞}|release|");
+    EXPECT_EQ(labels, "in flight|in contact|impact|Zeno point, 𝜏_{∞}|release|");
     achilles::Run before = model->default_run();
     before.options.end_time = 1.0;
     trajectory = simulate(model, before);
     ASSERT_EQ(of({y}).keys.size(), 1u);
-    EXPECT_EQ(of({y}).keys[0].label, "hybrid");
+    EXPECT_EQ(of({y}).keys[0].label, "in flight");
 }
 
 // At restitution 0 nothing bounces: no legend speaks of a Zeno point.
@@ -116,7 +116,7 @@ TEST_F(Publication, no_legend_covers_data) {
             EXPECT_FALSE(words->x > plot.x && words->x < plot.x + plot.width && words->y + words->size > plot.y &&
                          words->y < plot.y + plot.height)
                 << words->label;
-        labels += words->label == "𝑥\u0307" || words->label == "𝑦\u0307" || words->label == "hybrid" ? 1 : 0;
+        labels += words->label == "𝑥\u0307" || words->label == "𝑦\u0307" || words->label == "in flight" ? 1 : 0;
     }
     EXPECT_EQ(labels, 3);
 }
@@ -338,8 +338,8 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
             if (const auto* words = std::get_if<TextRun>(&item)) found = found || words->label == label;
         return found;
     };
-    EXPECT_TRUE(holds(600, 400, "constrained"));
-    EXPECT_FALSE(holds(200, 150, "constrained"));
+    EXPECT_TRUE(holds(600, 400, "in contact"));
+    EXPECT_FALSE(holds(200, 150, "in contact"));
     EXPECT_TRUE(holds(200, 150, "2"));
 }
 

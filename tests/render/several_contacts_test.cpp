@@ -163,13 +163,13 @@ TEST(Openings, are_hollow_triangles_above_the_impact) {
     const Figure figure = publication(trajectory, {&view, 1}, {});
     std::vector<std::string> keys;
     for (const Key& key : figure.keys) keys.push_back(key.label);
-    EXPECT_EQ(keys, (std::vector<std::string>{"hybrid: no contact held", "constrained: the bars name the contacts held",
+    EXPECT_EQ(keys, (std::vector<std::string>{"in flight: no contact held", "in contact: the bars name the contacts held",
                                               "impact", "Zeno point, \U0001D70F_{\u221E}", "release",
                                               "opened by an impact"}));
     EXPECT_EQ(publication(run_of("travelling_wave"), {&run_of("travelling_wave").model->description().views[0], 1}, {})
                   .keys[0]
                   .label,
-              "hybrid");
+              "in flight");
 }
 
 TEST(Boundaries, of_several_gaps_are_drawn_where_no_other_is_negative) {
