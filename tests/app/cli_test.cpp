@@ -1,6 +1,7 @@
 // What a user sees on the command line: statuses and files. What is refused stands in refused_test.cpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -17,10 +18,10 @@ using nlohmann::json;
 TEST(Cli, TheCommandLineOverridesTheFile) {
     const Folder folder;
     folder.put("drop.toml", drop_text + "[run]\nmethod = \"taylor\"\n[truncation]\nconditions = \"paper\"\n");
-    const Answer from_file = folder.run("simulate drop.toml");
+    const Answer from_file = folder.run("simulate drop.toml --verbose");
     EXPECT_EQ(from_file.status, 0);
     EXPECT_NE(from_file.out.find("taylor, tolerance"), std::string::npos) << from_file.out;
-    const Answer answer = folder.run("simulate drop.toml --method dopri5 --conditions sharp");
+    const Answer answer = folder.run("simulate drop.toml --method dopri5 --conditions sharp --verbose");
     EXPECT_EQ(answer.status, 0);
     EXPECT_NE(answer.out.find("dopri5, tolerance"), std::string::npos) << answer.out;
     EXPECT_NE(answer.out.find("sharp conditions"), std::string::npos) << answer.out;
@@ -121,7 +122,7 @@ TEST(Cli, ToleranceBelowWhatDoublesServeIsToldOnceAndRaised) {
 
 TEST(Cli, SaysWhatProofsAssume) {
     const Folder folder;
-    const std::string out = folder.run("simulate ball_on_sine --end 3").out;
+    const std::string out = folder.run("simulate ball_on_sine --end 3 --verbose").out;
     for (const char* words :
          {"IEEE double arithmetic in round-to-nearest", "elementary functions within 2 ulp", "4 for sinh, cosh, tanh"})
         EXPECT_NE(out.find(words), std::string::npos) << out;
@@ -130,7 +131,7 @@ TEST(Cli, SaysWhatProofsAssume) {
     EXPECT_EQ(assumed["ulps_hyperbolic"], 4);
     EXPECT_NE(out.find(assumed["library"].get<std::string>()), std::string::npos) << out;
     // Without a Zeno point nothing is proved.
-    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1").out.find("assume"), std::string::npos);
+    EXPECT_EQ(folder.run("simulate ball_on_sine --end 1 --verbose").out.find("assume"), std::string::npos);
 }
 
 TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
@@ -182,8 +183,32 @@ TEST(Cli, OutputReplacesAFileThroughALink) {
     EXPECT_TRUE(json::accept(content(folder.path() / "old.json")));
 }
 
-TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
+// The answer first, in at most 15 lines: what happened, a row for each change of the contact state, how accurate it is, what to
+// type next. Numbers have no digit that the certificates and the estimate do not support.
+TEST(Cli, SimulateAnswersFirst) {
     const Answer answer = Folder().run("simulate ball_on_sine");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(
+        answer.out.rfind("Ball bouncing on a sinusoidal surface: simulated to t = 20 s, in contact at the end\n\n", 0),
+        0u)
+        << answer.out;
+    EXPECT_LE(std::count(answer.out.begin(), answer.out.end(), '\n'), 15) << answer.out;
+    for (const char* line :
+         {"\n +t \\(s\\) +event +x \\(m\\) +y \\(m\\)\n", "\n +0 +start +0 +2 +free flight\n",
+          "\n +2\\.725142 +Zeno +4\\.60889[0-9]* +-0\\.99464[0-9]* +contact begins; impacts since 1\\.694 s "
+          "dissipated 0\\.301 J\n",
+          "\n +3\\.731822 +release +", "contact force reached zero\n", "\n +20 +end +11\\.50370",
+          "\nZeno times certified within 6\\.9e-7 s and 1\\.4e-7 s \\(truncation only\\)",
+          "achilles prove ball_on_sine\n", "21 impacts, 42 steps"})
+        EXPECT_TRUE(std::regex_search(answer.out, std::regex(line))) << line << "\n" << answer.out;
+    const Answer stopped = Folder().run("simulate ball_on_sine --max-impacts 3 --set e=0.6");
+    EXPECT_NE(stopped.out.find(" s of 20 s: too many impacts\n  "), std::string::npos) << stopped.out;
+    EXPECT_NE(stopped.out.find("Try a larger --max-impacts"), std::string::npos) << stopped.out;
+    EXPECT_NE(stopped.out.find("achilles prove ball_on_sine --set e=0.6\n"), std::string::npos) << stopped.out;
+}
+
+TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
+    const Answer answer = Folder().run("simulate ball_on_sine --verbose");
     EXPECT_EQ(answer.status, 0);
     for (const char* part : {"hybrid phase", "constrained phase", "zeno      t = 2.725142", "release"})
         EXPECT_NE(answer.out.find(part), std::string::npos) << part;

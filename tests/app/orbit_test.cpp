@@ -1,6 +1,7 @@
 // `achilles orbit` as a user meets it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -34,12 +35,27 @@ TEST(OrbitCommand, TellsAPeriodicRunAsJson) {
 }
 
 TEST(OrbitCommand, TellsItToAPerson) {
-    const Answer answer = Folder().run("orbit ball_down_a_wave");
+    const Answer answer = Folder().run("orbit ball_down_a_wave --verbose");
     EXPECT_EQ(answer.status, 0);
     for (const char* words : {"period 3.5442946466688 s, from the release at t = 0 s", "x = 0.859359933872 m",
                               "1 (along the motion), -0.70143327007, 0, 0 (the last 2 exactly)",
-                              "stable: of a small change 0.7014 is left after a period", "a_inf 2.874"})
+                              "stable: perturbations shrink to 0.7014 of their size per period", "a_inf 2.874"})
         EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+}
+
+TEST(OrbitCommand, AnswersFirst) {
+    const Answer answer = Folder().run("orbit ball_down_a_wave");
+    EXPECT_EQ(answer.out.rfind("Ball down a tilted wave: stable periodic orbit, period 3.5442946466688 s\n", 0), 0u)
+        << answer.out;
+    EXPECT_LE(std::count(answer.out.begin(), answer.out.end(), '\n'), 15) << answer.out;
+    for (const char* words : {"multipliers   1 (along the motion), -0.70143327, 0, 0",
+                              "release at 0 s, 17 impacts from 1.886433 s "
+                              "before the cut, Zeno point at 2.43686 s",
+                              "not a proof"})
+        EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+    const Answer branch = Folder().run("orbit ball_down_a_wave --set e=0.3 --continue b=0.04:0.08");
+    EXPECT_NE(branch.out.find("b = 0.06669076"), std::string::npos) << branch.out;
+    EXPECT_NE(branch.out.find("period doubling (multiplier -1)"), std::string::npos) << branch.out;
 }
 
 // From the end of a run, from a file that was written, with a shift of the command line.
@@ -71,7 +87,7 @@ TEST(OrbitCommand, FollowsABranch) {
     EXPECT_EQ(branch["flips"], json::array());
     ASSERT_EQ(branch["lost"].size(), 1u);
     EXPECT_NEAR(branch["lost"][0]["value"].get<double>(), 0.6632133961, 1e-8);
-    const Answer text = Folder().run("orbit ball_down_a_wave --set e=0.3 --continue b=0.04:0.08");
+    const Answer text = Folder().run("orbit ball_down_a_wave --set e=0.3 --continue b=0.04:0.08 --verbose");
     EXPECT_NE(text.out.find("flip (mu = -1)             b = 0.0666907604986"), std::string::npos) << text.out;
 }
 
@@ -97,7 +113,7 @@ TEST(OrbitCommand, RefusesWhatItCannotBeAsked) {
         EXPECT_NE(told(arguments).find(words), std::string::npos) << arguments << "\n" << told(arguments);
     const Answer none = folder.run("orbit ball_on_floor --json out.json");
     EXPECT_EQ(none.status, 3);
-    EXPECT_NE(none.err.find("no periodic run was found: "), std::string::npos) << none.err;
+    EXPECT_NE(none.err.find("no periodic orbit found: "), std::string::npos) << none.err;
     EXPECT_TRUE(folder.files().empty());
 }
 

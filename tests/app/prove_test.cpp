@@ -1,6 +1,7 @@
 // `achilles prove` as a user meets it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/program.hpp"
@@ -32,11 +33,27 @@ TEST(Prove, TellsAWholeRunAsIntervals) {
 }
 
 TEST(Prove, TellsAPersonWhatIsProvedAndWhatItStandsOn) {
-    const Answer answer = Folder().run("prove ball_on_sine --end 4");
+    const Answer answer = Folder().run("prove ball_on_sine --end 4 --verbose");
     EXPECT_EQ(answer.status, 0);
     for (const char* words :
          {"For every start with", "is proved until t = 4", "zeno     t = 2.72514217273", "rounded to nearest"})
         EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+}
+
+// The answer first, in at most 15 lines; the table has the Zeno points and the release, and no impacts.
+TEST(Prove, AnswersFirst) {
+    const Answer answer = Folder().run("prove ball_on_sine");
+    EXPECT_EQ(answer.status, 0);
+    EXPECT_EQ(answer.out.rfind("Ball bouncing on a sinusoidal surface: proved to t = 20 s, the end\n\n  event ", 0), 0u)
+        << answer.out;
+    EXPECT_LE(std::count(answer.out.begin(), answer.out.end(), '\n'), 15) << answer.out;
+    for (const char* words :
+         {"\n  Zeno ", "\n  release ", "\n  end ", "Holds for x = 0, y = 2, x' = 1.5, y' = 0, m = 1"})
+        EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
+    EXPECT_EQ(answer.out.find("\n  impact"), std::string::npos) << answer.out;
+    const Answer undecided = Folder().run("prove ball_on_sine --width 1e-3");
+    EXPECT_NE(undecided.out.find(" s of 20 s, then undecided\n  "), std::string::npos) << undecided.out;
+    EXPECT_NE(undecided.out.find("Try a smaller box"), std::string::npos) << undecided.out;
 }
 
 // Boxes, interval parameters, parts; and status 3 with no end where a box is too wide.
@@ -59,7 +76,7 @@ TEST(Prove, TakesBoxesAndInterval) {
 // Where a proof ends undecided, the reason stands once on a terminal, and how far it goes is not rounded up.
 TEST(Prove, SaysOnceWhyItIsUndecided) {
     const Folder folder;
-    const Answer text = folder.run("prove ball_on_sine --set e=0.46..0.5"),
+    const Answer text = folder.run("prove ball_on_sine --set e=0.46..0.5 --verbose"),
                  data = folder.run("prove ball_on_sine --set e=0.46..0.5 --json -");
     EXPECT_EQ(text.status, 3);
     EXPECT_EQ(data.status, 3);
@@ -83,10 +100,10 @@ TEST(Prove, SaysOnceWhyItIsUndecided) {
 // What a person typed is what is claimed to be proved.
 TEST(Prove, PrintsWhatWasTyped) {
     const Folder folder;
-    const Answer answer = folder.run("prove ball_on_floor --set r=0.059..0.061 --width 1e-5 --end 0.9");
+    const Answer answer = folder.run("prove ball_on_floor --set r=0.059..0.061 --width 1e-5 --end 0.9 --verbose");
     EXPECT_NE(answer.out.find("r in [0.059, 0.061]"), std::string::npos) << answer.out;
     EXPECT_NE(answer.out.find("y in [0.99999, 1.00001]"), std::string::npos) << answer.out;
-    const Answer parts = folder.run("prove ball_on_sine --end 12 --set e=0.499..0.501 --split 16");
+    const Answer parts = folder.run("prove ball_on_sine --end 12 --set e=0.499..0.501 --split 16 --verbose");
     EXPECT_NE(parts.out.find("7 to 8 more before the cut, by part"), std::string::npos) << parts.out;
     EXPECT_NE(parts.out.find("  release  t = 3.73"), std::string::npos) << parts.out;
 }
@@ -98,7 +115,7 @@ TEST(Prove, RefusesWhatItDoesNotCoverAndWhatIsImpossible) {
              {"ball_on_sine --set e=0.9..1.1", "the part above 1 is impossible"},
              {"ball_on_sine --set y=-0.1..0.1", "the gap is negative for a part of the starts"},
              {"ball_on_sine --set e=0.5..z", "--set e=z"},
-             {"ball_on_sine --width -1", "a half width is not negative"},
+             {"ball_on_sine --width -1", "the half-width must be 0 or more"},
              {"ball_on_sine --split 0", "a whole number from 1 to 1000"}}) {
         const Answer answer = folder.run("prove " + arguments + " --json out.json");
         EXPECT_EQ(answer.status, 2) << arguments;

@@ -51,7 +51,6 @@ const Change in_keys[] = {
     {"eps_q", "epsq",
      "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown here: "
      "eps_q, eps_v, eps_t, conditions, reinitialization"},
-    {"title = \"drop\"\n", "", "f.toml:1:1: missing title\nassets/systems has complete examples"},
     {"name = \"x\"\n", "", "f.toml:2:1: missing key 'name' in [[coordinate]]\n    [[coordinate]]\n    ^"},
     {"value = 2\n", "", "f.toml:8:1: missing key 'value' in [[parameter]]\n    [[parameter]]\n    ^"},
     {"kinetic = \"m/2*(x'^2 + theta'^2)\"\n", "",
