@@ -74,7 +74,8 @@ std::optional<Launch> find_launch() {
 }
 
 Ranks::Ranks(const Launch& launch) {
-    if (!launch.has_mpi) cannot_share(launch, "srun has not told them how to reach one another: srun --mpi=pmix does");
+    if (!launch.has_mpi)
+        cannot_share(launch, "the processes cannot reach each other; start them with: srun --mpi=pmix");
     mpi_ = load(launch);
     mpi_->begin(&rank_, &size_, &cores_);
     if (launch.size > 0 && launch.size != size_) {

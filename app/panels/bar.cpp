@@ -23,7 +23,7 @@ constexpr std::array<Shown, 6> panels{{{"controls", "Controls", '1'},
                                        {"plots", "Plots", '2'},
                                        {"events", "Events", '3'},
                                        {"sweep", "Sweep", '4'},
-                                       {"depend", "What it depends on", '5'},
+                                       {"depend", "Sensitivities", '5'},
                                        {"orbit", "Periodic run", '6'}}};
 
 template <class Content>
@@ -82,7 +82,7 @@ void show_edit_menu(const Session& session, PanelState& state, Commands& command
     if (menu_item("Reset all values", state)) commands.emplace_back(command::Reset{});
     ImGui::Separator();
     if (menu_item("Command\u2026", state)) commands.emplace_back(command::Show{"palette", true});
-    if (menu_item("Text of the system", state, session.shows_editor())) toggle_editor(session, state, commands);
+    if (menu_item("Edit System File", state, session.shows_editor())) toggle_editor(session, state, commands);
 }
 
 void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
@@ -110,7 +110,7 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     ImGui::Separator();
     if (menu_item("Larger", state)) enlarge(session, 1, commands);
     if (menu_item("Smaller", state)) enlarge(session, -1, commands);
-    if (menu_item("As large as at first", state)) enlarge(session, 0, commands);
+    if (menu_item("Reset Zoom", state)) enlarge(session, 0, commands);
     if (menu_item("Dark theme", state, session.theme().dark))
         commands.emplace_back(command::UseTheme{!session.theme().dark});
 }

@@ -148,7 +148,7 @@ void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
     if (!palette.wrong.empty()) return show_message(palette.wrong, width);
     if (found.empty()) {
         const std::string usage = usage_of(palette.text);
-        return paragraph(usage.empty() ? "no command has these letters" : usage, width, faint_color());
+        return paragraph(usage.empty() ? "no matching command" : usage, width, faint_color());
     }
     const Found& chosen = found[static_cast<std::size_t>(palette.chosen)];
     if (ImGui::CalcTextSize(chosen.usage.c_str()).x > width) paragraph(chosen.usage, width, faint_color());

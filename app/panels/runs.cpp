@@ -45,8 +45,7 @@ void show_heading(const Session& session, PanelState& state, Commands& commands)
     const float y = ImGui::GetItemRectMin().y;
     const ImVec2 next = ImGui::GetCursorScreenPos();
     float right = ImGui::GetWindowPos().x + content_right();
-    if (word("unpin all", "unpin all", "let go of all pinned runs", right, y, state))
-        commands.emplace_back(command::UnpinAll{});
+    if (word("unpin all", "unpin all", "Unpin all runs", right, y, state)) commands.emplace_back(command::UnpinAll{});
     const bool open = session.scene().shows("runs");
     if (word("table", "runs table",
              open ? "close the table of the runs" : "what differs between the runs, and what follows: a table below",

@@ -58,7 +58,7 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
                                                              {"Copy command of the figure", "figure"},
                                                              {"Copy command of the run", "run"}};
     for (const auto& [name, what] : lines)
-        if (item(name, "the line for a shell that makes the same", state)) commands.emplace_back(command::Copy{what});
+        if (item(name, "shell command that reproduces this", state)) commands.emplace_back(command::Copy{what});
 }
 
 void show_tour_items(const Session& session, PanelState& state, Commands& commands) {

@@ -30,7 +30,7 @@ void Scene::perform(const command::Camera& command) {
         throw refusal(
             fmt::format("there is no camera '{}'{}", command.mode, did_you_mean(command.mode, command::camera_modes)));
     if (*mode == CameraMode::fixed && !look_)
-        throw refusal("nobody has looked anywhere yet, where the camera could stay",
+        throw refusal("camera fixed: no view has been chosen yet; use `look X Y WIDTH` or the mouse wheel",
                       "look X Y WIDTH does so, or the wheel of the mouse");
     camera_ = *mode;
     if (camera_ == CameraMode::fit) look_.reset();

@@ -16,7 +16,7 @@ void Prover::begin() {
     std::optional<std::size_t> on_surface;
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (certainly_positive(openings_[i].gap)) continue;
-        if (on_surface) throw Undecided{"it starts on several surfaces at once, or may"};
+        if (on_surface) throw Undecided{"the initial box may touch more than one contact surface"};
         on_surface = i;
     }
     if (on_surface) begin_on_surface(start, *on_surface);

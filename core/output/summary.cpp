@@ -153,7 +153,7 @@ class Course {
         text += indented(sentence(*event.certificate, model_.description()));
         if (!is_plastic && index < estimate_.events.size())
             text += indented(
-                fmt::format("not proved: estimated error {:.1g} s of the time above", estimate_.events[index]));
+                fmt::format("integration error of this time: about {:.1g} s (estimate)", estimate_.events[index]));
         else if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
             text += indented(fmt::format(
                 "not covered: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
@@ -253,7 +253,7 @@ std::string sentence(const Certificate& c, const SystemDescription& description)
     if (closest != nullptr && !(closest->left <= closest->right))
         return text + fmt::format("; what was asked for is not met: {}, {:.2g} < {:.2g}, does not hold", closest->name,
                                   closest->left, closest->right);
-    return text + fmt::format("; of the {} this had the least room: {}", c.paper ? "conditions" : "bounds", c.decisive);
+    return text + fmt::format("; tightest of the {}: {}", c.paper ? "conditions" : "bounds", c.decisive);
 }
 
 std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {

@@ -219,7 +219,7 @@ ClosedLap search(const ReturnMap& map, int periods) {
     const double before = newton.scale().segment(n, n).maxCoeff(),
                  now = scale_of(map, closed.lap, 1.0).segment(n, n).maxCoeff();
     if (!(closed.lap.period > shrunk * lap.period && now > shrunk * before))
-        throw NoOrbit("the search has ended in a point at rest, whose period is none");
+        throw NoOrbit("the search converged to an equilibrium, not to a periodic orbit");
     closed = put_in_place(map, newton, std::move(closed));
     closed.iterations = iterations;
     closed.shot = map.shoot(closed.lap);

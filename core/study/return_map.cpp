@@ -32,8 +32,8 @@ ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const C
         return;
     }
     if (!(T > 0.0) || !std::isfinite(T))
-        throw InputError("--period " + closing.period.text, {}, fmt::format("a period of {} s is none", T),
-                         "it must be positive");
+        throw InputError("--period " + closing.period.text, {},
+                         fmt::format("the period must be positive, but it is {} s", T), "it must be positive");
     if (is_driven()) check_repeats();
 }
 
@@ -108,7 +108,8 @@ Trajectory ReturnMap::run_of(const Lap& lap, double length) const {
 
 Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) const {
     const Index n = dof();
-    if (!(lap.period > 0.0) || !lap.x.allFinite()) throw NoOrbit("the search has left all that could be a period");
+    if (!(lap.period > 0.0) || !lap.x.allFinite())
+        throw NoOrbit("the search diverged: the period left its admissible range");
     Shot shot;
     shot.run = run_of(lap, lap.period);
     if (shot.run.outcome.kind != Outcome::Kind::end_time)
@@ -116,7 +117,7 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
                                   shot.run.outcome.message));
     if (!shot.run.phases.front().held.empty() || !shot.run.end_held.empty())
         throw NoOrbit(
-            "the search was led to where the period begins in a contact, not in a flight; another guess may help");
+            "the search reached a start in contact, but needs one in free flight; try another guess (--from, --set)");
     const auto P = static_cast<Index>(lap.parameters.size());
     MatrixXd directions = MatrixXd::Identity(2 * n + P + 1, 2 * n + P);
     for (Index k = 0; parameter && k < P; ++k)
