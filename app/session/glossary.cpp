@@ -70,7 +70,7 @@ constexpr std::array keys{
     Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
     Shortcut{"Ctrl+Minus", "smaller", "Smaller"},
     Shortcut{"Ctrl+0", "reset zoom", "Reset Zoom"},
-    Shortcut{"F11", "for a class", "Presentation"},
+    Shortcut{"F11", "presentation mode", "Presentation"},
     Shortcut{"Ctrl+C", "copy the chosen event"},
     Shortcut{"Ctrl+Q", "close the window"},
     Shortcut{"Space", "play, pause"},

@@ -110,7 +110,7 @@ TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
     EXPECT_NE(text.find(": uniform position;\n"), std::string::npos) << text;
     EXPECT_NE(
         text.find(
-            ": shadowing position and velocity;\n            of the bounds this had the least room: uniform position"),
+            ": shadowing position and velocity;\n            tightest of the bounds: uniform position"),
         std::string::npos)
         << text;
     EXPECT_NE(text.find("m of its position (the bounces not drawn are no higher)"), std::string::npos) << text;
@@ -255,7 +255,7 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
     EXPECT_NE(text.find("zeno      t = 2.725142173"), std::string::npos) << text;
     EXPECT_NE(text.find("release   t = 3.73182"), std::string::npos) << text;
     EXPECT_NE(text.find("tau_inf in [2.725142172"), std::string::npos) << text;
-    EXPECT_NE(text.find("of the conditions this had the least room: c3: velocity"), std::string::npos) << text;
+    EXPECT_NE(text.find("tightest of the conditions: c3: velocity"), std::string::npos) << text;
     EXPECT_NE(text.find("do not cover"), std::string::npos) << text;
     EXPECT_NE(text.find("outcome: end time"), std::string::npos) << text;
 }
