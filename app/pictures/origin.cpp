@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cli/overrides.hpp"
 #include "figure/palette.hpp"
 #include "image/pdf_notes.hpp"
 #include "image/png_notes.hpp"
@@ -115,6 +116,16 @@ std::string shell_line(const std::vector<std::string>& words) {
     std::string text = "achilles";
     for (const std::string& word : words) text += " " + shell_word(word);
     return text;
+}
+
+std::string prove_line(const std::string& system, const std::vector<std::string>& settings,
+                       const OptionOverrides& overrides) {
+    std::vector<std::string> words{"prove", system};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    for (const char* key : {"start_time", "end_time"})
+        if (const auto* given = overrides.given(option(key)))
+            words.insert(words.end(), {given->first, to_text(given->second)});
+    return shell_line(words);
 }
 
 std::string command_line(const std::vector<std::string>& words) {

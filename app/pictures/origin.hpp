@@ -11,6 +11,8 @@
 
 namespace achilles {
 
+struct OptionOverrides;
+
 struct Origin {
     std::string software;  // "Achilles 0.1.0"
     std::string command;   // as a shell reads it, without --out and what else does not change the picture
@@ -22,7 +24,10 @@ struct Origin {
 std::string shell_word(const std::string& word);
 // "achilles" and the words, as a shell reads them.
 std::string shell_line(const std::vector<std::string>& words);
-// The same without --out, --csv and what else says where files go or how the work is done.
+// The command line that proves the run of a system with these settings. Of the overrides a proof needs the run's times only.
+std::string prove_line(const std::string& system, const std::vector<std::string>& settings,
+                       const OptionOverrides& overrides);
+// The words of a command without --out, --csv and what else says where files go or how the work is done.
 std::string command_line(const std::vector<std::string>& words);
 // The words again. Throws std::runtime_error if the text is no such command line.
 std::vector<std::string> words_of(std::string_view command_line);

@@ -46,7 +46,7 @@ void check(const PaperSize& page, const std::string& what) {
 
 // No picture is a strip.
 double height_of(const PaperSize& page, double shape) {
-    return page.height > 0.0 ? page.height : page.width / std::clamp(shape, 0.7, 3.0);
+    return page.height > 0.0 ? page.height : page.width / std::clamp(shape, tallest_shape, 3.0);
 }
 
 PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape) {

@@ -30,6 +30,8 @@ PictureSize on_page(const PaperSize& page, const std::string& format, double tex
 // The page as such a picture has it: a resolution is for pixels alone.
 PaperSize page_for(PaperSize page, const std::string& format);
 
+// Width over height of the highest picture that gets its height from its plots.
+constexpr double tallest_shape = 0.7;
 // mm: the page's own, or where that is 0 what its width and this shape make.
 double height_of(const PaperSize& page, double shape);
 

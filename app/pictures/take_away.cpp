@@ -98,7 +98,7 @@ std::string figure_bytes(const Session& session, const Plots& plots, const comma
     PublicationStyle style;
     style.columns = plots.columns();
     style.dark = what.dark;
-    style.size = resolution_of(page_of(what), {}, format, style.shape);
+    style.size = resolution_of(page_of(what), {}, format);
     const Figure figure = figure_of(session, plots, style);
     const PictureSize size = size_of(page_of(what), {}, figure, format);
     return picture_of(figure, size, notes_of(session, figure_words(session, plots, session.system()), what), format);
@@ -168,9 +168,9 @@ PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing&
     return in_pixels;
 }
 
-Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format, double shape) {
+Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format) {
     const bool is_page = page.width > 0.0;
-    const PictureSize size = is_page ? on_page(page_for(page, format), format, 1.0, shape) : in_pixels;
+    const PictureSize size = is_page ? on_page(page_for(page, format), format, 1.0, tallest_shape) : in_pixels;
     const double fineness = is_page && format != "png" ? 4.0 : 1.0;
     return {fineness * size.width, fineness * size.height};
 }

@@ -24,9 +24,10 @@ Drawing mechanism_of(const Session& session, const Theme& theme);
 PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Figure& figure, const std::string& format);
 PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing& world, const std::string& format);
 
-// The size of a figure, pixels, by which its curves are sampled: PublicationStyle::size. `shape` as in on_page(). A printer
-// resolves more than the points that a page in a vector format is measured in.
-Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format, double shape);
+// The size of a figure, pixels, by which its curves are sampled: PublicationStyle::size. A page without a
+// height counts as the highest one, since the plots that set the height are not made yet. A printer resolves more than the
+// points that a page in a vector format is measured in.
+Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format);
 
 // Writes what the file's ending asks for: .svg, .png or .pdf the plots, one of them or the mechanism; .json or .csv the run; .journal the
 // session. Whole or not at all; over another file only with `overwrite`. Throws InputError.

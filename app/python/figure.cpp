@@ -18,7 +18,7 @@ Look look_of(const AskedLook& asked, const std::string& format) {
     look.style.dark = dark;
     look.style.transparent = transparent;
     look.style.ordered = !look.views.empty();
-    look.style.size = resolution_of(look.page, look.size, format, look.style.shape);
+    look.style.size = resolution_of(look.page, look.size, format);
     look.style.shape = double{1} * look.size.width / look.size.height;
     check(look.page, "figure");
     look.page = page_for(look.page, format);

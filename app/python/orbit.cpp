@@ -109,7 +109,7 @@ void bind_orbits(py::module_& module) {
                  return std::pair(asked.settings, asked.options);
              })
         .def(
-            "summary", [](const Found& f) { return orbit_text(f.orbit(), f.branch()); }, released)
+            "summary", [](const Found& f) { return orbit_answer(f.orbit(), f.branch()); }, released)
         .def(
             "json", [](const Found& f) { return to_json(f.orbit(), f.branch()); }, released)
         .def("figure", [](const Found& f, const AskedLook& look, const std::string& format) {

@@ -9,6 +9,7 @@
 #include "depend/quantities.hpp"
 #include "module.hpp"
 #include "number/ground.hpp"
+#include "output/answer.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "pictures/views.hpp"
@@ -182,7 +183,12 @@ void bind_runs(py::module_& module) {
         .def("arrays", &arrays_of)
         .def("values", &values_of)
         .def(
-            "summary", [](const Made& m) { return summary(m.trajectory, &m.estimate()); }, released)
+            "summary",
+            [](const Made& m) {
+                return answer(m.trajectory, m.estimate(),
+                              prove_line(m.system->name, m.asked.settings, overrides_of(m.asked)));
+            },
+            released)
         .def("json",
              [](const Made& m, const std::optional<Times>& times) {
                  const Instants instants = instants_from(times);

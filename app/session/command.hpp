@@ -325,9 +325,9 @@ struct Copy {
 // What makes a journal a tour.
 struct Wait {
     double seconds = 0.0;  // for somebody to look; a run that plays goes on meanwhile
-    static constexpr auto said = Said("wait", "write: wait SECONDS", Change::none,
-                                      Field(&Wait::seconds, {.fits = [](double x) { return x >= 0.0; },
-                                                             .complaint = "nobody can wait for the past"}));
+    static constexpr auto said = Said(
+        "wait", "write: wait SECONDS", Change::none,
+        Field(&Wait::seconds, {.fits = [](double x) { return x >= 0.0; }, .complaint = "the time must be 0 or more"}));
 };
 struct Say {
     std::string text;  // stands above the mechanism until something else does; empty: nothing

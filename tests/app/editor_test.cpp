@@ -77,7 +77,7 @@ TEST(Editor, shows_and_hides_and_does_nothing_by_itself) {
 
 TEST(Editor, a_text_takes_effect_when_the_hand_rests) {
     Writer hands;
-    const std::string text = replaced(ball(), "value = 1.0\nrange = [0.1, 20.0]", "value = 2.5\nrange = [0.1, 20.0]");
+    const std::string text = replaced(ball(), "value = 1.0, unit = \"m/s^2\"", "value = 2.5, unit = \"m/s^2\"");
     hands.write(text);
     hands.rest(frames_of_a_pause - 6);
     EXPECT_TRUE(hands.all.empty()) << "the hand has not rested yet";
@@ -103,8 +103,8 @@ TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_
     EXPECT_EQ(to_text(hands.session.trajectory()), before);
     ASSERT_EQ(hands.session.document().problems.size(), 1U);
     const InputError& problem = hands.session.document().problems[0];
-    EXPECT_EQ(problem.at.line, 46);
-    EXPECT_EQ(problem.at.column, 26);
+    EXPECT_EQ(problem.at.line, 20);
+    EXPECT_EQ(problem.at.column, 37);
     EXPECT_EQ(hands.session.error(), "") << "told under the text, not over the picture too";
     const Folder folder;
     folder.put("bad.toml", bad);
@@ -332,7 +332,7 @@ float scroll_of(Writer& hands) {
 
 // The text stays where it is when a change in sight is undone, in every frame; a change out of sight is brought into it.
 TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
-    Writer hands;
+    Writer hands("ball_on_egg_crate");  // a long text
     hands.click("text");
     hands.press_with_control(key::end);
     for (const char* letters : {"# one", "\n[[", "\n"}) {
@@ -349,18 +349,18 @@ TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
     hands.hand.keys.clear();
     for (int i = 0; i < 3; ++i) after.push_back(scroll_of(hands));
     EXPECT_TRUE(hands.session.document().problems.empty());
-    ASSERT_EQ(hands.session.document().text, ball() + "# one");
+    ASSERT_EQ(hands.session.document().text, test::system("ball_on_egg_crate").source_text + "# one");
     // Without its message the text has more lines on the screen, and two less in all.
     for (const float scroll : after) EXPECT_NEAR(scroll, before, 12.0F * 14.0F);
     EXPECT_GT(after.back(), 300.0F);
-    hands.session.apply(command::Text{replaced(hands.session.document().text, "Or & Ames 2009", "Or and Ames 2009")});
+    hands.session.apply(command::Text{replaced(hands.session.document().text, "title = \"", "title = \"My ")});
     hands.rest(3);
     EXPECT_LT(scroll_of(hands), 100.0F) << "line 7 is in sight";
 }
 
 // Another document begins at its top.
 TEST(Editor, AnotherTextBeginsAtItsTop) {
-    Writer hands;
+    Writer hands("ball_on_egg_crate");  // a long text
     hands.click("text");
     hands.press_with_control(key::end);
     hands.rest(3);
@@ -400,13 +400,13 @@ TEST(Editor, MessagesBeginWithTheNameOfTheFile) {
     Writer hands;
     hands.session.apply(command::Open{path});
     hands.rest(3);
-    EXPECT_EQ(std::string(hands.session.document().problems.at(0).what()).find(path + ":46:26: "), 0U);
-    EXPECT_TRUE(hands.says("mine.toml:46:26: "));
-    EXPECT_FALSE(hands.says(path + ":46")) << hands.letters();
+    EXPECT_EQ(std::string(hands.session.document().problems.at(0).what()).find(path + ":20:37: "), 0U);
+    EXPECT_TRUE(hands.says("mine.toml:20:37: "));
+    EXPECT_FALSE(hands.says(path + ":20")) << hands.letters();
     hands.session.apply(command::Show{"editor", false});
     hands.rest(3);
-    EXPECT_TRUE(hands.says("mine.toml:46:26: ")) << "on the card above the picture";
-    EXPECT_FALSE(hands.says(path + ":46")) << hands.letters();
+    EXPECT_TRUE(hands.says("mine.toml:20:37: ")) << "on the card above the picture";
+    EXPECT_FALSE(hands.says(path + ":20")) << hands.letters();
 }
 
 }  // namespace

@@ -165,7 +165,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
          "--view heigt: this system has no view 'heigt'; did you mean 'height'?\nits views are: horizontal, height, "
          "gap, path, horizontal rate, contact force\n"},
         {"--out film --size 17000x10",
-         "--size 17000x10: this is no size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to "
+         "--size 17000x10: this is not a size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to "
          "16384\n"},
         {"--out /dev/null/film", "/dev/null/film: the folder cannot be made: Not a directory\n"},
         {"--out /proc/film", "/proc/film: the folder cannot be made: No such file or directory\n"},

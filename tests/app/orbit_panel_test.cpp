@@ -98,7 +98,7 @@ TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
          {std::pair{"--continue q=0:1", "there is no parameter 'q'"}, std::pair{"--from where", "it is start or end"},
           std::pair{"--shift x", "a name and a value are expected"}, std::pair{"--over e=0:1", "not expected here"},
           std::pair{"--from start --from end", "it is given twice"}, std::pair{"--from", "a value is missing"},
-          std::pair{"--period 0", "a period of 0 s is none"}}) {
+          std::pair{"--period 0", "the period must be positive, but it is 0 s"}}) {
         session.apply(command::FindOrbit{text});
         EXPECT_NE(session.error().find(words), std::string::npos) << text << ": " << session.error();
         EXPECT_EQ(session.orbit(), nullptr);
@@ -170,7 +170,7 @@ TEST(OrbitPanel, makes_the_run_periodic) {
     EXPECT_EQ(hands.session.orbit_point(), 0u);
     EXPECT_TRUE(hands.says("the run begins on it"));
     EXPECT_TRUE(hands.says("period 3.544294647 s"));
-    EXPECT_TRUE(hands.says("stable: of a small change 0.7014 is left after a period"));
+    EXPECT_TRUE(hands.says("stable: perturbations shrink to 0.7014 of their size per period"));
     hands.session.apply(command::Set{"e", 0.55});
     hands.rest(3);
     EXPECT_TRUE(hands.says("the run has left it"));

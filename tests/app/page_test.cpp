@@ -35,6 +35,16 @@ TEST(Page, is_as_large_as_it_says) {
     EXPECT_THROW(on_page({1200.0, 0.0, 8.0, 1200.0}, "png", 14.0, 1.5), InputError);
 }
 
+// The plots set the height of such a page after their curves are sampled. Curves must not be sampled for a lower one.
+TEST(Page, is_resolved_whatever_height_its_plots_need) {
+    const PaperSize page{85.0, 0.0, 8.0, 300.0};
+    const Resolution known = resolution_of(page, {}, "png");
+    for (const int plots : {1, 2, 6, 12})
+        for (const int columns : {1, 2, 3})
+            EXPECT_GE(known.height, on_page(page, "png", 1.0, shape_of(plots, columns)).height) << plots << columns;
+    EXPECT_EQ(resolution_of({85.0, 30.0, 8.0, 300.0}, {}, "png").height, 354.0);
+}
+
 // What a program that sets pages reads from the file: its size.
 TEST(Page, is_said_by_the_file) {
     const test::Folder folder;

@@ -87,7 +87,7 @@ const Refusal refusals[] = {
      "--out q.png: this name says PNG, but what is drawn is PDF\n"
      "end it in .pdf, or leave --format out: the name tells\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
-     "--size 1600: this is no size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
+     "--size 1600: this is not a size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Cli, Refused, testing::ValuesIn(refusals),

@@ -295,7 +295,7 @@ TEST(Plane, stands_in_place_of_a_drawing_and_of_any_mechanism) {
     // A text without a drawing has it from the beginning.
     Hands hands("double_pendulum");
     std::string text = hands.session.document().text;
-    text.erase(text.find("[[drawing]]"), text.find("[[view]]") - text.find("[[drawing]]"));
+    text.erase(text.find("drawing = ["), text.find("view = [") - text.find("drawing = ["));
     hands.session.apply(command::Text{text});
     ASSERT_TRUE(hands.session.document().problems.empty());
     hands.rest(2);

@@ -191,7 +191,7 @@ TEST(SweepAlone, IsNotLinkedWithMpi) {
     const Answer slurm =
         folder.run("sweep ball_on_sine --over x=0:1:2 --print x", "SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=3");
     EXPECT_EQ(slurm.status, 2);
-    EXPECT_NE(slurm.err.find("srun --mpi=pmix does"), std::string::npos) << slurm.err;
+    EXPECT_NE(slurm.err.find("start them with: srun --mpi=pmix"), std::string::npos) << slurm.err;
     EXPECT_EQ(folder.run("sweep ball_on_sine --over x=0:1:2 --print x", "SLURM_PROCID=0 SLURM_STEP_NUM_TASKS=1").status,
               0);
 }

@@ -401,7 +401,7 @@ TEST_F(SweepHdf5, HoldsAGrid) {
         holds("achilles sweep ball_on_sine --over x=-3:3:13 --over y=-2:2:17 --print x/2 --print "
               "\"zeno_time(1)\" --print held --end 5"));
     EXPECT_TRUE(holds("tolerance = 1e-10, method = taylor"));
-    EXPECT_TRUE(holds("title  = \"Ball bouncing on a sinusoidal surface\""));
+    EXPECT_TRUE(holds("title = \"Ball bouncing on a sinusoidal surface\""));
     EXPECT_FALSE(holds("--threads")) << "nor when it was made";
 }
 

@@ -97,8 +97,8 @@ recorded "^open $folder/mine.toml" "Ctrl+O does not open the skeleton"
 act key ctrl+e sleep 0.3
 click text
 in_line title 'title = "My ball"'
-in_line start 'start = 2.5'
-recorded '^text .*My ball.*\\nstart = 2.5\\n' "what is typed does not take effect"
+in_line '    {name = "y"' '    {name = "y", start = 2.5},'
+recorded '^text .*My ball.*start = 2.5},\\n' "what is typed does not take effect"
 act key ctrl+s
 recorded "^save $folder/mine.toml" "Ctrl+S does not save"
 [ "$elsewhere" -eq 0 ] || fail "a ball of one's own takes the mouse out of the text"
@@ -108,7 +108,7 @@ done_with own 5
 # A mistake in the file is taken back.
 xdotool key End
 for wrong in " = x" "/2"; do letters "$wrong"; sleep 0.7; done  # two texts, none of them a system
-recorded '^text .*start = 2.5 = x/2\\n' "the mistake is not read"
+recorded '^text .*start = 2.5}, = x/2\\n' "the mistake is not read"
 act key ctrl+z
 recorded '^undo' "Ctrl+Z does not take the mistake back"
 done_with typo 1

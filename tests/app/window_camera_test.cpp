@@ -34,7 +34,7 @@ TEST(CameraCommand, chooses_a_camera_and_keeps_where_one_looked) {
     EXPECT_EQ(after({"camera zeno", "open double_pendulum"}).camera(), CameraMode::zeno);
     Session session = test::session("ball_on_sine");
     session.apply(parse_command("camera fixed"));
-    EXPECT_NE(session.error().find("nobody has looked anywhere yet"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("no view has been chosen yet"), std::string::npos) << session.error();
     EXPECT_THROW(parse_command("camera above"), InputError);
 }
 

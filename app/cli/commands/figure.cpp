@@ -109,7 +109,7 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     if (arguments.mechanism) return put_mechanism(arguments, session, format, job);
     PublicationStyle style = arguments.style;
     if (style.columns == 0) style.columns = session.plotted().columns();
-    style.size = resolution_of(arguments.page, arguments.size, format, style.shape);
+    style.size = resolution_of(arguments.page, arguments.size, format);
     return put(arguments, session.trajectory(), session.error_estimate(), figure_of(session, style), session.proof(),
                format, job);
 }
@@ -143,7 +143,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
     const Trajectory trajectory = simulate(model, run);
     PublicationStyle style = arguments.style;
     style.ordered = !arguments.views.empty();
-    style.size = resolution_of(arguments.page, arguments.size, format, style.shape);
+    style.size = resolution_of(arguments.page, arguments.size, format);
     style.shape = double{1} * arguments.size.width / arguments.size.height;
     std::optional<Proof> proof;
     if (spread) proof = proof_of(trajectory, *spread);

@@ -48,12 +48,16 @@ void write_new(const std::string& name, const std::string& text) {
 void add_manual(CLI::App& program, int& status) {
     CLI::App* help = program.add_subcommand("help", "The manual, a page for each topic");
     const auto topic = std::make_shared<std::string>();
-    help->add_option("TOPIC", *topic, "none lists them; of a command: its options")->type_name("");
+    help->add_option("TOPIC", *topic, "a page or a command (default: the list of pages)")->type_name("");
     help->callback([topic, &program, &status] {
+        // Some commands have a page of their own, which says more than their options.
+        const auto pages = manual_topics();
+        const bool has_page =
+            std::any_of(pages.begin(), pages.end(), [&](const auto& page) { return page.name == *topic; });
         const auto commands = program.get_subcommands([&](const CLI::App* one) { return one->get_name() == *topic; });
-        const std::string text = topic->empty()     ? contents()
-                                 : commands.empty() ? manual_page(*topic)
-                                                    : commands.front()->help("achilles");
+        const std::string text = topic->empty()                 ? contents()
+                                 : has_page || commands.empty() ? manual_page(*topic)
+                                                                : commands.front()->help("achilles");
         std::fwrite(text.data(), 1, text.size(), stdout);
         status = reached_end;
     });

@@ -72,7 +72,7 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
     if (!arguments.out.empty()) {
         PublicationStyle style = arguments.style;
         style.ordered = !arguments.views.empty();
-        style.size = resolution_of(arguments.page, arguments.size, format, style.shape);
+        style.size = resolution_of(arguments.page, arguments.size, format);
         style.shape = double{1} * arguments.size.width / arguments.size.height;
         const Figure figure = followed != nullptr ? compose_branch(*found.orbit, *followed, views, style)
                                                   : publication(found.orbit->run, views, style);

@@ -77,16 +77,6 @@ Instants instants_of(const SimulateArguments& arguments, const Run& run) {
     return read_instants(text, arguments.times, start, end);
 }
 
-// The command line that proves this run.
-std::string prove_command(const SimulateArguments& arguments) {
-    std::vector<std::string> words{"prove", arguments.system};
-    for (const std::string& setting : arguments.settings) words.insert(words.end(), {"--set", setting});
-    for (const char* key : {"start_time", "end_time"})
-        if (const auto* given = arguments.overrides.given(option(key)))
-            words.insert(words.end(), {given->first, to_text(given->second)});
-    return shell_line(words);
-}
-
 int run(const SimulateArguments& arguments) {
     check_files(arguments);
     const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
@@ -123,7 +113,9 @@ int run(const SimulateArguments& arguments) {
     if (is_summed_up) {
         files.add("-");
         const std::string text =
-            arguments.verbose ? summary(trajectory, known) : answer(trajectory, *known, prove_command(arguments));
+            arguments.verbose
+                ? summary(trajectory, known)
+                : answer(trajectory, *known, prove_line(arguments.system, arguments.settings, arguments.overrides));
         files.put("-", printable(text + (dependence ? summary(trajectory, *dependence) : "")));
     }
     files.commit();

@@ -21,7 +21,7 @@ std::shared_ptr<const Model> changed(const std::string& name, const std::string&
 
 // The ball with the height of the waves as a parameter.
 std::shared_ptr<const Model> ball_of_height() {
-    return changed("ball_on_sine", "[lagrangian]\n", "[[parameter]]\nname = \"A\"\nvalue = 1.0\n[lagrangian]\n");
+    return changed("ball_on_sine", "]\n\nlagrangian", "    {name = \"A\", value = 1.0},\n]\n\nlagrangian");
 }
 std::shared_ptr<const Model> waves() {
     SystemDescription system = ball_of_height()->description();
