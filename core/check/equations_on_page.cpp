@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "check/flat_gap.hpp"
+#include "check/zeno_condition.hpp"
 #include "expression/graph.hpp"
 #include "model/flat.hpp"
 #include "output/wrap.hpp"
@@ -231,6 +233,7 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
             reason(zeno, writer);
         }
         page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
+        if (is_text()) zeno_here(zeno);  // a sheet has sliders beside it
         return;
     }
     long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
@@ -239,6 +242,23 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
                                     : "hddot >= 0 at every contact: none of them ends in a Zeno point";
     const std::string because = grounds(zeno);
     page_.sentence({verdict + because, Page::escaped(verdict) + because});
+}
+
+void EquationsOnPage::zeno_here(const ZenoCondition& zeno) {
+    const Layout& layout = model_.layout();
+    std::vector<std::uint32_t> varying(layout.t() + 1);
+    std::iota(varying.begin(), varying.end(), 0U);
+    const Expression decisive = expression_of(zeno.decisive, *zeno.algebra);
+    if (depends_on(decisive, varying)) return;
+    const Program program(std::span(&decisive, 1), layout.slots());
+    auto evaluator = model_.evaluator(program, run_.parameters);
+    evaluator.run();
+    const double value = evaluator.output(0);
+    const std::string line =
+        value < 0.0
+            ? fmt::format("it holds with these parameters: {:.6g} < 0", value)
+            : fmt::format("it does not hold with these parameters, so impacts do not pile up: {:.6g} >= 0", value);
+    page_.sentence({line, Page::escaped(line)});
 }
 
 void EquationsOnPage::zeno_restitution(std::size_t contact) {

@@ -171,12 +171,12 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
                             uncertified == 1 ? "point is" : "points are");
     if (text.empty()) return "";
     if (is_estimated && integration > 0.0)
-        text += fmt::format("; estimated integration error {} s", rounded_up(integration, 1));
+        text += fmt::format("; estimated integration error {} s", estimate_text(integration));
     return text + ".\n";
 }
 
 std::string end_line(const ErrorEstimate& estimate, const std::string& prove_command) {
-    const std::string state = estimate.end ? "estimated error " + rounded_up(estimate.end->size(), 1)
+    const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.none_since;
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }

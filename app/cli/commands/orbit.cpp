@@ -112,7 +112,7 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     add("--json", arguments->json, "F", "where to write all of it as JSON, instead of text; - is standard output");
     add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
     add_view_option(*command, arguments->views, "with --out: view of the system; repeatable (default: all)");
-    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, margins, options");
+    command->add_flag("--verbose", arguments->verbose, "print margins, impacts and options, too");
     command->add_flag("--transparent", arguments->style.transparent, "with --out: leave out the background");
     command->add_flag("--dark", arguments->style.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, arguments->page);

@@ -105,7 +105,7 @@ void add_prove(CLI::App& program, int& status) {
             "number of equidistant instants, both ends included, at which the state is enclosed")
         ->type_name("N");
     command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
-    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, velocities, wall time");
+    command->add_flag("--verbose", arguments->verbose, "print the first impacts, the full assumptions and the wall time; --json has every impact");
     command->add_flag("--timing", arguments->timing, "print the wall time on standard error");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->get_option("--set")->description(

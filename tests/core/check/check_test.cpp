@@ -303,6 +303,26 @@ TEST(CheckReport, SaysWhatTheRestitutionDoes) {
     }
 }
 
+// Where the inequality has parameters alone, it is decided for those of the run.
+TEST(CheckReport, DecidesAConditionOnParameters) {
+    const auto report = [](double k) {
+        const auto spring = test::typed(fmt::format(R"toml(
+title = "A mass on a spring against a wall"
+coordinate = [{{name = "x", start = 0.5}}]
+parameter = [{{name = "k", value = {}, range = [-9, 9]}}]
+lagrangian = {{kinetic = "1/2*x'^2", potential = "k/2*(x - 1)^2"}}
+constraint = [{{gap = "x", restitution = 0.8}}]
+)toml",
+                                                    k));
+        double disagreement = 1.0;
+        return check_report(*spring, spring->default_run(), 0.001, Notation::text, disagreement);
+    };
+    EXPECT_NE(report(4.0).find("it does not hold with these parameters, so impacts do not pile up: 4 >= 0"),
+              std::string::npos)
+        << report(4.0);
+    EXPECT_NE(report(-4.0).find("it holds with these parameters: -4 < 0"), std::string::npos) << report(-4.0);
+}
+
 // What a gap was solved for may name what hddot does not.
 TEST(CheckReport, TellsWhereTheSurfacesAre) {
     const auto legs = test::typed(R"toml(
