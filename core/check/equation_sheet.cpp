@@ -46,7 +46,7 @@ class SheetWriter : EquationsOnPage {
         std::string plain = "Zeno condition" + of(" of {}", contact), where = "$h = \\dot{h} = 0$";
         if (!held.empty()) {
             plain += fmt::format(" while {} is held", joined_names(model_, held));
-            where += " of both";
+            where += " for both";
         }
         const std::size_t first = page_.blocks().size();
         page_.heading({plain, fmt::format("{}: $\\ddot{{h}} < 0$ where {}", Page::escaped(plain), where)});

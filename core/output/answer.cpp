@@ -214,9 +214,9 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::undecided:
             return "Try a smaller --tolerance, or another start or parameter.";
         case Outcome::Kind::simultaneous_impacts:
-            return "To go on with Moreau's law: --simultaneous moreau.";
+            return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:
-            return "Leave out a contact that is not needed.";
+            return "Remove a redundant contact.";
     }
     return "";
 }

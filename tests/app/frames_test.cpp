@@ -153,7 +153,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
     const Folder folder;
     const std::pair<std::string, std::string> cases[] = {
         {"--out film --fps 0", "--fps 0: this must lie in [0.001, 1000]\n"},
-        {"--out film --fps x", "--fps x: 'x' is not a finite number: no name but pi has a value here\n"},
+        {"--out film --fps x", "--fps x: 'x' is not a finite number: pi is the only name allowed here\n"},
         {"--out film --speed -1", "--speed -1: this must lie in [1e-09, 1000000000]\n"},
         {"--out film --camera fixed", "--camera fixed: a camera is fit, follow or zeno\n"},
         {"--out film --jobs 1.5", "--jobs 1.5: 1 to 256 processes can draw\n"},

@@ -277,9 +277,8 @@ TEST(Schema, HoldsForARunThatWasMadeAgain) {
         "title = \"post\"\n[[coordinate]]\nname = \"a\"\nrate = 1\n[[coordinate]]\nname = \"b\"\nstart = "
         "0.5\n[lagrangian]\nkinetic = \"(a'^2 + b'^2)/2\"\npotential = \"b + 0.3*cos(2*a)\"\n[[constraint]]\ngap = "
         "\"b - 0.395*exp(-40*(a - 2.6)^2)\"\nrestitution = 0.9\n[run]\nend_time = 2.4\ntolerance = 1e-4\n");
-    const std::string what =
-                          "undecided at tolerance 0.0001 (the gap comes closer to zero than the integration knows it",
-                      then = "): the whole run was made again, at tolerance 1e-14, eps_q 1e-12, eps_v 1e-12\n";
+    const std::string what = "undecided at tolerance 0.0001 (the gap is within integration error",
+                      then = "): the whole run was repeated with tolerance 1e-14, eps_q 1e-12, eps_v 1e-12\n";
     const Answer data = folder.run("simulate post.toml --json -");
     EXPECT_EQ(data.status, 0);
     EXPECT_TRUE(data.err.starts_with("achilles: warning: " + what)) << data.err;

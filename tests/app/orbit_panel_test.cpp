@@ -95,7 +95,8 @@ TEST(OrbitSession, searches_from_the_present_run) {
 TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
     Session session = test::session("ball_on_floor");
     for (const auto& [text, words] :
-         {std::pair{"--continue q=0:1", "there is no parameter 'q'"}, std::pair{"--from where", "it is start or end"},
+         {std::pair{"--continue q=0:1", "there is no parameter 'q'"},
+          std::pair{"--from where", "start or end is expected"},
           std::pair{"--shift x", "a name and a value are expected"}, std::pair{"--over e=0:1", "not expected here"},
           std::pair{"--from start --from end", "it is given twice"}, std::pair{"--from", "a value is missing"},
           std::pair{"--period 0", "the period must be positive, but it is 0 s"}}) {

@@ -37,12 +37,12 @@ const Refusal refusals[] = {
      "achilles: there is no system 'ball_on_sin'; did you mean 'ball_on_sine'?\n"},
     {"missing_file", "simulate ./no.toml", "./no.toml: there is no such file\n"},
     {"unknown_setting", "simulate ball_on_sine --set gg=3 --json a.json",
-     "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
+     "--set gg=3: 'gg' is not a parameter, coordinate or rate of this system; did you mean 'g'?\n"},
     {"setting_without_value", "simulate ball_on_sine --set g",
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
     {"subnormal_parameter", "simulate ball_on_sine --set m=5e-324 --json a.json",
-     "--set m=5e-324: the parameter 'm' is 5e-324: so small a number has lost digits\n"
-     "0, or at least 2.3e-308 in size: choose units in which it is larger\n"},
+     "--set m=5e-324: the parameter 'm' is 5e-324: such a small number is not represented with full precision\nuse 0, "
+     "or choose units in which it is at least 2.3e-308 in size\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no such choice; did you mean 'sharp'?\n"
      "write --conditions paper or --conditions sharp\n"},
@@ -51,8 +51,8 @@ const Refusal refusals[] = {
     {"end_not_positive", "simulate ball_on_sine --end -1", "--end: the end time -1 is not after the start time 0\n"},
     {"not_a_number", "simulate ball_on_sine --eps nan", "--eps nan: 'nan' is not a finite number\n"},
     {"number_with_a_tail", "simulate ball_on_sine --tolerance 1e-8x",
-     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: it is written without its unit "
-     "(a file has the key unit for that), and a product with '*'\n"},
+     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: write numbers without units (a "
+     "file has the key unit for that) and products with '*'\n"},
     {"no_impacts", "simulate ball_on_sine --max-impacts 0", "--max-impacts: at least one impact must be allowed\n"},
     {"no_steps", "simulate ball_on_sine --max-steps 0", "--max-steps: at least one step must be allowed\n"},
     {"half_a_step", "simulate ball_on_sine --max-steps 1.5",
@@ -135,10 +135,10 @@ TEST(Cli, ARunThatLeavesTheDomainSaysWhenWhereAndWhy) {
     const struct {
         std::string kinetic, potential, gap, beginning;
     } runs[] = {
-        {"y'^2/2", "log(y)", "y + 1", "log(y) in the potential ceases to be defined, with y = "},
-        {"y'^2/2", "-1/y", "y + 1", "(-1)/y in the potential ceases to be defined, with y = "},
-        {"y*y'^2/2", "y", "y + 1", "the mass matrix ceases to be positive definite, with the pivot of 'y' at "},
-        {"y'^2/2", "9.81*y", "y^3", "dh = 0 where contact happens: the normal is not defined, at t = 0.45"},
+        {"y'^2/2", "log(y)", "y + 1", "log(y) in the potential becomes undefined, with y = "},
+        {"y'^2/2", "-1/y", "y + 1", "(-1)/y in the potential becomes undefined, with y = "},
+        {"y*y'^2/2", "y", "y + 1", "the mass matrix is no longer positive definite: the pivot of 'y' is "},
+        {"y'^2/2", "9.81*y", "y^3", "dh = 0 at the contact: the normal is not defined, at t = 0.45"},
     };
     for (const auto& run : runs) {
         folder.put("edge.toml",

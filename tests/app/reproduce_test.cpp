@@ -82,7 +82,8 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
          {"Title: Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \"so\"\n", "Software: Achilles 0.1.0\n",
           "Achilles Parameters: g = 3, y(0) = 1, y'(0) = 0.5\n",
           "Achilles Options: tolerance 1e-10, method taylor, end time 5, ", "Achilles Certificates: Zeno point at t = ",
-          ": of the exact motion from the computed state at the cut: tau_inf in [", "outcome: end time"})
+          ": certified for the exact motion from the computed state at the cut: Zeno time tau_inf in [",
+          "outcome: end time"})
         EXPECT_NE(all.find(part), std::string::npos) << part << all;
 }
 
@@ -194,19 +195,19 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     const std::pair<std::string, std::string> cases[] = {
         {"", "x: this is neither a PNG nor an SVG nor a PDF file\n"},
         {"GIF89a", "x: this is neither a PNG nor an SVG nor a PDF file\n"},
-        {png.substr(0, 9000), "x: the PNG file is cut off\n"},
-        {png.substr(0, 5), "x: this is no PNG file\n"},
-        {flipped, "x: the PNG file is damaged: a check sum is wrong\n"},
+        {png.substr(0, 9000), "x: the PNG file is incomplete\n"},
+        {png.substr(0, 5), "x: this is not a PNG file\n"},
+        {flipped, "x: the PNG file is damaged: a checksum is wrong\n"},
         {bare, "x: this picture does not tell where it comes from\n"},
         {"<svg/>", "x: this picture does not tell where it comes from\n"},
-        {svg.substr(0, 1200), "x: its notes are cut off\n"},
+        {svg.substr(0, 1200), "x: its notes are incomplete\n"},
         // Its command is broken UTF-8; a length beyond the file; more notes than anybody needs.
         {bare.substr(0, 33) +
              "\x00\x00\x00\x1FiTXtAchilles Command\x00\x00\x00\x00\x00"
              "achilles \xFF\x9CN\xEDj"s +
              bare.substr(33),
          "x: this picture does not tell where it comes from\n"},
-        {bare.substr(0, 33) + "\x7F\xFF\xFF\xFFtEXt"s + bare.substr(33), "x: the PNG file is cut off\n"},
+        {bare.substr(0, 33) + "\x7F\xFF\xFF\xFFtEXt"s + bare.substr(33), "x: the PNG file is incomplete\n"},
         {bare.substr(0, 33) + empty_notes + bare.substr(33), "x: a PNG file holds at most 65536 notes\n"},
         {with({{"Achilles Command", "rm -rf /"}}), "x: its origin names no command of achilles\n"},
         {with({{"Achilles Command", "achilles list"}}),
@@ -301,10 +302,9 @@ TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
     EXPECT_EQ(folder.run(command + "c.png", hiding(without_first) + " ACHILLES_OFFSCREEN=osmesa").status, 2);
     const Answer neither = folder.run(command + "c.png", hiding(without_both));
     EXPECT_EQ(neither.status, 2);
-    EXPECT_EQ(
-        neither.err,
-        "achilles: drawing without a window needs OSMesa or EGL, but libOSMesa.so.8 is missing, and libEGL.so.1 is "
-        "missing\nthe package libosmesa6 has the first, libegl1 with libgl1-mesa-dri the second\n");
+    EXPECT_EQ(neither.err,
+              "achilles: drawing without a window needs OSMesa or EGL, but libOSMesa.so.8 is missing, and libEGL.so.1 "
+              "is missing\ninstall the package libosmesa6, or libegl1 and libgl1-mesa-dri\n");
     EXPECT_EQ(folder.run(command + "c.svg", hiding(without_both)).status, 0);  // needs neither
     EXPECT_EQ(folder.files().size(), 3u);
 }

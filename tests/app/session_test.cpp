@@ -83,7 +83,7 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
     session.apply(parse_command("set theta1 30"));
     EXPECT_EQ(session.run().q[0], 30.0);
     EXPECT_EQ(session.notice(),
-              "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg");
+              "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg");
     session.apply(parse_command("set m1 2"));
     EXPECT_EQ(session.notice(), "") << "it was told once";
     // A file that is opened with such a value is no other case.
@@ -101,8 +101,8 @@ TEST(Session, starts_outside_their_ranges_are_told) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("start theta1 30 theta1' 0.5 theta2 0.2"));
     EXPECT_EQ(session.warnings(),
-              (std::vector<std::string>{"theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an "
-                                        "angle in degrees is written 30 deg"}));
+              (std::vector<std::string>{
+                  "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg"}));
     EXPECT_EQ(session.notice(), "") << "no card comes and goes under a hand that drags";
     session.apply(parse_command("start theta2 0.3"));
     EXPECT_TRUE(session.warnings().empty());

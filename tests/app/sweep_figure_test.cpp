@@ -116,7 +116,7 @@ TEST(SweepPicture, IsRefusedBeforeTheWork) {
         return answer.err;
     };
     EXPECT_NE(refused("--over e=0:1:3 --over x=0:1:3 --over y=1:2:3 --print t --out a.png")
-                  .find("--out: a sweep over 3 axes has no figure"),
+                  .find("--out: a sweep over 3 axes cannot be drawn"),
               std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out a.txt").find("a.txt"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out -").find("written into a file"), std::string::npos);

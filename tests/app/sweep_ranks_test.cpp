@@ -118,7 +118,7 @@ TEST_F(SweepRanks, StopWhenMpirunIsInterrupted) {
     EXPECT_EQ(count_of(" of 10000000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
         << file("err");
     const Answer again = folder_.run(sweep + "--csv a.csv");
-    EXPECT_NE(again.err.find("an unfinished sweep is here, with "), std::string::npos) << again.err;
+    EXPECT_NE(again.err.find("this is an unfinished sweep with "), std::string::npos) << again.err;
 }
 
 // The limit would be one of memory that ranks share, too: they speak over the loopback.

@@ -130,10 +130,10 @@ TEST(SweepCommand, GoesOnWhereItWasInterrupted) {
     }
     const Answer anew = folder.run(std::string(grid) + files("part"));
     EXPECT_EQ(anew.status, 2);
-    EXPECT_NE(anew.err.find("part.csv.part: an unfinished sweep is here, with "), std::string::npos) << anew.err;
+    EXPECT_NE(anew.err.find("part.csv.part: this is an unfinished sweep with "), std::string::npos) << anew.err;
     const Answer other = folder.run(std::string(grid) + files("part") + " --resume --set e=0.3");
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("it is another sweep\n    there: --over x=-3:3:40"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("it is a different sweep\n    there: --over x=-3:3:40"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find(" --set e=0.3 --end 9\n"), std::string::npos) << other.err;
     // A record that was being written, and what follows it.
     std::ofstream(folder.path() / "part.csv.part", std::ios::app) << "half a record";
@@ -190,7 +190,7 @@ TEST(SweepCommand, LosesOnlyChunksUnderWayWhenItIsKilled) {
     const std::string status = ended_by(folder, "KILL", command);
     if (status == "137\n") {
         const Answer answer = folder.run(command + " --csv long.csv");
-        EXPECT_NE(answer.err.find("an unfinished sweep is here, with "), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("this is an unfinished sweep with "), std::string::npos) << answer.err;
     }
     EXPECT_EQ(folder.run(command + " --csv long.csv --resume").status, 0);
     EXPECT_EQ(folder.run(command + " --csv whole.csv").status, 0);
@@ -204,18 +204,20 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
     const std::string sweep = "sweep ./drop.toml --over y=1:2:5 --print t ";
     const std::vector<std::pair<std::string, std::string>> cases{
         {"sweep ./drop.toml --print t", "--over: nothing is varied"},
-        {"sweep ./drop.toml --over y=1:2:0 --print t --csv a.csv", "--over y=1:2:0: the number of values is a whole"},
+        {"sweep ./drop.toml --over y=1:2:0 --print t --csv a.csv",
+         "--over y=1:2:0: the number of values must be a whole"},
         {"sweep ./drop.toml --over y=1:2:5 --print tt --csv a.csv",
          "--print tt: unknown name 'tt'; did you mean 't'?\n    tt\n    ^\n"},
-        {sweep + "--at impcat", "--at impcat: there is no such event\nwrite --at impact"},
-        {sweep + "--set y=1.5", "--over y: --set y gives y one value\nleave --set y out, or --over y"},
+        {sweep + "--at impcat", "--at impcat: unknown event\nwrite --at impact"},
+        {sweep + "--set y=1.5", "--over y: --set y fixes the value of y\nremove --set y or --over y"},
         {sweep + "--threads 0", "--threads 0: a whole number from 1 to 1024 is expected"},
         {sweep + "--units --hdf5 a.h5", "--units: this needs --csv F"},
         {sweep + "--hdf5 -", "--hdf5 -: HDF5 is written into a file"},
         {sweep + "--resume", "--resume: this needs a file"},
         {sweep + "--csv drop.toml", "drop.toml: this output would destroy "},
         {sweep + "--csv ./here/a.csv", "the file cannot be written: No such file or directory"},
-        {sweep + "--csv mine.csv", "mine.csv.part: an unfinished sweep would be kept here, and this file is none"},
+        {sweep + "--csv mine.csv",
+         "mine.csv.part: the sweep stores its progress here, but this file is not an unfinished sweep"},
         {sweep + "--csv a.csv --hdf5 a.csv", "two outputs cannot go to the same place"},
     };
     for (const auto& [command, wrong] : cases) {

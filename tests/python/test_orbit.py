@@ -112,7 +112,7 @@ def test_of_a_drive(program):
     found = achilles.orbit("ball_on_table", period="2*pi/om", from_="end")
     assert found.to_json() == program("orbit", "ball_on_table", "--from", "end", "--period", "2*pi/om", "--json", "-")
     assert found.section == "time" and len(found.multipliers) == 2 * len(found.system.coordinates)
-    with pytest.raises(achilles.InputError, match="the period of its drive must be given"):
+    with pytest.raises(achilles.InputError, match="the period of the drive must be given"):
         achilles.orbit("ball_on_table")
 
 
@@ -161,14 +161,14 @@ def test_figures_are_made_again(wave, program, tmp_path):
 
 
 def test_none_is_told():
-    with pytest.raises(achilles.NoOrbit, match="^Newton's method converges too slowly: periodic runs are not isolated here") as problem:
+    with pytest.raises(achilles.NoOrbit, match="^Newton's method converges too slowly: the periodic orbit is not isolated") as problem:
         achilles.orbit("ball_on_floor")
     assert isinstance(problem.value, RuntimeError) and "--" not in str(problem.value)
 
 
 @pytest.mark.parametrize("words, told", [
     ({"continue_": {"ee": (0, 1)}}, "^continue_ ee=0:1: there is no parameter 'ee'; did you mean 'e'"),
-    ({"continue_": "e=0:0.3"}, "e = 0.5, where the search begins, does not lie in it\\ne=0.15 begins inside"),
+    ({"continue_": "e=0:0.3"}, "the search starts at e = 0.5, outside this range\\nstart inside it, for example with e=0.15"),
     ({"continue_": "e=0.3"}, "a range is expected"),
     ({"shift": {"z": 1}}, "^shift z=1: there is no coordinate 'z'"),
     ({"shift": "x=2*pie"}, "unknown name 'pie'; did you mean 'pi'"),
