@@ -48,12 +48,12 @@ std::string format_for(const std::string& out, const std::string& wanted, const 
     const std::string ending = ending_of(out), said = ending_of_picture(out), option = "--out " + shown(out);
     if (wanted.empty() && out == "-") return "png";
     if (wanted.empty() && said.empty())
-        throw InputError(option, {}, "this name says neither PNG nor SVG nor PDF",
+        throw InputError(option, {}, "this name does not give the format of the picture",
                          "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
     if (wanted.empty()) return said;
     if (said != wanted && (!said.empty() || is_among(ending, others)))
         throw InputError(option, {},
-                         fmt::format("this name says {}, but what is drawn is {}", large(ending), large(wanted)),
+                         fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
                          fmt::format("end it in .{}{}", wanted, advice));
     return wanted;
 }

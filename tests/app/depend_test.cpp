@@ -284,13 +284,13 @@ TEST(DependPanel, says_that_what_it_shows_is_old) {
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();
     hands.rest(2);
-    EXPECT_FALSE(hands.says("of the run before"));
-    EXPECT_TRUE(hands.says("bars: its change over each whole slider"));
+    EXPECT_FALSE(hands.says("from the previous run"));
+    EXPECT_TRUE(hands.says("bars: its linear change over each whole slider"));
     hands.session.set_patience(0.0);
     test::ask_for_a_long_run(hands.session);
     hands.rest(2);
     EXPECT_NE(hands.session.under_way(), nullptr);
-    EXPECT_TRUE(hands.says("of the run before"));
+    EXPECT_TRUE(hands.says("from the previous run"));
     Slider slider;
     slider.varies = "g";
     put_bar(hands.session, slider);

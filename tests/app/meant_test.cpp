@@ -108,8 +108,8 @@ TEST(Meant, AnEndingThatSaysOtherwiseIsAWarning) {
     const Answer crossed = folder.run("simulate drop.toml --end 0.1 --json a.csv --csv a.json");
     EXPECT_EQ(crossed.status, 0);
     EXPECT_EQ(crossed.err,
-              "achilles: warning: --json a.csv: what is written there is not csv, whatever its name says\n"
-              "achilles: warning: --csv a.json: what is written there is not json, whatever its name says\n");
+              "achilles: warning: --json a.csv: the output is not csv, although the name says so\nachilles: warning: "
+              "--csv a.json: the output is not json, although the name says so\n");
     EXPECT_EQ(folder.run("simulate drop.toml --end 0.1 --json b.json --csv b.csv").err, "");
 }
 
@@ -144,7 +144,7 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         {"simulate drop.toml --set end=3", "--set end=3: 'end' is an option of the run, --end on the command line\n"},
         {"simulate drop.toml --set tolerance=1e-6",
          "--set tolerance=1e-6: 'tolerance' is an option of the run, --tolerance on the command line\n"},
-        {"simulate .", ".: this is a folder, and a system is a file; write the path of one in it, ./broken.toml\n"}};
+        {"simulate .", ".: this is a folder; a system file is expected, for example ./broken.toml\n"}};
     for (const auto& [arguments, message] : mistakes) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 2) << arguments;
@@ -213,7 +213,7 @@ TEST(Data, InstantsThatCannotBeAreBadInput) {
         {"--times none.txt --csv a.csv", "none.txt: there is no such file\n"},
         {"--samples 1 --csv a.csv", "--samples 1: a whole number from 2 to 1000000 is expected\n"},
         {"--samples 2.5 --csv a.csv", "--samples 2.5: a whole number from 2 to 1000000 is expected\n"},
-        {"--samples 5 --times t.txt --csv a.csv", "--samples: the instants are those of --times already\n"},
+        {"--samples 5 --times t.txt --csv a.csv", "--samples: the instants are already given by --times\n"},
         {"--samples 5", "--samples: this needs --csv F or --json F\n"},
         {"--plain-names --json a.json", "--plain-names: this needs --csv F\n"}};
     for (const auto& [arguments, message] : mistakes) {

@@ -72,10 +72,10 @@ TEST(SessionProof, IsGoneWithTheRunThatItIsOf) {
 
 TEST(SessionProof, IsRefusedAsOnTheCommandLine) {
     Session ball = test::session("ball_on_sine");
-    for (const auto& [line, told] : {std::pair{"prove e=0.6..0.7", "e = 0.5 of the present run is not in [0.6, 0.7]"},
+    for (const auto& [line, told] : {std::pair{"prove e=0.6..0.7", "e = 0.5 in the present run is not in [0.6, 0.7]"},
                                      {"prove e=0.5..1.5", "the part above 1 is impossible"},
                                      {"prove z=0..1", "'z'"},
-                                     {"prove e=0.5", "'e=0.5' is no interval"},
+                                     {"prove e=0.5", "'e=0.5' is not an interval"},
                                      {"prove e=0.6..0.5", "LOW is above HIGH"}}) {
         ball.apply(parse_command(line));
         EXPECT_NE(ball.error().find(told), std::string::npos) << line << ": " << ball.error();

@@ -64,7 +64,7 @@ const Refusal refusals[] = {
     {"output_is_a_folder", "simulate ball_on_sine --json /tmp", "/tmp: the file cannot be written: Is a directory\n"},
     {"full_device", "simulate ball_on_sine --json /dev/full",
      "/dev/full: the file cannot be written: No space left on device\n"},
-    {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
+    {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same file\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; write achilles simulate ball_on_sine\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
@@ -76,16 +76,16 @@ const Refusal refusals[] = {
     {"refused_step", "screenshot --do 'seek 2' --do 'set e 1.5' --out a.png --record r.journal",
      "set e 1.5: e = 1.5: the restitution must lie in [0, 1], but it is 1.5\n0 is plastic, 1 is elastic\n"},
     {"lens_of_nothing", "screenshot --do 'lens 1' --out a.png",
-     "lens 1: the lens looks at a Zeno point, and none is selected\nselect it first: select 10\n"},
+     "lens 1: the lens needs a Zeno point, but none is selected\nselect it first: select 10\n"},
     {"screenshot_as_svg", "screenshot --out q.svg",
-     "--out q.svg: this name says SVG, but what is drawn is PNG\n"
-     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+     "--out q.svg: this name says SVG, but the picture is PNG\nend it in .png; for the plots alone as SVG or PDF: "
+     "achilles figure\n"},
     {"screenshot_as_jpg", "screenshot --out q.JPG",
-     "--out q.JPG: this name says JPG, but what is drawn is PNG\n"
-     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+     "--out q.JPG: this name says JPG, but the picture is PNG\nend it in .png; for the plots alone as SVG or PDF: "
+     "achilles figure\n"},
     {"format_against_name", "figure ball_on_sine --format pdf --out q.png",
-     "--out q.png: this name says PNG, but what is drawn is PDF\n"
-     "end it in .pdf, or leave --format out: the name tells\n"},
+     "--out q.png: this name says PNG, but the picture is PDF\nend it in .pdf, or leave --format out: the name gives "
+     "the format\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
      "--size 1600: this is not a size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
 };

@@ -112,7 +112,7 @@ TEST(Session, starts_outside_their_ranges_are_told) {
 TEST(Session, the_lens_opens_at_a_zeno_point) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Lens{2.0});
-    EXPECT_EQ(session.error(), "the lens looks at a Zeno point, and none is selected\nselect it first: select 10");
+    EXPECT_EQ(session.error(), "the lens needs a Zeno point, but none is selected\nselect it first: select 10");
     EXPECT_FALSE(session.scene().shows("lens"));
     session.apply(command::Select{10});
     session.apply(command::Lens{2.0});
@@ -308,7 +308,7 @@ TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
     session.apply(command::Set{"g", 2.0});
     session.apply(command::Text{session.document().text + "# mine\n"});
     session.apply(command::Save{other});
-    EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+    EXPECT_NE(session.error().find("the file already exists"), std::string::npos);
     EXPECT_EQ(test::content(other), "other");
     session.apply(command::Save{session.description().file});
     EXPECT_NE(session.error(), "") << "an asset is no file of the user's";

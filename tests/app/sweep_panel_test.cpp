@@ -88,7 +88,7 @@ TEST(SweepPanel, ShowsDerivatives) {
 // More points than a picture has, and more rows.
 TEST(SweepPanel, RefusesMoreThanItDraws) {
     Session session = test::session("ball_on_sine");
-    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points has no picture"),
+    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points cannot be drawn"),
               std::string::npos)
         << session.error();
 }

@@ -173,9 +173,9 @@ def test_none_is_told():
     ({"shift": {"z": 1}}, "^shift z=1: there is no coordinate 'z'"),
     ({"shift": "x=2*pie"}, "unknown name 'pie'; did you mean 'pi'"),
     ({"from_": "nothing.json"}, "nothing.json: there is no such file"),
-    ({"from_": {"q": [1, 2]}}, "from_: it has no v, a number for each of x, y"),
-    ({"from_": {"q": [1, 2], "v": [1]}}, "from_: v is a finite number for each of x, y, not"),
-    ({"from_": {"q": [1, np.nan], "v": [1, 1]}}, "from_: q is a finite number for each of x, y, not"),
+    ({"from_": {"q": [1, 2]}}, "from_: v is missing: give a number for each of x, y"),
+    ({"from_": {"q": [1, 2], "v": [1]}}, "from_: v needs a finite number for each of x, y, not"),
+    ({"from_": {"q": [1, np.nan], "v": [1, 1]}}, "from_: q needs a finite number for each of x, y, not"),
     ({"from_": {"q": [1, 1], "v": [1, 1], "t": np.inf}}, "from_: t: inf does not lie in"),
     ({"reinitialization": "euclidean"}, "they need the kinetic reinitialization"),
     ({"e": 2}, "^e=2: "),
@@ -197,7 +197,7 @@ def test_what_is_wrong(words, told):
     ({"shift": {"x": None}}, "shift: x: a number or a text"),
     ({"period": [1]}, "period: a number or a text"),
     ({"from_": 3}, "from_: \"start\", \"end\", a file"),
-    ({"from_": {"q": ["a", "b"], "v": [1, 1]}}, "from_: q are numbers"),
+    ({"from_": {"q": ["a", "b"], "v": [1, 1]}}, "from_: q must be numbers"),
     ({"from_": {"q": [1, 1], "v": [1, 1], "t": "now"}}, "from_: t: a number is expected"),
 ])
 def test_what_is_of_a_wrong_kind(words, told):
