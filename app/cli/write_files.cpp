@@ -21,14 +21,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail(const std::string& path, int reason) {
+[[noreturn]] void cannot_write(const std::string& path, int reason) {
     throw InputError(path == "-" ? "standard output" : path, {},
                      fmt::format("the file cannot be written: {}", std::strerror(reason)));
 }
 
 // Writes and closes; standard output stays open. A temporary file is on disk then.
 void write_all(int descriptor, const std::string& path, const std::string& content, bool to_disk = false) {
-    if (descriptor < 0) fail(path, errno);
+    if (descriptor < 0) cannot_write(path, errno);
     int problem = 0;
     for (std::size_t done = 0; done < content.size() && problem == 0;) {
         const ssize_t count = ::write(descriptor, content.data() + done, content.size() - done);
@@ -39,7 +39,7 @@ void write_all(int descriptor, const std::string& path, const std::string& conte
     }
     if (to_disk && problem == 0 && ::fsync(descriptor) != 0 && errno != EINVAL) problem = errno;
     if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0 && problem == 0) problem = errno;
-    if (problem != 0) fail(path, problem);
+    if (problem != 0) cannot_write(path, problem);
 }
 
 // A name that was given away stays so when the power fails. A folder that cannot be opened is not worth a loss.
@@ -131,9 +131,9 @@ void OutputFiles::add(const std::string& path) {
     file.identity = identity_of(path);
     refuse_output(path);
     const fs::file_status status = fs::status(file.target, problem);
-    if (fs::is_directory(status) && path != "-") fail(path, EISDIR);
+    if (fs::is_directory(status) && path != "-") cannot_write(path, EISDIR);
     file.in_place = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
-    if (fs::exists(status) && path != "-" && ::access(file.target.c_str(), W_OK) != 0) fail(path, errno);
+    if (fs::exists(status) && path != "-" && ::access(file.target.c_str(), W_OK) != 0) cannot_write(path, errno);
     if (!file.in_place) {
         write_all(open_temporary(file), path, {});
         fs::remove(std::exchange(file.temporary, {}), problem);
@@ -163,10 +163,10 @@ void OutputFiles::take_name(File& file) {
     const char *from = file.temporary.c_str(), *to = file.target.c_str();
     std::error_code problem;
     const fs::file_status there = fs::symlink_status(file.target, problem);
-    if (fs::is_directory(there)) fail(file.path, EISDIR);
+    if (fs::is_directory(there)) cannot_write(file.path, EISDIR);
     file.swapped = fs::exists(there) && ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0;
     if (file.swapped) return;
-    if (::rename(from, to) != 0) fail(file.path, errno);
+    if (::rename(from, to) != 0) cannot_write(file.path, errno);
     file.made = !fs::exists(there);
     file.temporary.clear();
 }
@@ -182,7 +182,7 @@ void OutputFiles::commit(Care care) {
     refuse_inputs();
     for (File& file : files_)
         if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Care::on_disk);
-    // A device can be full: it comes before the names, which cannot fail for lack of room.
+    // A device can be full: it comes before the names, which cannot cannot_write for lack of room.
     for (const File& file : files_) {
         if (!file.in_place) continue;
         const bool standard = file.path == "-";

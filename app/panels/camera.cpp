@@ -12,7 +12,7 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* popup = "camera menu";
+constexpr const char* camera_popup = "camera menu";
 
 // More of the world below, so that what the run needs ends above the lowest `strip` pixels of the picture.
 void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
@@ -55,7 +55,7 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
     const float height = ImGui::GetTextLineHeight(), sign = 0.35F * height;
     const float width = size.x + 2.2F * sign + units(4.0F), x = right - width;
     ImGui::SetCursorScreenPos({x, y});
-    if (ImGui::InvisibleButton("camera", {width, height})) ImGui::OpenPopup(popup);
+    if (ImGui::InvisibleButton("camera", {width, height})) ImGui::OpenPopup(camera_popup);
     remember(state, "camera");
     const bool lit = ImGui::IsItemHovered();
     tooltip("camera: what this view shows");
@@ -65,7 +65,7 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
     const float middle = y + 0.55F * height, left = x + size.x + units(6.0F);
     list->AddTriangleFilled({left, middle - 0.4F * sign}, {left + 1.4F * sign, middle - 0.4F * sign},
                             {left + 0.7F * sign, middle + 0.5F * sign}, color);
-    if (ImGui::BeginPopup(popup)) {
+    if (ImGui::BeginPopup(camera_popup)) {
         constexpr std::array<std::pair<CameraMode, const char*>, 4> cameras{
             {{CameraMode::fit, "fit: the whole run"},
              {CameraMode::fixed, "fixed: the current view"},

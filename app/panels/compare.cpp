@@ -9,7 +9,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, sign_width = 15.0F;
+constexpr float run_name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, sign_width = 15.0F;
 
 // The columns of a table as wide as the panel.
 struct Columns {
@@ -23,7 +23,7 @@ Columns columns_of(const Session& session) {
     const std::size_t runs = session.pinned().size() + 1;
     columns.count = runs == 2 ? 3 : runs;
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
-    columns.first = std::min(units(name_width), 0.28F * room);
+    columns.first = std::min(units(run_name_width), 0.28F * room);
     columns.each = std::min(units(widest_column), (room - columns.first) / static_cast<float>(columns.count));
     return columns;
 }
@@ -78,7 +78,7 @@ void show_parting(const PinnedRun& run, const std::string& sentence, float width
 
 float comparison_width(const Session& session) {
     const std::size_t runs = session.pinned().size() + 1;
-    return units(name_width + least_column * static_cast<float>(runs == 2 ? 3 : runs));
+    return units(run_name_width + least_column * static_cast<float>(runs == 2 ? 3 : runs));
 }
 
 void show_comparison(const Session& session, PanelState& state, Commands& commands) {

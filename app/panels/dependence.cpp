@@ -121,17 +121,17 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
 // ---- the bars ----
 
 // The widths of what a line has: name, bar, derivative.
-constexpr float name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F, most_bar = 560.0F;
+constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F, most_bar = 560.0F;
 
 struct Lines {
     Lines(std::size_t count, const Rectangle& room, float high) : height(high) {
         const auto fit = std::max<std::size_t>(static_cast<std::size_t>(std::max(0.0F, room.height / high - 1.0F)), 1);
-        const float least = units(name_width + least_bar + number_width + between);
+        const float least = units(slider_name_width + least_bar + number_width + between);
         const auto most = std::max<std::size_t>(static_cast<std::size_t>(room.width / least), 1);
         const std::size_t columns = std::clamp<std::size_t>((count + fit - 1) / fit, 1, most);
         each = (count + columns - 1) / columns;
         // A bar that is longer than a glance takes in tells no more.
-        const float others = units(name_width + number_width + between);
+        const float others = units(slider_name_width + number_width + between);
         width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(most_bar));
         bar = std::max(units(8.0F), width - others);
         corner = {room.x, room.y};
@@ -144,7 +144,7 @@ struct Lines {
                 std::floor(corner.y + height * static_cast<float>(i % each + 1))};
     }
     // The middle of the bars of the column that line i stands in.
-    float middle(std::size_t i) const { return std::floor(at(i).x + units(name_width) + 0.5F * bar); }
+    float middle(std::size_t i) const { return std::floor(at(i).x + units(slider_name_width) + 0.5F * bar); }
     float half() const { return 0.5F * bar - units(4.0F); }
 };
 
@@ -166,7 +166,7 @@ void paint_line(const Session& session, const Influences& known, const Influence
     const ImVec2 at = lines.at(i);
     const bool is_old = !session.influences_are_current();
     const Color ink = is_old ? faint_color() : text_color();
-    cell(at, slider_name(session.description(), by.name), units(name_width - 6.0F), ink);
+    cell(at, slider_name(session.description(), by.name), units(slider_name_width - 6.0F), ink);
     const float middle = lines.middle(i), low = at.y, high = at.y + ImGui::GetTextLineHeight();
     const float left = middle - 0.5F * lines.bar;
     if (!by.reason.empty())

@@ -18,7 +18,7 @@ namespace achilles {
 namespace {
 
 constexpr double pause = 0.4;         // s without a letter: the hand rests
-constexpr float card_padding = 8.0F;  // around the message, at scale 1
+constexpr float problem_padding = 8.0F;  // around the message, at scale 1
 constexpr float gutter_padding = 6.0F;
 constexpr const char* text_id = "##text";
 
@@ -196,7 +196,7 @@ void show_problems(const Session& session, EditorState& editor, float height) {
     area.height = height;
     paint_error_card(area);
     ImGui::SetCursorScreenPos({area.x, area.y});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(card_padding), units(card_padding)});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(problem_padding), units(problem_padding)});
     begin_padded_child("problems", {area.width, height});
     const float width = ImGui::GetContentRegionAvail().x;
     for (const InputError& problem : session.document().problems) {
@@ -214,9 +214,9 @@ void show_problems(const Session& session, EditorState& editor, float height) {
 // How high the messages are, at most a third of the panel.
 float problems_height(const Session& session, float width, float room) {
     if (session.document().problems.empty()) return 0.0F;
-    float height = 2.0F * units(card_padding);
+    float height = 2.0F * units(problem_padding);
     for (const InputError& problem : session.document().problems)
-        height += message_height(problem.what(), width - 2.0F * units(card_padding));
+        height += message_height(problem.what(), width - 2.0F * units(problem_padding));
     return std::floor(std::min(height, room / 3.0F));
 }
 

@@ -14,8 +14,8 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* title = "Gallery";
-constexpr float card_width = 190.0F, picture_height = 104.0F, gap = 12.0F, widest = 1260.0F;
+constexpr const char* gallery_title = "Gallery";
+constexpr float card_width = 190.0F, picture_height = 104.0F, gap = 12.0F, widest_gallery = 1260.0F;
 
 bool card(const SystemEntry& entry, bool is_open, float width, const Session& session, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -72,16 +72,16 @@ void show_gallery(const Session& session, PanelState& state, Commands& commands)
     const auto is_shortcut = [&] { return io.KeyCtrl && !io.KeyAlt && takes_key(state, 'G', false); };
     if (!shown && is_shortcut()) commands.emplace_back(command::Show{"gallery", true});
     if (shown && !is_covered()) {
-        ImGui::OpenPopup(title);
+        ImGui::OpenPopup(gallery_title);
         state.focus.at = "gallery " + session.system();  // the keys walk from here
         state.focus.scrolls = true;
     }
-    const float width = std::min(units(widest), io.DisplaySize.x - units(48.0F));
+    const float width = std::min(units(widest_gallery), io.DisplaySize.x - units(48.0F));
     const float height = io.DisplaySize.y - units(64.0F);
     ImGui::SetNextWindowPos({std::floor(0.5F * (io.DisplaySize.x - width)), units(32.0F)});
     ImGui::SetNextWindowSize({std::floor(width), std::floor(height)});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(16.0F), units(12.0F)});
-    if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    if (ImGui::BeginPopupModal(gallery_title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
         if (!shown)
             ImGui::CloseCurrentPopup();
         else

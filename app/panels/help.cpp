@@ -17,8 +17,8 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* title = "Keys and words";
-constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest = 1120.0F, highest = 860.0F;
+constexpr const char* help_title = "Keys and words";
+constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest_help = 1120.0F, highest_help = 860.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
@@ -99,13 +99,13 @@ void column(const char* name, const ImVec2& size, const Content& content) {
 void show_help(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("help");
     if (!shown && takes_key(state, key::f1, false)) commands.emplace_back(command::Show{"help", true});
-    if (shown && !is_covered()) ImGui::OpenPopup(title);
+    if (shown && !is_covered()) ImGui::OpenPopup(help_title);
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({std::floor(0.5F * all.x), std::floor(0.5F * all.y)}, ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::SetNextWindowSize(
-        {std::min(units(widest), all.x - units(48.0F)), std::min(units(highest), all.y - units(48.0F))});
+        {std::min(units(widest_help), all.x - units(48.0F)), std::min(units(highest_help), all.y - units(48.0F))});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(18.0F), units(14.0F)});
-    const bool open = ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+    const bool open = ImGui::BeginPopupModal(help_title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
     ImGui::PopStyleVar();
     if (!open) return;
     if (!shown) ImGui::CloseCurrentPopup();

@@ -18,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float margin = 12.0F;
+constexpr float lens_margin = 12.0F;
 
 std::string explanation(const Lens& lens) {
     return fmt::format(
@@ -59,7 +59,7 @@ void show_row(const Session& session, const Lens& lens, float height, PanelState
     const Panel panel = lens.panel(low, low + width, session.theme());
     Rectangle area = remaining();
     area.height = height;
-    area.width -= units(margin);
+    area.width -= units(lens_margin);
     const Rectangle inside = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), area, units(1.0F));
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::InvisibleButton("lens", {std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
@@ -95,7 +95,7 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle card = remaining();
     ImGui::GetWindowDrawList()->AddRectFilled({card.x, card.y}, {card.x + card.width, card.y + card.height},
                                               packed(session.theme().background), units(4.0F));
-    const float edge = units(margin), width = card.width - 2.0F * edge;
+    const float edge = units(lens_margin), width = card.width - 2.0F * edge;
     if (width < units(80.0F) || card.height < units(120.0F)) return;
     ImGui::SetCursorScreenPos({card.x + edge, card.y + edge});
     ImGui::BeginGroup();

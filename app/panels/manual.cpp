@@ -11,14 +11,14 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* title = "Manual";
+constexpr const char* manual_title = "Manual";
 
 void show_page(PanelState& state) {
     const Rectangle all{0.0F, 0.0F, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y};
     const float margin = units(40.0F);
     ImGui::SetNextWindowPos({margin, margin});
     ImGui::SetNextWindowSize({all.width - 2.0F * margin, all.height - 2.0F * margin});
-    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) return;
+    if (!ImGui::BeginPopupModal(manual_title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) return;
     const float button_row = ImGui::GetFrameHeightWithSpacing();
     // Tables need letters of one width.
     ImGui::BeginChild("page", {0.0F, -button_row}, false, ImGuiWindowFlags_HorizontalScrollbar);
@@ -49,7 +49,7 @@ void show_help_items(PanelState& state, Commands& commands) {
 }
 
 void show_manual(PanelState& state) {
-    if (std::exchange(state.opens_manual, false)) ImGui::OpenPopup(title);
+    if (std::exchange(state.opens_manual, false)) ImGui::OpenPopup(manual_title);
     show_page(state);
 }
 

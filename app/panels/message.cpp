@@ -51,7 +51,7 @@ std::vector<std::string> letters_of(const std::string& text) {
 }
 
 // As much of a quoted line as fits, with the caret well inside.
-MessageLine fitted(const MessageLine& line, float width) {
+MessageLine fitted_line(const MessageLine& line, float width) {
     const auto room = static_cast<std::size_t>(std::max(width / ImGui::CalcTextSize("x").x, 8.0F));
     const std::vector<std::string> letters = letters_of(line.text);
     if (letters.size() <= room) return line;
@@ -76,7 +76,7 @@ float height_of(const MessageLine& line, float width) {
 void show_quoted(const MessageLine& whole, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     push_font(monospace_font());
-    const MessageLine line = fitted(whole, width);
+    const MessageLine line = fitted_line(whole, width);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText(at, packed(text_color()), line.text.c_str());
     if (line.caret) {

@@ -16,7 +16,7 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* title = "Command";
+constexpr const char* palette_title = "Command";
 constexpr float wide = 620.0F;
 constexpr int most_rows = 10;
 
@@ -201,14 +201,14 @@ void show_palette(const Session& session, PanelState& state, Commands& commands)
     const bool shown = session.scene().shows("palette");
     const ImGuiIO& io = ImGui::GetIO();
     if (!shown && is_shortcut(state)) commands.emplace_back(command::Show{"palette", true});
-    if (shown && !is_covered()) ImGui::OpenPopup(title);
+    if (shown && !is_covered()) ImGui::OpenPopup(palette_title);
     const float width = std::min(units(wide), io.DisplaySize.x - units(24.0F));
     ImGui::SetNextWindowPos({std::floor(0.5F * (io.DisplaySize.x - width)), std::floor(0.1F * io.DisplaySize.y)});
     ImGui::SetNextWindowSize({width, 0.0F});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(12.0F)});
     constexpr ImGuiWindowFlags flags =
         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove;
-    const bool open = ImGui::BeginPopupModal(title, nullptr, flags);
+    const bool open = ImGui::BeginPopupModal(palette_title, nullptr, flags);
     ImGui::PopStyleVar();
     if (!open) return;
     if (shown)

@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* popup = "plane menu";
+constexpr const char* plane_popup = "plane menu";
 
 std::string name_of(const PlaneTexts& texts) { return typeset(texts.first) + ", " + typeset(texts.second); }
 
@@ -37,7 +37,7 @@ bool fields(PlaneView& plane, PanelState& state, bool focuses) {
 }
 
 void show_menu(const Session& session, PanelState& state, Commands& commands) {
-    if (!ImGui::BeginPopup(popup)) return;
+    if (!ImGui::BeginPopup(plane_popup)) return;
     PlaneView& plane = state.plane;
     const std::vector<PlaneTexts> all = planes_of(session.description());
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -118,7 +118,7 @@ void show_plane_heading(const Session& session, const Rectangle& row, PanelState
     if (ImGui::InvisibleButton("axes", {width + arrow, row.height})) {
         plane.x = plane.texts.first, plane.y = plane.texts.second;
         plane.was_entered = plane.is_wrong = false;
-        ImGui::OpenPopup(popup);
+        ImGui::OpenPopup(plane_popup);
     }
     remember(state, "plane axes");
     const bool lit = ImGui::IsItemHovered();

@@ -15,7 +15,7 @@ namespace achilles {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 6> grids{{{1, 1}, {1, 2}, {2, 2}, {2, 3}, {3, 2}, {3, 3}}};
-constexpr const char* popup = "plot menu";
+constexpr const char* plot_popup = "plot menu";
 
 std::string joined(const std::vector<Text>& texts) {
     std::string text;
@@ -100,12 +100,12 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state) {
     const ViewDescription& view = session.plotted().list()[plot].view;
     state.plot_menu = {static_cast<int>(plot), view.x.text, joined(view.y)};
-    ImGui::OpenPopup(popup);
+    ImGui::OpenPopup(plot_popup);
 }
 
 void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands) {
     PlotMenu& menu = state.plot_menu;
-    if (menu.plot != static_cast<int>(plot) || !ImGui::BeginPopup(popup)) return;
+    if (menu.plot != static_cast<int>(plot) || !ImGui::BeginPopup(plot_popup)) return;
     const int number = static_cast<int>(plot) + 1;
     const Framing& framing = session.plotted().list()[plot].framing;
     show_choices(session, plot, commands);

@@ -14,9 +14,9 @@ namespace achilles {
 
 namespace {
 
-constexpr std::string_view written[] = {"png", "svg", "pdf"};
+constexpr std::string_view written_formats[] = {"png", "svg", "pdf"};
 // What a person may hope for: bytes of another kind in such a file would be a trap.
-constexpr std::string_view others[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
+constexpr std::string_view other_formats[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
 
 template <std::size_t count>
 bool is_among(const std::string& ending, const std::string_view (&endings)[count]) {
@@ -41,7 +41,7 @@ std::string ending_of(const std::string& file) {
 
 std::string ending_of_picture(const std::string& file) {
     const std::string ending = ending_of(file);
-    return is_among(ending, written) ? ending : "";
+    return is_among(ending, written_formats) ? ending : "";
 }
 
 std::string format_for(const std::string& out, const std::string& wanted, const std::string& advice) {
@@ -51,7 +51,7 @@ std::string format_for(const std::string& out, const std::string& wanted, const 
         throw InputError(option, {}, "this name does not give the format of the picture",
                          "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
     if (wanted.empty()) return said;
-    if (said != wanted && (!said.empty() || is_among(ending, others)))
+    if (said != wanted && (!said.empty() || is_among(ending, other_formats)))
         throw InputError(option, {},
                          fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
                          fmt::format("end it in .{}{}", wanted, advice));

@@ -18,8 +18,8 @@ namespace achilles {
 
 namespace {
 
-// The file beside it whose name is nearest, or the folder that is missing.
-InputError missing(const std::filesystem::path& file) {
+// The file beside it whose name is nearest, or the folder that is no_file.
+InputError no_file(const std::filesystem::path& file) {
     std::error_code problem;
     const std::filesystem::path folder = file.parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder, problem))
@@ -48,7 +48,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     };
     // Without waiting: whoever opens a pipe that nobody writes to waits for ever.
     const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0 && errno == ENOENT) throw missing(file);
+    if (descriptor < 0 && errno == ENOENT) throw no_file(file);
     if (descriptor < 0) throw refuse(reason());
     const std::unique_ptr<std::FILE, Close> open(::fdopen(descriptor, "rb"));
     if (!open) throw refuse(reason());

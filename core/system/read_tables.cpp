@@ -23,7 +23,7 @@ namespace achilles {
 namespace {
 
 // Of what no line can be blamed for.
-Mistake missing(const std::string& part) {
+Mistake missing_part(const std::string& part) {
     return {{1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples", false};
 }
 
@@ -95,7 +95,7 @@ std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
 }
 
 void read_coordinates(Reading& reading, const Fields& root) {
-    root.need("coordinate", missing("[[coordinate]]: a system needs at least one"));
+    root.need("coordinate", missing_part("[[coordinate]]: a system needs at least one"));
     const std::size_t before = reading.mistakes.count();
     for (Fields& fields : named_tables(reading, "coordinate")) {
         Mistakes& mistakes = reading.mistakes;
@@ -129,7 +129,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
         reading.system.coordinates.push_back(coordinate);
     }
     if (reading.system.coordinates.empty() && reading.mistakes.count() == before)  // coordinate = []
-        throw missing("[[coordinate]]: a system needs at least one");
+        throw missing_part("[[coordinate]]: a system needs at least one");
 }
 
 // One whose value is an expression in other parameters.
@@ -186,7 +186,7 @@ void read_parameters(Reading& reading) {
 }
 
 void read_lagrangian(Reading& reading, const Fields& root) {
-    root.need("lagrangian", missing("[lagrangian]"));
+    root.need("lagrangian", missing_part("[lagrangian]"));
     Fields fields(*root.find("lagrangian"), "[lagrangian]");
     fields.allow(keys_of("[lagrangian]"), reading.mistakes);
     reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
@@ -212,10 +212,10 @@ void read_constraint_name(const Fields& fields, bool is_only, std::map<std::stri
 
 void read_constraints(Reading& reading, const Fields& root) {
     Mistakes& mistakes = reading.mistakes;
-    root.need("constraint", missing("[[constraint]]"));
+    root.need("constraint", missing_part("[[constraint]]"));
     const std::size_t before = mistakes.count();
     std::vector<Fields>& list = reading.constraints = tables(reading.root, "constraint", mistakes);
-    if (list.empty() && mistakes.count() == before) throw missing("[[constraint]]");  // constraint = []
+    if (list.empty() && mistakes.count() == before) throw missing_part("[[constraint]]");  // constraint = []
     if (list.size() > max_contacts) {
         mistakes.add({list[max_contacts].table().at, fmt::format("more than {} [[constraint]]", max_contacts), {}});
         while (list.size() > max_contacts) list.pop_back();

@@ -17,7 +17,7 @@ namespace achilles {
 namespace {
 
 // Curves of what is still to come.
-constexpr std::uint8_t pale = 70;
+constexpr std::uint8_t pale_alpha = 70;
 
 // Pixels for a unit of a world of this shape and of height 1.
 double unit_in(const Rectangle& area, double shape) { return std::min(area.width / shape, double{area.height}); }
@@ -46,11 +46,11 @@ Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription
     Figure figure = publication(trajectory, views, style, nullptr, horizon);
     for (Panel& panel : figure.panels) {
         for (Markers& markers : panel.markers) markers.points.clear();
-        for (Curve& curve : panel.curves) curve.stroke.color.a = pale;
+        for (Curve& curve : panel.curves) curve.stroke.color.a = pale_alpha;
         panel.beyond.markers.clear();
-        for (Curve& curve : panel.beyond.curves) curve.stroke.color.a = pale / 2;
+        for (Curve& curve : panel.beyond.curves) curve.stroke.color.a = pale_alpha / 2;
         for (TimeBar& one : panel.time_bars)
-            for (TimeBar::Mark& mark : one.marks) mark.color.a = pale;
+            for (TimeBar::Mark& mark : one.marks) mark.color.a = pale_alpha;
     }
     return figure;
 }

@@ -15,13 +15,13 @@ using Kind = FormulaPiece::Kind;
 
 // Shares of the letters' size.
 constexpr float axis = 0.25F;        // above the base line: where a fraction's bar and a minus sign are
-constexpr float thickness = 0.065F;  // of a rule
+constexpr float rule_thickness = 0.065F;  // of a rule
 constexpr float bar_gap = 0.13F;     // between a bar and what stands over and under it
 constexpr float bar_overhang = 0.06F;
 constexpr float small_size = 0.74F;  // of powers and of fractions in fractions
-constexpr float thin = 0.13F, wide = 0.24F;
+constexpr float thin_space = 0.13F, wide_space = 0.24F;
 
-float rule_width(float size) { return std::max(1.0F, std::round(thickness * size)); }
+float rule_width(float size) { return std::max(1.0F, std::round(rule_thickness * size)); }
 
 // Where the index of a name begins: a power stands above it.
 std::size_t index_at(const std::string& label) {
@@ -84,7 +84,7 @@ FormulaBox bracket(const FormulaPiece& piece, const FormulaBox& inside, float si
     box.width = 0.36F * size;
     box.ascent = high + 0.04F * size;
     box.descent = low + 0.04F * size;
-    FormulaBox::Stroke bow{{}, std::max(1.0F, thickness * 1.2F * size)};
+    FormulaBox::Stroke bow{{}, std::max(1.0F, rule_thickness * 1.2F * size)};
     constexpr int steps = 12;
     const float near = 0.30F * size, far = 0.09F * size;
     for (int i = 0; i <= steps; ++i) {
@@ -128,13 +128,13 @@ float space_between(const FormulaPiece& a, bool a_is_prefix, const FormulaPiece&
     if (a.kind == Kind::space) return 0.0F;
     if (b.kind == Kind::space) return 0.28F;
     if (a.kind == Kind::open || b.kind == Kind::close || b.kind == Kind::comma) return 0.02F;
-    if (a.kind == Kind::comma) return wide;
+    if (a.kind == Kind::comma) return wide_space;
     if (a.kind == Kind::relation || b.kind == Kind::relation) return 0.30F;
-    if (b.kind == Kind::sign) return b_is_prefix ? 0.0F : b.label == "\u00b7" ? thin : wide;
-    if (a.kind == Kind::sign) return a_is_prefix ? 0.04F : a.label == "\u00b7" ? thin : wide;
-    if (a.kind == Kind::function) return b.kind == Kind::open ? 0.03F : thin;
+    if (b.kind == Kind::sign) return b_is_prefix ? 0.0F : b.label == "\u00b7" ? thin_space : wide_space;
+    if (a.kind == Kind::sign) return a_is_prefix ? 0.04F : a.label == "\u00b7" ? thin_space : wide_space;
+    if (a.kind == Kind::function) return b.kind == Kind::open ? 0.03F : thin_space;
     if (b.kind == Kind::function) return 0.2F;
-    return thin;
+    return thin_space;
 }
 
 // Where each bracket's partner is; its own place if it has none.

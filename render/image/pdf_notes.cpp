@@ -16,10 +16,10 @@ namespace achilles {
 namespace {
 
 // The comment in front of our notes, each of which is a line. What is no letter of a word is written as a number.
-constexpr std::string_view begin_notes = "\n%Achilles notes\n", end_notes = ">>\n";
+constexpr std::string_view notes_begin = "\n%Achilles notes\n", notes_end = ">>\n";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> own_names{
     {{"Software", "Creator"}, {"Title", "Title"}}};
-constexpr std::string_view mark = "\xFE\xFF";             // of UTF-16
+constexpr std::string_view utf16_mark = "\xFE\xFF";             // of UTF-16
 constexpr std::size_t most_notes = std::size_t{1} << 16;  // those of a stranger take ten times their file's size
 
 std::runtime_error damaged() { return std::runtime_error("its notes are damaged"); }
@@ -39,9 +39,9 @@ bool is_ascii(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-// UTF-16, the larger byte first, behind the mark that says so.
+// UTF-16, the larger byte first, behind the utf16_mark that says so.
 std::string utf16(std::string_view text) {
-    std::string bytes(mark);
+    std::string bytes(utf16_mark);
     const auto add = [&](char32_t unit) {
         bytes += static_cast<char>(unit >> 8);
         bytes += static_cast<char>(unit & 0xFF);
@@ -120,7 +120,7 @@ std::string read_string(std::string_view line) {
         line.remove_prefix(taken);
     }
     const std::string text =
-        bytes.starts_with(mark) ? utf8_of_utf16(std::string_view(bytes).substr(mark.size())) : bytes;
+        bytes.starts_with(utf16_mark) ? utf8_of_utf16(std::string_view(bytes).substr(utf16_mark.size())) : bytes;
     if (!is_utf8(text)) throw damaged();
     return text;
 }
@@ -178,14 +178,14 @@ std::string with_pdf_notes(std::string_view pdf, const Notes& notes) {
     result += begin.substr(1);
     result.append(said);
     while (result.ends_with('\n')) result.pop_back();
-    result += begin_notes;
+    result += notes_begin;
     std::map<std::string, int> times;
     for (const Note& note : notes) {
         const int n = ++times[note.keyword];
         const std::string keyword = n == 1 ? note.keyword : fmt::format("{} {}", note.keyword, n);
         result += name_of(keyword) + " " + written(note.text) + "\n";
     }
-    result.append(end_notes).append("endobj\n");
+    result.append(notes_end).append("endobj\n");
     const std::size_t table = result.size();
     result += fmt::format("xref\n{} 1\n{:010d} 00000 n \ntrailer\n<<", object, at);
     result.append(trailer);
@@ -195,10 +195,10 @@ std::string with_pdf_notes(std::string_view pdf, const Notes& notes) {
 
 Notes pdf_notes(std::string_view pdf) {
     Notes notes;
-    const std::size_t begin = pdf.rfind(begin_notes);
+    const std::size_t begin = pdf.rfind(notes_begin);
     if (begin == std::string_view::npos) return notes;
-    pdf.remove_prefix(begin + begin_notes.size());
-    while (!pdf.starts_with(end_notes)) {
+    pdf.remove_prefix(begin + notes_begin.size());
+    while (!pdf.starts_with(notes_end)) {
         const std::size_t end = pdf.find('\n');
         if (end == std::string_view::npos) throw std::runtime_error("its notes are incomplete");
         const std::string_view line = pdf.substr(0, end);

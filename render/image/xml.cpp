@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::string_view begin_notes = "<metadata xmlns:a=\"urn:achilles:origin\">\n", end_notes = "</metadata>\n";
+constexpr std::string_view metadata_begin = "<metadata xmlns:a=\"urn:achilles:origin\">\n", metadata_end = "</metadata>\n";
 constexpr std::string_view begin_note = "<a:note keyword=\"", end_keyword = "\">", end_note = "</a:note>\n";
 
 // A carriage return written as itself would come back as a line feed.
@@ -61,26 +61,26 @@ std::string xml_escaped(std::string_view text) {
 }
 
 std::string xml_notes(const Notes& notes) {
-    std::string text(begin_notes);
+    std::string text(metadata_begin);
     for (const Note& note : notes) {
         text.append(begin_note).append(xml_escaped(note.keyword)).append(end_keyword);
         text.append(xml_escaped(note.text)).append(end_note);
     }
-    return text.append(end_notes);
+    return text.append(metadata_end);
 }
 
 Notes xml_notes_of(std::string_view text) {
     Notes notes;
-    const std::size_t begin = text.find(begin_notes);
+    const std::size_t begin = text.find(metadata_begin);
     if (begin == std::string_view::npos) return notes;
-    text.remove_prefix(begin + begin_notes.size());
+    text.remove_prefix(begin + metadata_begin.size());
     while (text.substr(0, begin_note.size()) == begin_note) {
         text.remove_prefix(begin_note.size());
         Note& note = notes.emplace_back();
         note.keyword = unescaped(take_until(text, end_keyword));
         note.text = unescaped(take_until(text, end_note));
     }
-    if (text.substr(0, end_notes.size()) != end_notes) throw std::runtime_error("its notes are incomplete");
+    if (text.substr(0, metadata_end.size()) != metadata_end) throw std::runtime_error("its notes are incomplete");
     return notes;
 }
 
