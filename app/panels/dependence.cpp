@@ -121,7 +121,8 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
 // ---- the bars ----
 
 // The widths of what a line has: name, bar, derivative.
-constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F, most_bar = 560.0F;
+constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F,
+                most_bar = 560.0F;
 
 struct Lines {
     Lines(std::size_t count, const Rectangle& room, float high) : height(high) {

@@ -17,7 +17,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double pause = 0.4;         // s without a letter: the hand rests
+constexpr double pause = 0.4;            // s without a letter: the hand rests
 constexpr float problem_padding = 8.0F;  // around the message, at scale 1
 constexpr float gutter_padding = 6.0F;
 constexpr const char* text_id = "##text";

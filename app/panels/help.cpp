@@ -18,7 +18,8 @@ namespace achilles {
 namespace {
 
 constexpr const char* help_title = "Keys and words";
-constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest_help = 1120.0F, highest_help = 860.0F;
+constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest_help = 1120.0F,
+                highest_help = 860.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))

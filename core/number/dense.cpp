@@ -1,25 +1,32 @@
 #include "number/dense.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 
 namespace achilles {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-VectorXd least_solution(const MatrixXd& A, const VectorXd& b) {
-    return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(b);
-}
-MatrixXd least_solution(const MatrixXd& A, const MatrixXd& B) {
-    return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(B);
-}
+namespace {
 
-VectorXd solution(const MatrixXd& A, const VectorXd& b) { return A.partialPivLu().solve(b); }
+using Decomposition = Eigen::CompleteOrthogonalDecomposition<MatrixXd>;
+
+}  // namespace
+
+VectorXd least_solution(const MatrixXd& A, const VectorXd& b) { return Decomposition(A).solve(b); }
+
+MatrixXd least_solution(const MatrixXd& A, const MatrixXd& B) {
+    const Decomposition decomposition(A);
+    MatrixXd result(A.cols(), B.cols());
+    for (Eigen::Index k = 0; k < B.cols(); ++k) result.col(k) = decomposition.solve(VectorXd(B.col(k)));
+    return result;
+}
 
 MatrixXd range_of(const MatrixXd& A, Eigen::Index dimensions) {
-    return A.jacobiSvd(Eigen::ComputeFullU).matrixU().leftCols(dimensions);
+    MatrixXd basis = MatrixXd::Zero(A.rows(), dimensions);
+    for (Eigen::Index k = 0; k < dimensions; ++k) basis(k, k) = 1.0;
+    basis.applyOnTheLeft(Decomposition(A).householderQ());
+    return basis;
 }
 
 std::vector<std::complex<double>> eigenvalues_of(const MatrixXd& A) {

@@ -7,12 +7,10 @@
 
 namespace achilles {
 
-// The shortest x of those with the least |A x - b|, by a complete orthogonal decomposition; for every column of B.
+// The shortest x of those with the least |A x - b|, by a QR decomposition with pivots; for every column of B.
 Eigen::VectorXd least_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::MatrixXd least_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-// x of A x = b, of a square A that has an inverse.
-Eigen::VectorXd solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
-// An orthonormal basis of what A reaches, as far as it has so many dimensions: its left singular vectors, the greatest first.
+// An orthonormal basis of the range of A, of so many of its dimensions: those of the largest columns.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& A, Eigen::Index dimensions);
 // Of a square matrix, in no order.
 std::vector<std::complex<double>> eigenvalues_of(const Eigen::MatrixXd& A);

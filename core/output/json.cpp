@@ -20,18 +20,16 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Numbers print in the shortest form that reads back the same double; what is not finite is null.
-Json number(double x) { return std::isfinite(x) ? Json(x + 0.0) : Json(nullptr); }
-Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
 
 Json list(const Vector& x) {
     Json result = Json::array();
-    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number(x[i]));
+    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number_json(x[i]));
     return result;
 }
 
 Json list(const Eigen::VectorXd& x) {
     Json result = Json::array();
-    for (const double each : x) result.push_back(number(each));
+    for (const double each : x) result.push_back(number_json(each));
     return result;
 }
 
@@ -64,20 +62,20 @@ Json derivatives_of(const Dependence& dependence) {
         if (!d.refused[k].empty()) refused[d.directions[k]] = d.refused[k];
     for (const Quantity& quantity : dependence.quantities) {
         of.push_back({{"expression", quantity.expression},
-                      {"value", number(quantity.value)},
+                      {"value", number_json(quantity.value)},
                       {"derivatives", list(quantity.derivatives)}});
         if (!quantity.refused.empty()) of.back()["reason"] = quantity.refused;
     }
     Json result = {{"directions", d.directions},
                    {"margins",
-                    {{"grazing_speed", number(d.margins.grazing_speed)},
-                     {"gap_minimum", number(d.margins.gap_minimum)},
-                     {"a_inf", number(d.margins.a_inf)},
-                     {"release_jerk", number(d.margins.release_jerk)}}},
+                    {{"grazing_speed", number_json(d.margins.grazing_speed)},
+                     {"gap_minimum", number_json(d.margins.gap_minimum)},
+                     {"a_inf", number_json(d.margins.a_inf)},
+                     {"release_jerk", number_json(d.margins.release_jerk)}}},
                    {"of", of},
                    {"refused", refused},
                    {"none_from", nullptr}};
-    if (!d.broken.empty()) result["none_from"] = {{"t", number(d.broken_from)}, {"reason", d.broken}};
+    if (!d.broken.empty()) result["none_from"] = {{"t", number_json(d.broken_from)}, {"reason", d.broken}};
     return result;
 }
 
@@ -86,9 +84,9 @@ Json system_of(const Trajectory& trajectory) {
     Json coordinates = Json::array(), parameters = Json::object();
     for (const auto& coordinate : description.coordinates) coordinates.push_back(coordinate.name);
     for (std::size_t i = 0; i < description.parameters.size(); ++i)
-        parameters[description.parameters[i].name] = number(trajectory.run.parameters[i]);
+        parameters[description.parameters[i].name] = number_json(trajectory.run.parameters[i]);
     const std::vector<double> derived = derived_values(*trajectory.model, trajectory.run.parameters);
-    for (std::size_t i = 0; i < derived.size(); ++i) parameters[description.derived[i].name] = number(derived[i]);
+    for (std::size_t i = 0; i < derived.size(); ++i) parameters[description.derived[i].name] = number_json(derived[i]);
     Json contacts = Json::array();
     for (const ConstraintDescription& constraint : description.constraints) contacts.push_back(constraint.name);
     return {
@@ -108,7 +106,7 @@ Json units_of(const SystemDescription& description) {
 Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) {
     Json samples = Json::array();
     for (const Sample& sample : samples_at(trajectory, times))
-        samples.push_back({{"t", number(sample.t)},
+        samples.push_back({{"t", number_json(sample.t)},
                            {"j", sample.j},
                            {"phase", to_text(sample.phase)},
                            {"held", contact_names(*trajectory.model, sample.held)},
@@ -123,7 +121,7 @@ Json options_of(const Options& options) {
         const OptionValue value = option->get(options);
         const auto* x = std::get_if<double>(&value);
         result[std::string(option->key)] =
-            x ? number(*x) : std::visit([](const auto& other) { return Json(other); }, value);
+            x ? number_json(*x) : std::visit([](const auto& other) { return Json(other); }, value);
     }
     return result;
 }
@@ -134,7 +132,7 @@ Json outcome_of(const Trajectory& trajectory) {
     if (trajectory.made_again_by)
         for (const Option& option : all_options())
             if (option.is_tolerance)
-                again[std::string(option.key)] = number(std::get<double>(option.get(*trajectory.made_again_by)));
+                again[std::string(option.key)] = number_json(std::get<double>(option.get(*trajectory.made_again_by)));
     return {
         {"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}, {"made_again_by", again}};
 }
@@ -153,18 +151,19 @@ Json by_contact(const Trajectory& trajectory, const Pairs& pairs, const Value& v
 }
 Json by_contact(const Trajectory& trajectory, const std::vector<std::pair<std::size_t, double>>& values) {
     return by_contact(trajectory, values,
-                      [](const auto& entry) { return std::pair(entry.first, number(entry.second)); });
+                      [](const auto& entry) { return std::pair(entry.first, number_json(entry.second)); });
 }
 
 // Of the others while one contact bounces.
 void add_others(Json& result, const Trajectory& trajectory, const Certificate::Others& others) {
     using Held = Certificate::Others::Held;
     result["transmission"] = by_contact(trajectory, others.held, [](const Held& held) {
-        return std::pair(held.contact, Json{number(held.transmission_low), number(held.transmission_high)});
+        return std::pair(held.contact, Json{number_json(held.transmission_low), number_json(held.transmission_high)});
     });
-    result["least_force"] = by_contact(
-        trajectory, others.held, [](const Held& held) { return std::pair(held.contact, number(held.least_force)); });
-    result["least_other_gap"] = number(others.least_gap);
+    result["least_force"] = by_contact(trajectory, others.held, [](const Held& held) {
+        return std::pair(held.contact, number_json(held.least_force));
+    });
+    result["least_other_gap"] = number_json(others.least_gap);
     if (others.rounded_zero) result["rounded_zero"] = true;
 }
 
@@ -173,30 +172,31 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
                    {"conditions", to_text(c.conditions)},
                    {"reinitialization", to_text(c.reinitialization)},
                    {"below_rounding", c.below_rounding},
-                   {"zeno_time", {number(c.zeno_low), number(c.zeno_high)}},
-                   {"position_bound", number(c.position_bound)},
-                   {"velocity_bound", number(c.velocity_bound)},
-                   {"shadowing_position", number(c.shadowing_position)},
-                   {"shadowing_velocity", number(c.shadowing_velocity)},
-                   {"uniform_position", number(c.uniform_position)},
-                   {"a_min", number(c.a_min)},
-                   {"a_max", number(c.a_max)},
+                   {"zeno_time", {number_json(c.zeno_low), number_json(c.zeno_high)}},
+                   {"position_bound", number_json(c.position_bound)},
+                   {"velocity_bound", number_json(c.velocity_bound)},
+                   {"shadowing_position", number_json(c.shadowing_position)},
+                   {"shadowing_velocity", number_json(c.shadowing_velocity)},
+                   {"uniform_position", number_json(c.uniform_position)},
+                   {"a_min", number_json(c.a_min)},
+                   {"a_max", number_json(c.a_max)},
                    {"decisive", c.decisive}};
     if (c.paper) {
         const Certificate::Paper& p = *c.paper;
-        result.update({{"e1", number(p.e1)},
-                       {"e2", number(p.e2)},
-                       {"beta", number(p.beta)},
-                       {"eta", number(p.eta)},
-                       {"zeta", number(p.zeta)},
-                       {"c1", number(p.c1)},
-                       {"c2", number(p.c2)},
-                       {"c3", number(p.c3)}});
+        result.update({{"e1", number_json(p.e1)},
+                       {"e2", number_json(p.e2)},
+                       {"beta", number_json(p.beta)},
+                       {"eta", number_json(p.eta)},
+                       {"zeta", number_json(p.zeta)},
+                       {"c1", number_json(p.c1)},
+                       {"c2", number_json(p.c2)},
+                       {"c3", number_json(p.c3)}});
     }
     Json inequalities = Json::array();
     for (const Inequality& inequality : c.inequalities())
-        inequalities.push_back(
-            {{"name", inequality.name}, {"left", number(inequality.left)}, {"right", number(inequality.right)}});
+        inequalities.push_back({{"name", inequality.name},
+                                {"left", number_json(inequality.left)},
+                                {"right", number_json(inequality.right)}});
     result["inequalities"] = inequalities;
     if (c.others) add_others(result, trajectory, *c.others);
     return result;
@@ -229,7 +229,7 @@ void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
 
 Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulses) {
     const Event& event = trajectory.events[index];
-    Json result = {{"kind", to_text(event.kind)}, {"t", number(event.t)}};
+    Json result = {{"kind", to_text(event.kind)}, {"t", number_json(event.t)}};
     const Json contacts = names(trajectory, taking_part(trajectory, index));
     if (contacts.size() == 1)
         result["contact"] = contacts[0];
@@ -241,7 +241,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     if (event.kind == Event::Kind::impact) {
         result["v_before"] = list(event.v_before);
         result["v_after"] = list(event.v_after);
-        result["impact_speed"] = number(event.impact_speed);
+        result["impact_speed"] = number_json(event.impact_speed);
         result["impulses"] = by_contact(trajectory, impulses.of(index));
         if (event.joint) add_joint(result, trajectory, *event.joint);
     } else {
@@ -249,11 +249,11 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     }
     if (event.kind == Event::Kind::zeno) result["impacts"] = event.impacts;
     if (event.truncation)
-        result["truncation"] = {{"t", number(event.truncation->t)},
+        result["truncation"] = {{"t", number_json(event.truncation->t)},
                                 {"q", list(event.truncation->q)},
                                 {"v_before", list(event.truncation->v_before)},
                                 {"v", list(event.truncation->v)},
-                                {"impact_speed", number(event.truncation->impact_speed)}};
+                                {"impact_speed", number_json(event.truncation->impact_speed)}};
     if (event.certificate) {
         Json& certificate = result["certificate"] = certificate_of(trajectory, *event.certificate);
         if (const std::string convention = given(trajectory, index); !convention.empty())
@@ -266,15 +266,15 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
 void add_error_estimate(Json& result, const Trajectory& trajectory, const ErrorEstimate& estimate) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         Json& of_event = result["events"][i]["error_estimate"] = nullptr;
-        if (i < estimate.events.size()) of_event = number(estimate.events[i]);
+        if (i < estimate.events.size()) of_event = number_json(estimate.events[i]);
     }
     Json& of_end = result["end"]["error_estimate"] = nullptr;
     if (estimate.end)
         of_end = {{"q", list(estimate.end->q)},
                   {"v", list(estimate.end->v)},
-                  {"norm", number(estimate.end->norm)},
-                  {"sigma", number(estimate.end->sigma)},
-                  {"reach", number(estimate.end->reach())}};
+                  {"norm", number_json(estimate.end->norm)},
+                  {"sigma", number_json(estimate.end->sigma)},
+                  {"reach", number_json(estimate.end->reach())}};
     else
         result["end"]["no_error_estimate"] = estimate.none_since;
 }
@@ -300,8 +300,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
     for (const Phase& phase : trajectory.phases) {
         phases.push_back({{"kind", to_text(phase.kind)},
                           {"held", names(trajectory, phase.held)},
-                          {"start", number(phase.start)},
-                          {"end", number(phase.end)},
+                          {"start", number_json(phase.start)},
+                          {"end", number_json(phase.end)},
                           {"impacts", phase.impacts}});
         if (phase.not_unique()) phases.back()["not_unique"] = true;
     }
@@ -314,19 +314,19 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                    {"phases", phases},
                    {"events", events_json(trajectory)},
                    {"end",
-                    {{"t", number(trajectory.end_time)},
+                    {{"t", number_json(trajectory.end_time)},
                      {"q", list(trajectory.end.q)},
                      {"v", list(trajectory.end.v)},
                      {"phase", to_text(trajectory.end_phase)},
                      {"held", names(trajectory, trajectory.end_held)},
-                     {"work", number(trajectory.work)},
-                     {"loss", number(trajectory.loss)},
+                     {"work", number_json(trajectory.work)},
+                     {"loss", number_json(trajectory.loss)},
                      {"by_convention", trajectory.by_convention}}},
                    {"outcome", outcome_of(trajectory)},
-                   {"trusted_until", number(estimate.trusted_until)},
+                   {"trusted_until", number_json(estimate.trusted_until)},
                    {"warnings", warnings},
                    {"start",
-                    {{"t", number(trajectory.run.options.start_time)},
+                    {{"t", number_json(trajectory.run.options.start_time)},
                      {"q", list(trajectory.run.q)},
                      {"v", list(trajectory.run.v)}}},
                    {"units", units_of(trajectory.model->description())},
@@ -334,8 +334,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                     {{"steps", s.steps},
                      {"evaluations", s.evaluations},
                      {"impacts", s.impacts},
-                     {"energy_drift", number(s.energy_drift)},
-                     {"least_gap", number(least_gap(trajectory))}}},
+                     {"energy_drift", number_json(s.energy_drift)},
+                     {"least_gap", number_json(least_gap(trajectory))}}},
                    {"assumed",  // by the certificates
                     {{"arithmetic", "IEEE 754 double, round to nearest"},
                      {"ulps", rounding::libm},

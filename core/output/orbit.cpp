@@ -15,28 +15,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x + 0.0) : Json(nullptr); }
-Json number(const std::optional<double>& x) { return x ? number(*x) : Json(nullptr); }
-
 template <class List>
 Json list(const List& x) {
     Json result = Json::array();
-    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number(x[i]));
+    for (Eigen::Index i = 0; i < x.size(); ++i) result.push_back(number_json(x[i]));
     return result;
 }
 
 void add_point(Json& json, const OrbitPoint& point) {
-    json["period"] = number(point.period);
-    json["state"] = {{"t", number(point.state.t)}, {"q", list(point.state.q)}, {"v", list(point.state.v)}};
+    json["period"] = number_json(point.period);
+    json["state"] = {{"t", number_json(point.state.t)}, {"q", list(point.state.q)}, {"v", list(point.state.v)}};
     Json& multipliers = json["multipliers"] = Json::array();
-    for (const auto& mu : point.multipliers) multipliers.push_back({number(mu.real()), number(mu.imag())});
+    for (const auto& mu : point.multipliers) multipliers.push_back({number_json(mu.real()), number_json(mu.imag())});
     json["zero_multipliers"] = point.zero_multipliers;
     json["stable"] = point.stable;
-    json["margins"] = {{"grazing_speed", number(point.margins.grazing_speed)},
-                       {"gap_minimum", number(point.margins.gap_minimum)},
-                       {"a_inf", number(point.margins.a_inf)},
-                       {"release_jerk", number(point.margins.release_jerk)}};
-    json["psi"] = number(point.psi);
+    json["margins"] = {{"grazing_speed", number_json(point.margins.grazing_speed)},
+                       {"gap_minimum", number_json(point.margins.gap_minimum)},
+                       {"a_inf", number_json(point.margins.a_inf)},
+                       {"release_jerk", number_json(point.margins.release_jerk)}};
+    json["psi"] = number_json(point.psi);
 }
 
 Json branch_of(const Branch& branch, const SystemDescription& description) {
@@ -44,7 +41,7 @@ Json branch_of(const Branch& branch, const SystemDescription& description) {
     const auto points = [&](const std::vector<OrbitPoint>& all) {
         Json result = Json::array();
         for (const OrbitPoint& point : all) {
-            Json json = {{"value", number(branch.value(point))}};
+            Json json = {{"value", number_json(branch.value(point))}};
             add_point(json, point);
             result.push_back(std::move(json));
         }
@@ -77,10 +74,10 @@ std::string to_json(const Orbit& orbit, const Branch* branch) {
     for (std::size_t k = 0; k < orbit.parameters.size(); ++k) {
         const Eigen::VectorXd column = orbit.by_parameters.col(static_cast<Eigen::Index>(k));
         by[description.parameters[k].name] = {
-            {"period", number(column[2 * n])}, {"q", list(column.head(n))}, {"v", list(column.segment(n, n))}};
+            {"period", number_json(column[2 * n])}, {"q", list(column.head(n))}, {"v", list(column.segment(n, n))}};
     }
     result["derivatives"] = std::move(by);
-    result["newton"] = {{"steps", orbit.iterations}, {"error", number(orbit.error)}};
+    result["newton"] = {{"steps", orbit.iterations}, {"error", number_json(orbit.error)}};
     result["branch"] = branch != nullptr ? branch_of(*branch, description) : Json(nullptr);
     return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }

@@ -1,5 +1,6 @@
 // A proof as JSON and as text.
 #include "output/proof.hpp"
+#include "output/json_parts.hpp"
 
 #include <fmt/format.h>
 
@@ -18,10 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x + 0.0) : Json(nullptr); }
-
 // The ends are doubles, and print in the shortest form that reads back the same ones.
-Json interval(const Interval& x) { return {number(x.lo()), number(x.hi())}; }
+Json interval(const Interval& x) { return {number_json(x.lo()), number_json(x.hi())}; }
 
 Json box(const Intervals& all) {
     Json result = Json::array();
@@ -29,7 +28,9 @@ Json box(const Intervals& all) {
     return result;
 }
 
-Json state(const EnclosedState& there) { return {{"t", number(there.t)}, {"q", box(there.q)}, {"v", box(there.v)}}; }
+Json state(const EnclosedState& there) {
+    return {{"t", number_json(there.t)}, {"q", box(there.q)}, {"v", box(there.v)}};
+}
 
 std::string list(const std::vector<std::string>& names, const Intervals& all, std::string (*text)(const Interval&)) {
     std::string result;
@@ -174,12 +175,12 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
     Json result = {{"achilles", version()},
                    {"system", {{"title", description.title}, {"coordinates", coordinates}}},
                    {"claim",
-                    {{"start_time", number(claim.run.options.start_time)},
-                     {"end_time", number(claim.run.options.end_time)},
+                    {{"start_time", number_json(claim.run.options.start_time)},
+                     {"end_time", number_json(claim.run.options.end_time)},
                      {"q", box(claim.q)},
                      {"v", box(claim.v)},
                      {"parameters", parameters}}},
-                   {"proved_until", number(proof.proved_until)},
+                   {"proved_until", number_json(proof.proved_until)},
                    {"events", events},
                    {"events_differ", proof.events_differ},
                    {"end", proof.end ? state(*proof.end) : Json(nullptr)}};

@@ -119,10 +119,9 @@ std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double t
         values[0] = at.x, values[1] = at.y;
     });
     std::vector<WayPoint> way;
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
     for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
         const Course& course = traced.courses[kind == Phase::Kind::hybrid ? 0 : 1];
-        if (!way.empty() && !course.points.empty()) way.push_back({to, kind, {nothing, nothing}});
+        if (!way.empty() && !course.points.empty()) way.push_back({to, kind, break_of_curve});
         for (std::size_t i = 0; i < course.points.size(); ++i) way.push_back({course.times[i], kind, course.points[i]});
     }
     return way;

@@ -20,8 +20,6 @@ namespace achilles {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
 // The range of all finite values; of the positive ones where the axis is logarithmic.
 struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -96,9 +94,7 @@ void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
     }
 }
 
-Point point_of(double x, double y) {
-    return std::isfinite(x) && std::isfinite(y) ? Point{x, y} : Point{nothing, nothing};
-}
+Point point_of(double x, double y) { return std::isfinite(x) && std::isfinite(y) ? Point{x, y} : break_of_curve; }
 
 // Some instants of a part of a run, and some of its events.
 std::vector<Sample> some_samples(const Trajectory& trajectory, double from, double to) {

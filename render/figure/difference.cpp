@@ -99,8 +99,7 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
             then.go_to(t);
             for (std::size_t k = 0; k < quantities.size(); ++k) {
                 const double a = now[quantities[k]], b = then[quantities[k]], gap = std::abs(a - b);
-                constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-                const Point point = std::isfinite(gap) ? Point{t, gap} : Point{nothing, nothing};
+                const Point point = std::isfinite(gap) ? Point{t, gap} : break_of_curve;
                 if (t <= known) panel.curves[first + k].points.push_back(point);
                 if (t >= known && known < until) panel.beyond.curves[first + k].points.push_back(point);
                 if (!std::isfinite(gap)) continue;

@@ -119,7 +119,6 @@ Point Field::zero_between(const Corner& a, const Corner& b) const {
 
 std::vector<Point> Field::zero_line() const {
     std::vector<Point> line;
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
     for (int j = 0; j < rows_; ++j)
         for (int i = 0; i < columns_; ++i) {
             if (!may_be_crossed(i, j)) continue;
@@ -129,7 +128,7 @@ std::vector<Point> Field::zero_line() const {
                     if (crosses(part[k], part[(k + 1) % 4])) zeros.push_back(zero_between(part[k], part[(k + 1) % 4]));
                 // Two of them, or four in a saddle, which is two segments.
                 for (std::size_t k = 0; k + 1 < zeros.size(); k += 2)
-                    line.insert(line.end(), {zeros[k], zeros[k + 1], {nothing, nothing}});
+                    line.insert(line.end(), {zeros[k], zeros[k + 1], break_of_curve});
             }
         }
     return line;
@@ -137,7 +136,6 @@ std::vector<Point> Field::zero_line() const {
 
 std::vector<Point> Field::level_line(double level) const {
     std::vector<Point> line;
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
     for (int j = 0; j < rows_; ++j) {
         const double* const low = values_.data() + static_cast<std::ptrdiff_t>(j) * (columns_ + 1);
         const double* const high = low + columns_ + 1;
@@ -152,7 +150,7 @@ std::vector<Point> Field::level_line(double level) const {
                 if (crosses(cell[k], cell[(k + 1) % 4])) crossings.push_back(crossing(cell[k], cell[(k + 1) % 4]));
             // Two of them, or four in a saddle, which is two segments.
             for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
-                line.insert(line.end(), {crossings[k], crossings[k + 1], {nothing, nothing}});
+                line.insert(line.end(), {crossings[k], crossings[k + 1], break_of_curve});
         }
     }
     return line;
@@ -273,7 +271,6 @@ class Chains {
  private:
     static std::pair<double, double> key(const Point& p) { return {p.x, p.y}; }
     void follow(std::size_t segment, std::size_t from) {
-        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
         lines_.push_back(ends_[segment][from]);
         for (;;) {
             used_[segment] = true;
@@ -285,7 +282,7 @@ class Chains {
             segment = *next;
             from = key(ends_[segment][0]) == key(end) ? 0 : 1;
         }
-        lines_.push_back({nothing, nothing});
+        lines_.push_back(break_of_curve);
     }
     std::vector<std::array<Point, 2>> ends_;
     std::map<std::pair<double, double>, std::vector<std::size_t>> at_;

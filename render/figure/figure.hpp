@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -19,6 +20,8 @@ struct Color {
 struct Point {
     double x = 0.0, y = 0.0;
 };
+// A curve is interrupted where it has this point.
+constexpr Point break_of_curve{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
 
 // Lengths are in points of the layout: 1 unit = 1 pixel at scale 1.
 struct Stroke {

@@ -14,9 +14,9 @@ namespace {
 using Kind = FormulaPiece::Kind;
 
 // Shares of the letters' size.
-constexpr float axis = 0.25F;        // above the base line: where a fraction's bar and a minus sign are
+constexpr float axis = 0.25F;             // above the base line: where a fraction's bar and a minus sign are
 constexpr float rule_thickness = 0.065F;  // of a rule
-constexpr float bar_gap = 0.13F;     // between a bar and what stands over and under it
+constexpr float bar_gap = 0.13F;          // between a bar and what stands over and under it
 constexpr float bar_overhang = 0.06F;
 constexpr float small_size = 0.74F;  // of powers and of fractions in fractions
 constexpr float thin_space = 0.13F, wide_space = 0.24F;

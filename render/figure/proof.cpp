@@ -16,7 +16,6 @@ namespace achilles {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double least_seen = 1.0 / 150.0;  // of the panel's height, across: a narrower tube is behind its curve
 
 // Whether the members are in contact at a time.
@@ -144,7 +143,8 @@ std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t 
         const Known& here = known[k];
         const Interval& proved = here.proved[y];
         const bool is_there = proved.is_defined() && std::isfinite(proved.lo()) && std::isfinite(proved.hi());
-        slices.push_back({here.t, is_there ? proved.lo() : nothing, is_there ? proved.hi() : nothing});
+        slices.push_back(
+            {here.t, is_there ? proved.lo() : break_of_curve.x, is_there ? proved.hi() : break_of_curve.x});
         if (k + 1 == known.size()) break;
         const Known& next = known[k + 1];
         while (point != course.end() && point->x <= here.t) ++point;

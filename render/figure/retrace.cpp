@@ -49,7 +49,6 @@ class Traces {
 
 std::vector<Point> without_retraced(const std::vector<Point>& points, const Axis& x, const Axis& y,
                                     const Resolution& size_of_plot) {
-    constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
     const double columns = size_of_plot.width / cell_size, rows = size_of_plot.height / cell_size;
     const auto place = [&](const Point& p) {
         return Point{columns * (p.x - x.low) / (x.high - x.low), rows * (p.y - y.low) / (y.high - y.low)};
@@ -93,7 +92,7 @@ std::vector<Point> without_retraced(const std::vector<Point>& points, const Axis
                 is_broken = true;
             } else {
                 if (is_broken) {
-                    if (!kept.empty()) kept.push_back({nothing, nothing});
+                    if (!kept.empty()) kept.push_back(break_of_curve);
                     kept.push_back(k == 0 ? points[i] : at(k));
                 }
                 kept.push_back(end == parts ? points[i + 1] : at(end));

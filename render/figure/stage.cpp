@@ -93,15 +93,14 @@ std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
     std::vector<WayPoint> all;
     if (const auto part = close_part(now, seen, body)) {
         const auto [low, high] = *part;
-        constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
         const PlaceOf place = [&](const Sample& sample) { return grip->at(sample.t, sample.state).at; };
         for (const WayPoint& point : trail_.way) {
             const bool is_near = point.t > low && point.t < high;
             if (!is_near || all.empty() || std::isfinite(all.back().at.x)) all.push_back(point);
-            if (is_near) all.back().at = {nothing, nothing};
+            if (is_near) all.back().at = break_of_curve;
         }
         for (const auto& [from, to] : {std::pair{low, now.t}, std::pair{now.t, high}}) {
-            all.push_back({from, Phase::Kind::hybrid, {nothing, nothing}});
+            all.push_back({from, Phase::Kind::hybrid, break_of_curve});
             const std::vector<WayPoint> fine = way_of(trajectory_, from, to, seen, place);
             all.insert(all.end(), fine.begin(), fine.end());
         }

@@ -13,7 +13,6 @@ namespace achilles {
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr double flat = 0.1;  // pixels: a chord that is off by less is the curve
 
 bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
@@ -44,7 +43,7 @@ class Thinner {
     }
     void keep_break(double t) {
         if (course_.points.empty() || !is_finite(course_.points.back())) return;
-        course_.points.push_back({nothing, nothing});
+        course_.points.push_back(break_of_curve);
         course_.times.push_back(t);
     }
     Course course_;
@@ -144,7 +143,7 @@ class PathThinner : public Thinner {
     }
     void lift() override {
         if (last_) keep_break(last_->t);
-        if (cells_.empty()) pixels_.resize(course_.points.size(), {nothing, nothing});
+        if (cells_.empty()) pixels_.resize(course_.points.size(), break_of_curve);
         last_.reset();
         is_drawn_ = false;
     }

@@ -19,8 +19,7 @@ namespace {
 constexpr std::string_view notes_begin = "\n%Achilles notes\n", notes_end = ">>\n";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> own_names{
     {{"Software", "Creator"}, {"Title", "Title"}}};
-constexpr std::string_view utf16_mark = "\xFE\xFF";             // of UTF-16
-constexpr std::size_t most_notes = std::size_t{1} << 16;  // those of a stranger take ten times their file's size
+constexpr std::string_view utf16_mark = "\xFE\xFF";  // of UTF-16
 
 std::runtime_error damaged() { return std::runtime_error("its notes are damaged"); }
 
@@ -33,10 +32,6 @@ std::string name_of(const std::string& keyword) {
     for (const char c : keyword)
         name += is_letter(c) ? std::string(1, c) : fmt::format("#{:02X}", static_cast<unsigned char>(c));
     return name;
-}
-
-bool is_ascii(std::string_view text) {
-    return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
 // UTF-16, the larger byte first, behind the utf16_mark that says so.

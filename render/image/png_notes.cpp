@@ -19,7 +19,6 @@ constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t header_size = 12 + 13;  // of the first chunk, IHDR, with length, name and check sum
 constexpr std::size_t longest_chunk = 0x7FFFFFFF, longest_keyword = 79;
 // A note in memory is larger than an empty one in a file: without a limit a file of a gigabyte would take six.
-constexpr std::size_t most_notes = std::size_t{1} << 16;
 constexpr const char* too_many = "a PNG file holds at most 65536 notes";
 
 std::uint32_t check_sum(std::string_view bytes) {
@@ -36,10 +35,6 @@ std::uint32_t big_endian(std::string_view bytes) {
     std::uint32_t value = 0;
     for (const char c : bytes.substr(0, 4)) value = value << 8 | static_cast<unsigned char>(c);
     return value;
-}
-
-bool is_ascii(std::string_view text) {
-    return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
 bool is_keyword(std::string_view word) {

@@ -10,7 +10,8 @@ namespace achilles {
 
 namespace {
 
-constexpr std::string_view metadata_begin = "<metadata xmlns:a=\"urn:achilles:origin\">\n", metadata_end = "</metadata>\n";
+constexpr std::string_view metadata_begin = "<metadata xmlns:a=\"urn:achilles:origin\">\n",
+                           metadata_end = "</metadata>\n";
 constexpr std::string_view begin_note = "<a:note keyword=\"", end_keyword = "\">", end_note = "</a:note>\n";
 
 // A carriage return written as itself would come back as a line feed.
