@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "algebra/factored.hpp"
+#include "algebra/algebra.hpp"
 #include "expression/notation.hpp"
 
 namespace achilles {

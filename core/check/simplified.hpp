@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "algebra/factored.hpp"
+#include "algebra/algebra.hpp"
 #include "model/model.hpp"
 
 namespace achilles {

@@ -5,8 +5,7 @@
 
 #include "depend/tangent.hpp"
 #include "model/model.hpp"
-#include "number/directed.hpp"
-#include "number/jet.hpp"  // its functions
+#include "number/jet.hpp"
 
 namespace achilles {
 

@@ -8,7 +8,6 @@
 #include "model/model.hpp"
 #include "model/undefined.hpp"
 #include "number/ground.hpp"
-#include "number/subnormal.hpp"
 #include "system/input_error.hpp"
 #include "system/mistakes.hpp"
 

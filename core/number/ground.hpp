@@ -9,6 +9,8 @@
 // operation. Its calls are not inlined: nothing is computed across them.
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <string>
 
 #if !defined(__SSE2__)
@@ -35,5 +37,14 @@ class Ground {
 
 // The mathematical library whose errors interval.hpp allows for: "glibc 2.36"; "unknown" where it does not say.
 std::string mathematical_library();
+
+// Doubles that have lost digits: below 2^-1022 in size, and not zero.
+
+// By the bits: where denormals are taken for zero, a comparison would see none.
+inline bool is_subnormal(double x) {
+    constexpr std::uint64_t exponent = 0x7FF0000000000000u, fraction = 0x000FFFFFFFFFFFFFu;
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    return (bits & exponent) == 0 && (bits & fraction) != 0;
+}
 
 }  // namespace achilles

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "number/horner.hpp"
+#include "number/inner_loops.hpp"
 
 namespace achilles {
 

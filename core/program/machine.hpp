@@ -45,4 +45,11 @@ std::optional<Width> best_width();
 // The variable is read when the program starts: later, other threads may change the environment. This reads it again.
 void ask_environment_for_code();
 
+struct Instruction;
+
+// Code of type void(double* registers) for these instructions of a program, the first of which writes register `first`; may be
+// none. Of numbers of eight doubles it is of type void(Eight* registers), by vectors of four or of eight.
+std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
+                                                Width of_number = Width::one, Width of_vector = Width::one);
+
 }  // namespace achilles

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "expression/graph.hpp"
-#include "program/program_code.hpp"
+#include "program/machine.hpp"
 
 namespace achilles {
 

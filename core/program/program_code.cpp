@@ -1,12 +1,13 @@
-#include "program/program_code.hpp"
-
+// A program over double, or lanes, as machine code.
 #include <cmath>
 #include <map>
 #include <optional>
 
+#include "number/angle.hpp"
 #include "number/eight.hpp"
-#include "number/sine.hpp"
 #include "program/assembler.hpp"
+#include "program/machine.hpp"
+#include "program/program.hpp"
 
 namespace achilles {
 

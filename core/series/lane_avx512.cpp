@@ -12,19 +12,19 @@
 #include <type_traits>
 #include <vector>
 
+#include "number/angle.hpp"
 #include "number/choice.hpp"
 #include "number/polynomial.hpp"
-#include "number/sine.hpp"
 #include "program/machine.hpp"
 #include "program/program.hpp"
-#include "series/lane_access.hpp"
 #include "series/lane_kinds.hpp"
-#include "series/lane_order.hpp"
 #include "series/lane_stepper.hpp"
+#include "series/order.hpp"
+#include "series/series.hpp"
 
 #ifdef ACHILLES_HAS_AVX512
 #pragma GCC target("avx512f")
-#include "series/lane_kind.hpp"
+#include "series/lane_steps.hpp"
 
 namespace achilles {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "program/assembler.hpp"
-#include "series/lane_order.hpp"
+#include "series/order.hpp"
 #include "series/rule_code.hpp"
 
 namespace achilles {

@@ -11,8 +11,9 @@
 
 #include "number/lanes.hpp"
 #include "number/polynomial.hpp"
+#include "series/lane_kinds.hpp"
 #include "series/lane_stepper.hpp"
-#include "series/order_policy.hpp"
+#include "series/taylor_step.hpp"
 
 namespace achilles {
 
@@ -284,5 +285,21 @@ class LaneStepperOver final : public LaneStepper {
     std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of the event function
     Number least_slope_, largest_slope_;                               // of it along the step
 };
+
+// What a kind of vectors offers (lane_kinds.hpp), to be instantiated by its file alone.
+
+template <std::size_t Bytes>
+std::unique_ptr<LaneStepper> LaneKind<Bytes>::make_stepper(const LanePrograms& programs, double tolerance,
+                                                           std::optional<Width> machine_code) {
+    return std::make_unique<LaneStepperOver<Lanes<Bytes>>>(programs, tolerance, machine_code);
+}
+
+template <std::size_t Bytes>
+void LaneKind<Bytes>::sine_and_cosine(const Eight* angle, Eight* sine, Eight* cosine) {
+    Lanes<Bytes> s, c;
+    achilles::sine_and_cosine(Lanes<Bytes>(*angle), s, c);
+    *sine = s;
+    *cosine = c;
+}
 
 }  // namespace achilles

@@ -1,9 +1,9 @@
 // In place of all that makes machine code, where there is none: another processor or system, or ACHILLES_MACHINE_CODE
 // off when it was built.
-#include "program/program_code.hpp"
-#include "series/lane_order.hpp"
+#include "program/machine.hpp"
+#include "program/program.hpp"
 #include "series/order.hpp"
-#include "series/slope_order_code.hpp"
+#include "series/slope_plan.hpp"
 
 namespace achilles {
 

@@ -1,4 +1,5 @@
-#include "series/order_policy.hpp"
+// The order of a Taylor step.
+#include "series/taylor_step.hpp"
 
 #include <algorithm>
 #include <limits>

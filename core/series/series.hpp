@@ -87,7 +87,7 @@ class SeriesProgram {
         std::array<std::uint32_t, 3> coefficient;
     };
 
-    // See series/start.hpp.
+    // See series/recurrence.hpp.
     template <class Scalar>
     void fix_coefficients(const Scalar* registers, Scalar* coefficients) const;
     template <class Scalar>
@@ -107,6 +107,25 @@ class SeriesProgram {
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
     std::shared_ptr<SlopeProgram> slopes_;
+};
+
+// What an evaluator over any number takes from programs and series programs: their insides.
+class LaneAccess {
+ public:
+    // Machine code over lanes for what moves, by vectors of four or eight; may be none.
+    static std::shared_ptr<const MachineCode> machine_code_of(const Program& program, Width vectors);
+    static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
+    static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
+    static bool has_clock(const Program& program) { return program.slots_.has_clock(); }
+    static std::uint32_t clock(const Program& program) { return program.slots_.clock(); }
+    template <class Number>
+    static const Program*& program_of(Evaluator<Number>& evaluator) {
+        return evaluator.program_;
+    }
+    template <class Number>
+    static std::vector<Number>& registers_of(Evaluator<Number>& evaluator) {
+        return evaluator.registers_;
+    }
 };
 
 }  // namespace achilles

@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "number/jet.hpp"
-#include "series/lane_access.hpp"
 #include "series/recurrence.hpp"
 #include "series/series.hpp"
-#include "series/start.hpp"
 
 namespace achilles {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "number/jet.hpp"  // its functions
-#include "series/lane_access.hpp"
 #include "series/lane_stepper.hpp"
+#include "series/series.hpp"
 
 namespace achilles {
 

@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "number/directed.hpp"
+#include "number/jet.hpp"
 #include "series/evaluator.hpp"
-#include "series/slope_program.hpp"
+#include "series/lane_kinds.hpp"
+#include "series/slope_plan.hpp"
 
 namespace achilles {
 

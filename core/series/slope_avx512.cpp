@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "number/choice.hpp"
-#include "series/slope_kinds.hpp"
+#include "series/lane_kinds.hpp"
 
 #ifdef ACHILLES_HAS_AVX512
 #pragma GCC target("avx512f")

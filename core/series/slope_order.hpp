@@ -4,8 +4,8 @@
 #include <span>
 
 #include "number/lanes.hpp"
-#include "series/slope_kinds.hpp"
-#include "series/slope_order_code.hpp"
+#include "series/lane_kinds.hpp"
+#include "series/slope_plan.hpp"
 
 namespace achilles {
 

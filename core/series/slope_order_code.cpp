@@ -1,4 +1,4 @@
-#include "series/slope_order_code.hpp"
+#include "series/slope_plan.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "program/assembler.hpp"
+#include "series/lane_kinds.hpp"
 
 namespace achilles {
 

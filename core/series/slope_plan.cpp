@@ -5,7 +5,6 @@
 #include <set>
 
 #include "series/series.hpp"
-#include "series/slope_program.hpp"
 
 namespace achilles {
 

@@ -9,11 +9,15 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace achilles {
 
+class MachineCode;
 class SeriesProgram;
+struct SlopeTables;
 
 struct SlopePlan {
     // What is multiplied: order 0 is a register's, order k > 0 is coefficient `scale` times that of a series.
@@ -55,6 +59,30 @@ struct SlopePlan {
 
     SlopePlan() = default;
     explicit SlopePlan(const SeriesProgram& program);
+};
+
+// The rules of a slope plan as machine code, for AVX-512: the same bits as slope_order.hpp.
+//
+// After q and v all products of lower orders are added up in one pass, each row of slopes loaded once; then come the rules.
+class SlopeOrderCode {
+ public:
+    // Nothing where that is not to be had.
+    static std::shared_ptr<const SlopeOrderCode> of(const SlopePlan& plan);
+
+    // What SlopeKind::make_order makes.
+    void make_order(const SlopeTables& tables, std::size_t k) const { function_(&tables, k); }
+
+ private:
+    using Function = void(const SlopeTables* tables, std::size_t k);
+    std::shared_ptr<const MachineCode> code_;
+    Function* function_ = nullptr;
+};
+
+// What a series program has besides, for its slopes.
+struct SlopeProgram {
+    std::once_flag made;
+    SlopePlan plan;
+    std::shared_ptr<const SlopeOrderCode> code;  // may be none
 };
 
 }  // namespace achilles

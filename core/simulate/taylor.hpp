@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "series/order_policy.hpp"
+#include "series/taylor_step.hpp"
 #include "simulate/gap_units.hpp"
 #include "simulate/stepper.hpp"
 

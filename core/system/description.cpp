@@ -11,7 +11,7 @@
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
 #include "number/angle.hpp"
-#include "number/subnormal.hpp"
+#include "number/ground.hpp"
 #include "system/input_error.hpp"
 #include "system/units.hpp"
 

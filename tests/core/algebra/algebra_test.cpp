@@ -6,7 +6,6 @@
 
 #include <random>
 
-#include "algebra/factored.hpp"
 #include "algebra/vanishes.hpp"
 #include "algebra/writer.hpp"
 #include "expression/parse.hpp"

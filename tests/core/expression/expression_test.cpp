@@ -8,7 +8,7 @@
 #include <random>
 
 #include "expression/parse.hpp"
-#include "number/sine.hpp"
+#include "number/angle.hpp"
 #include "program/program.hpp"
 
 namespace achilles {

@@ -6,7 +6,7 @@
 
 #include "core/systems.hpp"
 #include "model/read_system.hpp"
-#include "number/subnormal.hpp"
+#include "number/ground.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -23,11 +23,11 @@
 #include "core/systems.hpp"
 #include "number/lanes.hpp"
 #include "output/output.hpp"
-#include "program/program_code.hpp"
+#include "program/machine.hpp"
 #include "series/evaluator.hpp"
-#include "series/lane_access.hpp"
-#include "series/lane_order.hpp"
 #include "series/lane_stepper.hpp"
+#include "series/order.hpp"
+#include "series/series.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {

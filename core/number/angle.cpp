@@ -1,4 +1,4 @@
-#include "number/sine.hpp"
+#include "number/angle.hpp"
 
 #include <array>
 #include <bit>

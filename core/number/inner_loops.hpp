@@ -1,7 +1,12 @@
-// Sums of powers over any number, the even and the odd powers by themselves: half as many sums wait for one another.
+// What inner loops over any number are made of: sums of powers, and neighbors in memory that are worked on at once.
 #pragma once
 
+#include <cstddef>
+#include <cstring>
+
 namespace achilles {
+
+// Sums of powers, the even and the odd powers by themselves: half as many sums wait for one another.
 
 // c_0 + c_1 t + ... + c_degree t^degree, degree >= 1, of values that the coefficients' type adds up: numbers, or some
 // side by side. coefficient(k) is c_k.
@@ -38,5 +43,29 @@ ValueAndSlope<Number> value_and_slope(const Number* c, int degree, const Number&
     }
     return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
 }
+
+// Numbers that stand one after the other in memory and are worked on at once: so many doubles as one vector; of other
+// numbers each is taken by itself.
+template <class Number, std::size_t most>
+struct Pack {
+    static constexpr std::size_t count = 1;
+    using Value = Number;
+    static const Number& load(const Number* from) { return *from; }
+    template <class Place>
+    static void store(const Number& value, Place* to) {
+        *to = value;
+    }
+};
+template <std::size_t most>
+struct Pack<double, most> {
+    static constexpr std::size_t count = most;
+    using Value [[gnu::vector_size(most * sizeof(double))]] = double;
+    static Value load(const double* from) {
+        Value value;
+        std::memcpy(&value, from, sizeof value);
+        return value;
+    }
+    static void store(const Value& value, double* to) { std::memcpy(to, &value, sizeof value); }
+};
 
 }  // namespace achilles

@@ -1,7 +1,0 @@
-#include "series/evaluator.hpp"
-
-namespace achilles {
-
-template class SeriesEvaluator<double>;
-
-}  // namespace achilles
