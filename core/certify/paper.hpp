@@ -24,7 +24,6 @@
 // so does the least V, with smaller bounds.
 #pragma once
 
-#include "certify/others.hpp"
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
 

@@ -118,7 +118,7 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
 }
 
-// Narrows the enclosure of the time to the Zeno point by the one of third order in w (zeno_time.hpp). Needs
+// Narrows the enclosure of the time to the Zeno point by the one of third order in w (truncation.hpp). Needs
 // time_over_box() first: it uses the slopes of hddot over the box X, and encloses it at the collision, at sigma = 0.
 void SharpConditions::sharpen(Time& time, const Trend& trend) {
     for (std::size_t i = 0; i < dof_; ++i) {

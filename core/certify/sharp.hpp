@@ -4,7 +4,7 @@
 // In the coordinates (q, s) of model/bouncing.hpp the motion is continuous through impacts. X is a box around (q, s) at
 // the collision, sigma = hdot runs over [-w, w]. With -hddot in [a_min, a_max] on X, r = a_max/a_min and e^2 r < 1:
 //
-// time       A_lo w <= tau_inf - tau_k <= A w =: T (certify/zeno_time.hpp): the worst motion rises with a_min and falls
+// time       A_lo w <= tau_inf - tau_k <= A w =: T (certify/truncation.hpp): the worst motion rises with a_min and falls
 //            first with a_min, then with a_max. The interval is cut with the one of third order.
 //
 // inclusion  rho_q = max |v| T and rho_s = max |s'| T inside X's radii prove that X contains the motion until tau_inf:
@@ -34,7 +34,6 @@
 // shadowing bound on the velocity within eps_v.
 #pragma once
 
-#include "certify/others.hpp"
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
 

@@ -2,11 +2,67 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "certify/paper.hpp"
 #include "certify/sharp.hpp"
+#include "contacts/delassus.hpp"
 
 namespace achilles {
+
+Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w) {
+    const Interval one(1.0), r = a_max / a_min, rebound = Interval(2.0) * e * (one + e) * w;
+    return {rebound / (a_max * (one - square(e) / r)), rebound / (a_min * (one - square(e) * r))};
+}
+
+double estimated_wait(const Trend& trend, double e, double w) {
+    return estimated_wait(trend.a, trend.b, trend.c, e, w);
+}
+
+namespace {
+
+// |cA| + 1.09 |cB| + |cE| and |cC| + |cD| + |cF| + |cG|, for Psi = cA t hdot + cB t hdot^2/z + cC hdot^2 + cD hdot^3/z
+// + cE t z + cF hdot z + cG z^2.
+struct Psi {
+    Interval with_time, without;
+};
+Psi sizes_of_psi(const Trend& trend, const Interval& e, const Interval& per_a) {
+    const Interval one(1.0), half(0.5), K = (one + e) / (one - e), e2 = square(e);
+    const Interval by_a = Interval(trend.b) * square(per_a), with_c = Interval(trend.c) * per_a;
+    const Interval cB = -half * by_a * K, cC = -half * (by_a + with_c) * per_a, cF = cB * per_a;
+    const Interval cD = -K * (half * by_a + with_c) * per_a / Interval(3.0);
+    const Interval cG = (cD + cF) * ((one + e2) / (one - e2)) - cC;
+    // cA = -b/a^2, cE = cB.
+    return {abs(by_a) + Interval(1.09, 1.091) * abs(cB) + abs(cB), abs(cC) + abs(cD) + abs(cF) + abs(cG)};
+}
+
+}  // namespace
+
+Interval third_order_error(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
+                           const Interval& a_max, const Interval& w, const Interval& latest) {
+    const Interval a(trend.a), one(1.0), two(2.0), T(latest.hi()), per_a = one / a, per_a_min = one / a_min;
+    const Interval e2 = square(e), h_m = Interval(0.5) * square(e * w) * per_a_min, middle(mid(drift.Phi));
+    const Interval rho = abs(drift.start - a) + abs(drift.by_sigma - Interval(trend.c)) * w +
+                         abs(drift.P - Interval(trend.b)) * T + abs(middle) * h_m + abs(drift.Phi - middle) * w * T +
+                         abs(drift.Xi) * square(w) * T;
+    // max(e, e'')^2 = e^2 max(1, a_max/a_min)
+    const Interval z_m = w * sqrt(e2 * (max(one, a_max * per_a_min) + a * per_a_min));
+    const Interval d_m = max(abs(a_max - a), abs(a - a_min));
+    const Psi psi = sizes_of_psi(trend, e, per_a);
+    const Interval S = T * psi.with_time + two * z_m * psi.without;
+    const Interval doubled = two * per_a / (one - e);  // 2/(a (1 - e))
+    return T * (doubled * rho + d_m * S);
+}
+
+Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
+                          const Interval& a_max, const Interval& w, const Interval& latest) {
+    const Interval one(1.0), two(2.0), per_a = one / Interval(trend.a), T0 = two * per_a / (one - e) * e * w;
+    const Interval off = third_order_error(trend, drift, e, a_min, a_max, w, latest);
+    const Interval curving = (two * Interval(trend.b) * per_a + Interval(trend.c)) / Interval(6.0);
+    const Interval centre = T0 - square(T0) * curving;
+    if (!off.is_defined() || !centre.is_defined()) return Interval::undefined();
+    return centre + Interval(-off.hi(), off.hi());
+}
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
                                                             ContactSet held, ContactSet unpressed) {
@@ -46,6 +102,55 @@ void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, dou
     const double low = std::max(tau_k, certificate.zeno_low), time = tau_k + estimated;
     certificate.zeno_time = std::isfinite(time) ? std::clamp(time, low, std::max(low, certificate.zeno_high))
                                                 : 0.5 * (low + certificate.zeno_high);
+}
+
+std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
+                                                 ContactSet unpressed) {
+    Certificate::Others others;
+    const std::size_t bouncing = neighbours.bouncing.size();
+    std::size_t next = bouncing;
+    for (const std::size_t contact : neighbours.held) {
+        const Interval hddot = program.output(next), W = program.output(next + 1);
+        next += 2;
+        const bool is_unpressed = unpressed.contains(contact);
+        if (!(is_unpressed || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
+        Certificate::Others::Held held{contact, 0.0, 0.0, is_unpressed ? 0.0 : (-hddot / W).lo()};
+        for (std::size_t k = 0; k < bouncing; ++k) {
+            const Interval kappa = program.output(next++);
+            if (!(kappa.lo() >= 0.0)) {
+                if (!counts_as_zero(kappa, std::sqrt(mid(program.output(k)) / mid(W)))) return std::nullopt;
+                others.rounded_zero = true;
+            }
+            held.transmission_low = k == 0 ? kappa.lo() : std::min(held.transmission_low, kappa.lo());
+            held.transmission_high = k == 0 ? kappa.hi() : std::max(held.transmission_high, kappa.hi());
+        }
+        others.held.push_back(held);
+    }
+    for (std::size_t i = 0; i < neighbours.open.size(); ++i) {
+        const Interval gap = program.output(next++);
+        if (!certainly_positive(gap)) return std::nullopt;
+        others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
+    }
+    return others;
+}
+
+Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i) {
+    const std::size_t bouncing = neighbours.bouncing.size();
+    return program.output(bouncing + i * (2 + bouncing) + 2);
+}
+
+OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed)
+    : unpressed_(unpressed) {
+    if (model.contacts() == 1) return;
+    neighbours_ = &model.neighbours(contact, held);
+    variables_ = model.bouncing(contact, held).variables;
+    program_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
+}
+
+std::optional<Certificate::Others> OthersStay::prove(const std::vector<Interval>& box) {
+    for (std::size_t i = 0; i < variables_.size(); ++i) program_.input(variables_[i]) = box[i];
+    program_.run();
+    return others_proved(*neighbours_, program_, unpressed_);
 }
 
 }  // namespace achilles

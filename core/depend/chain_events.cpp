@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "certify/zeno_time.hpp"
+#include "certify/truncation.hpp"
 #include "depend/chain.hpp"
 
 namespace achilles {

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "certify/zeno_time.hpp"
+#include "certify/truncation.hpp"
 #include "depend/motion_series.hpp"
 #include "model/model.hpp"
 #include "simulate/surfaces.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "certify/others.hpp"
+#include "certify/truncation.hpp"
 #include "number/jet.hpp"
 
 namespace achilles {

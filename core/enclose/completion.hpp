@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "certify/range.hpp"
-#include "certify/zeno_time.hpp"
+#include "certify/truncation.hpp"
 #include "enclose/coordinates.hpp"
 #include "model/model.hpp"
 
