@@ -23,6 +23,6 @@
 #include "simulate/many.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
-#include "study/orbit_question.hpp"
+#include "study/orbit.hpp"
 #include "study/sweep.hpp"
 #include "system/named_run.hpp"

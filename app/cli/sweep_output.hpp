@@ -8,7 +8,6 @@
 #include "cli/sweep_pictures.hpp"
 #include "cli/write_files.hpp"
 #include "output/sweep_files.hpp"
-#include "output/sweep_log.hpp"
 
 namespace achilles {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
+#include "output/precision.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "check/equation_sheet.hpp"
+#include "check/check.hpp"
 #include "figure/formula.hpp"
 #include "session/worker.hpp"
 

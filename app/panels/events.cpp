@@ -8,7 +8,6 @@
 #include "figure/label.hpp"
 #include "figure/shown_unit.hpp"
 #include "number/angle.hpp"
-#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "output/output.hpp"

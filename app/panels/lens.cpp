@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "output/bounds.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/label.hpp"

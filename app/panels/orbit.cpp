@@ -9,7 +9,7 @@
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
 #include "figure/orbit_figure.hpp"
-#include "output/orbit.hpp"
+#include "output/output.hpp"
 #include "paint/paint.hpp"
 #include "panels/panels.hpp"
 #include "panels/print.hpp"

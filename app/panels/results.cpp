@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"

@@ -13,7 +13,7 @@
 #include "figure/publication.hpp"
 #include "figure/ticks.hpp"
 #include "number/angle.hpp"
-#include "output/bounds.hpp"
+#include "output/precision.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"

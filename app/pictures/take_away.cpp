@@ -20,7 +20,7 @@
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
-#include "study/flags.hpp"
+#include "study/sweep.hpp"
 
 namespace achilles {
 

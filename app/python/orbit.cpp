@@ -2,7 +2,7 @@
 
 #include "figure/orbit_figure.hpp"
 #include "module.hpp"
-#include "output/orbit.hpp"
+#include "output/output.hpp"
 #include "pictures/views.hpp"
 #include "session/recipe.hpp"
 

@@ -9,7 +9,6 @@
 #include "depend/quantities.hpp"
 #include "module.hpp"
 #include "number/ground.hpp"
-#include "output/answer.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "pictures/views.hpp"

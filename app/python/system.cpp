@@ -4,13 +4,13 @@
 #include <utility>
 #include <variant>
 
-#include "check/equation_sheet.hpp"
+#include "check/check.hpp"
 #include "cli/assets.hpp"
 #include "expression/nearest.hpp"
 #include "model/derived_values.hpp"
 #include "model/read_system.hpp"
 #include "module.hpp"
-#include "output/wrap.hpp"
+#include "output/page.hpp"
 
 namespace py = pybind11;
 

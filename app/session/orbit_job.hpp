@@ -7,7 +7,7 @@
 #include <string>
 
 #include "session/worker.hpp"
-#include "study/orbit_question.hpp"
+#include "study/orbit.hpp"
 
 namespace achilles {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "session/worker.hpp"
-#include "study/sweep_data.hpp"
+#include "study/table.hpp"
 
 namespace achilles {
 

@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-#include "check/zeno_condition.hpp"
+#include "check/simplified.hpp"
 #include "model/scopes.hpp"
 
 namespace achilles {

@@ -1,4 +1,5 @@
-#include "output/answer.hpp"
+// The default output of `simulate`.
+#include "output/output.hpp"
 
 #include <fmt/format.h>
 
@@ -7,12 +8,10 @@
 
 #include "model/model.hpp"
 #include "number/ground.hpp"
-#include "output/bounds.hpp"
 #include "output/contacts.hpp"
-#include "output/output.hpp"
+#include "output/page.hpp"
 #include "output/precision.hpp"
 #include "output/sentences.hpp"
-#include "output/text_table.hpp"
 #include "system/units.hpp"
 
 namespace achilles {

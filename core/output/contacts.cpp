@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "output/bounds.hpp"
+#include "output/precision.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -1,14 +1,18 @@
+// A trajectory as CSV, and which instants of it files hold; as text, for golden tests.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "expression/parse.hpp"
+#include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "simulate/contact_forces.hpp"
+#include "system/description.hpp"
 #include "system/input_error.hpp"
 #include "system/units.hpp"
 
@@ -133,6 +137,88 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         text += '\n';
     }
     return text;
+}
+
+std::vector<double> equidistant(int count, double start, double end) {
+    std::vector<double> times;
+    for (int i = 0; i < count; ++i) times.push_back(start + (end - start) * i / (count - 1));
+    times.back() = end;
+    return times;
+}
+
+std::vector<double> read_instants(std::string_view text, const std::string& name, double start, double end) {
+    constexpr std::string_view spaces = " \t\r";
+    std::vector<double> times;
+    int number = 0;
+    while (!text.empty()) {
+        const std::size_t size = std::min(text.find('\n'), text.size());
+        const std::string line(text.substr(0, size));
+        text.remove_prefix(std::min(size + 1, text.size()));
+        ++number;
+        const std::string_view words = std::string_view(line).substr(0, line.find('#'));
+        const std::size_t first = words.find_first_not_of(spaces);
+        if (first == words.npos) continue;
+        const auto refuse = [&](const std::string& why) {
+            return InputError(name, {number, static_cast<int>(first) + 1}, why, {}, line);
+        };
+        double t = 0.0;
+        try {
+            t = read_number(words).value;
+        } catch (const ParseError& problem) {
+            throw refuse(problem.what());
+        }
+        if (!(t >= start && t <= end)) throw refuse(fmt::format("{} is outside the run, {} to {}", t, start, end));
+        times.push_back(t);
+    }
+    if (times.empty()) throw InputError(name, {}, "the file contains no time", "write one time per line");
+    return times;
+}
+
+std::vector<Sample> samples_of_curve(const Trajectory& trajectory) {
+    constexpr std::size_t wanted = 1000;
+    return Sampler(trajectory).all(static_cast<int>(wanted / std::max<std::size_t>(1, trajectory.pieces.size())));
+}
+
+std::vector<Sample> samples_at(const Trajectory& trajectory, const std::vector<double>& times) {
+    Sampler sampler(trajectory);
+    std::vector<Sample> samples;
+    for (const double t : times)
+        if (t <= trajectory.end_time) samples.push_back(sampler.at(t));
+    return samples;
+}
+
+namespace {
+
+std::string to_text(const Vector& x) {
+    std::string text = "(";
+    // Adding 0.0 turns -0 into 0: their difference is not one that a golden should see.
+    for (Eigen::Index i = 0; i < x.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", x[i] + 0.0);
+    return text + ")";
+}
+
+// " of knee held wall", where there are several contacts.
+std::string contacts(const Trajectory& trajectory, const char* what, ContactSet contacts) {
+    const Model& model = *trajectory.model;
+    if (model.contacts() == 1 || contacts.empty()) return "";
+    return fmt::format(" {} {}", what, joined_names(model, contacts, "+"));
+}
+
+}  // namespace
+
+std::string to_text(const Trajectory& trajectory) {
+    std::string text;
+    for (const Phase& phase : trajectory.phases)
+        text += fmt::format("phase {}{} [{:.9g}, {:.9g}] impacts {}\n", to_text(phase.kind),
+                            contacts(trajectory, "held", phase.held), phase.start, phase.end, phase.impacts);
+    for (const Event& event : trajectory.events)
+        text += fmt::format("{}{}{}{} t {:.9g} q {} before {} after {}\n", to_text(event.kind),
+                            contacts(trajectory, "of", event.contacts), contacts(trajectory, "opens", event.opened),
+                            contacts(trajectory, "held", event.held), event.t, to_text(event.q),
+                            to_text(event.v_before), to_text(event.v_after));
+    return text + fmt::format("end t {:.9g} {}{} q {} v {}\noutcome {}: {}\n", trajectory.end_time,
+                              to_text(trajectory.end_phase), contacts(trajectory, "held", trajectory.end_held),
+                              to_text(trajectory.end.q), to_text(trajectory.end.v), to_text(trajectory.outcome.kind),
+                              trajectory.outcome.message);
 }
 
 }  // namespace achilles

@@ -1,4 +1,5 @@
-#include "output/orbit.hpp"
+// A periodic run and its branch, written: for programs, and for a person.
+#include "output/output.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +7,7 @@
 
 #include "model/model.hpp"
 #include "output/json_parts.hpp"
-#include "output/output.hpp"
+#include "study/orbit.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "output/wrap.hpp"
+#include <cctype>
 
 namespace achilles {
 
@@ -184,6 +183,144 @@ std::string Page::finish() const {
     Writing writing(*this);
     for (const Block& block : blocks_) writing.write(block);
     return writing.finish();
+}
+
+namespace {
+
+// Where " + " and " - " stand, and how many brackets around each.
+struct Place {
+    std::size_t offset;
+    int depth;
+};
+
+std::vector<Place> places(std::string_view formula) {
+    constexpr int never = 1000;  // inside an argument of LaTeX, or what \left and \right hold together
+    std::vector<Place> result;
+    int depth = 0;
+    std::vector<int> brackets;
+    for (std::size_t i = 0; i < formula.size(); ++i) {
+        const char c = formula[i];
+        const auto follows = [&](std::string_view word) {
+            return i >= word.size() && formula.substr(i - word.size(), word.size()) == word;
+        };
+        if (c == '(' || c == '{') {
+            // A function's argument stays together as well.
+            const bool function = i > 0 && std::isalnum(static_cast<unsigned char>(formula[i - 1])) != 0;
+            brackets.push_back(c == '{' || follows("\\left") || function ? never : 1);
+            depth += brackets.back();
+        }
+        if ((c == ')' || c == '}') && !brackets.empty()) {
+            depth -= brackets.back();
+            brackets.pop_back();
+        }
+        const std::string_view sign = formula.substr(i, 3);
+        if ((sign == " + " || sign == " - ") && depth < never) result.push_back({i, depth});
+    }
+    return result;
+}
+
+}  // namespace
+
+std::size_t visible_length(std::string_view formula, Notation notation) {
+    if (notation == Notation::text) return formula.size();
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < formula.size(); ++i) {
+        const char c = formula[i];
+        if (c == '\\') {
+            while (i + 1 < formula.size() && std::isalpha(static_cast<unsigned char>(formula[i + 1])) != 0) ++i;
+            ++length;
+        } else if (c != '{' && c != '}' && c != '_' && c != '^' && c != ' ') {
+            ++length;
+        } else if (formula.substr(i, 3) == " + " || formula.substr(i, 3) == " - ") {
+            length += 2;
+        }
+    }
+    return length;
+}
+
+std::vector<std::string> wrap(const std::string& formula, std::size_t width, Notation notation) {
+    if (visible_length(formula, notation) <= width) return {formula};
+    const std::vector<Place> all = places(formula);
+    // The least depth of brackets at which every part fits; the last otherwise.
+    constexpr int deepest = 8;
+    std::vector<std::string> parts;
+    for (int depth = 0; depth <= deepest; ++depth) {
+        parts.clear();
+        std::size_t begin = 0;
+        for (const Place& place : all) {
+            if (place.depth > depth) continue;
+            parts.push_back(formula.substr(begin, place.offset - begin));
+            begin = place.offset + 1;
+        }
+        parts.push_back(formula.substr(begin));
+        if (std::all_of(parts.begin(), parts.end(),
+                        [&](const std::string& part) { return visible_length(part, notation) <= width; }))
+            break;
+    }
+    std::vector<std::string> lines;
+    for (const std::string& part : parts) {
+        if (lines.empty() || visible_length(lines.back(), notation) + visible_length(part, notation) + 1 > width)
+            lines.push_back(part);
+        else
+            lines.back() += " " + part;
+    }
+    return lines;
+}
+
+namespace {
+
+// Characters that a terminal shows: bytes of UTF-8 that begin one.
+std::size_t width_of(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(
+        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+// The characters before the decimal point, or all of a text without one.
+std::size_t whole_width(const std::string& text) { return width_of(text.substr(0, text.find('.'))); }
+
+}  // namespace
+
+void TextTable::add_column(std::string heading, Align align) { columns_.push_back({std::move(heading), align}); }
+
+std::string TextTable::text() const {
+    const auto is_line = [&](std::size_t row) { return std::find(lines_.begin(), lines_.end(), row) != lines_.end(); };
+    std::vector<std::size_t> whole(columns_.size(), 0), width(columns_.size(), 0);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+        const auto each_cell = [&](const auto& visit) {
+            for (std::size_t r = 0; r < rows_.size(); ++r)
+                if (!is_line(r) && c < rows_[r].size()) visit(rows_[r][c]);
+        };
+        if (columns_[c].align == Align::decimal_point)
+            each_cell([&](const std::string& cell) { whole[c] = std::max(whole[c], whole_width(cell)); });
+        width[c] = width_of(columns_[c].heading);
+        each_cell([&](const std::string& cell) {
+            const std::size_t shift = columns_[c].align == Align::left ? 0 : whole[c] - whole_width(cell);
+            width[c] = std::max(width[c], shift + width_of(cell));
+        });
+    }
+    std::string text;
+    const auto end_line = [&] {
+        text.erase(text.find_last_not_of(' ') + 1);
+        text += '\n';
+    };
+    const auto add_cell = [&](std::size_t c, const std::string& cell, std::size_t shift) {
+        text += std::string(shift, ' ') + cell;
+        const std::size_t used = shift + width_of(cell);
+        text += std::string(width[c] - std::min(width[c], used) + 3, ' ');
+    };
+    text += "  ";
+    for (std::size_t c = 0; c < columns_.size(); ++c) add_cell(c, columns_[c].heading, 0);
+    end_line();
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+        text += "  ";
+        if (is_line(r)) text += rows_[r].front();
+        for (std::size_t c = 0; !is_line(r) && c < rows_[r].size(); ++c) {
+            const std::string& cell = rows_[r][c];
+            add_cell(c, cell, columns_[c].align == Align::left ? 0 : whole[c] - whole_width(cell));
+        }
+        end_line();
+    }
+    return text;
 }
 
 }  // namespace achilles

@@ -2,11 +2,216 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "enclose/enclosure.hpp"
 #include "model/model.hpp"
 #include "output/energy.hpp"
 #include "simulate/surfaces.hpp"
 
 namespace achilles {
+
+namespace {
+
+constexpr int most_digits = 17;  // as many as tell any two doubles apart
+
+// The digits of a number and the power of ten of the first.
+struct Digits {
+    std::string all;
+    int exponent = 0;
+};
+
+// |x| exactly, not 0: a double is a decimal of at most 767 digits.
+Digits digits_of(double x) {
+    std::array<char, 800> buffer;
+    const auto end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(x), std::chars_format::scientific, 766);
+    const std::string text(buffer.data(), end.ptr);
+    const std::size_t e = text.find('e');
+    return {text.substr(0, 1) + text.substr(2, e - 2), std::atoi(text.c_str() + e + 1)};
+}
+
+// The power of ten of the first digit of |x|, not 0.
+int leading(double x) {
+    const std::string text = fmt::format("{:.20e}", x);
+    return std::atoi(text.c_str() + text.find('e') + 1);
+}
+
+// number * 10^unit.
+struct Decimal {
+    std::int64_t number = 0;
+    int unit = 0;
+};
+
+Digits digits_of(const Decimal& x) {
+    Digits result{fmt::format("{}", std::abs(x.number)), 0};
+    result.exponent = static_cast<int>(result.all.size()) - 1 + x.unit;
+    return result;
+}
+
+// Whether a < b of two sequences of digits behind the same point: trailing zeros do not count.
+bool is_less(const Digits& a, const Digits& b) {
+    if (a.exponent != b.exponent) return a.exponent < b.exponent;
+    const std::size_t size = std::max(a.all.size(), b.all.size());
+    return a.all + std::string(size - a.all.size(), '0') < b.all + std::string(size - b.all.size(), '0');
+}
+
+bool is_less(const Decimal& a, double b) {
+    if (a.number == 0 || b == 0.0) return a.number == 0 ? b > 0.0 : a.number < 0;
+    if ((a.number < 0) != (b < 0.0)) return a.number < 0;
+    return a.number > 0 ? is_less(digits_of(a), digits_of(b)) : is_less(digits_of(b), digits_of(a));
+}
+
+// The greatest multiple of 10^unit that is not above x; there are fewer than 10^18 of them below |x|.
+Decimal floor_of(double x, int unit) {
+    const long double many = static_cast<long double>(x) * std::pow(10.0L, -unit), floor = std::floor(many);
+    const long double rounding = 8.0L * std::numeric_limits<long double>::epsilon() * std::abs(many);
+    auto number = static_cast<std::int64_t>(floor);
+    if (many - floor > rounding && floor + 1.0L - many > rounding) return {number, unit};
+    const auto is_above = [&](std::int64_t multiple) { return is_less({-multiple, unit}, -x); };
+    while (is_above(number)) --number;
+    while (!is_above(number + 1)) ++number;
+    return {number, unit};
+}
+
+Decimal ceil_of(double x, int unit) { return {-floor_of(-x, unit).number, unit}; }
+
+// As std::format("{}") prints numbers, with all digits of this one, zeros at its end included.
+std::string to_text(const Decimal& x) {
+    if (x.number == 0 && x.unit >= 0) return "0";
+    Digits digits = digits_of(x);
+    const char* const sign = x.number < 0 ? "-" : "";
+    constexpr int low = -5, high = 16;  // where numbers are printed with a power of ten
+    if (x.number != 0 && (digits.exponent < low || digits.exponent >= high)) {
+        if (digits.all.size() > 1) digits.all.insert(1, ".");
+        return fmt::format("{}{}e{}", sign, digits.all, digits.exponent);
+    }
+    if (x.unit >= 0) return sign + digits.all + std::string(static_cast<std::size_t>(x.unit), '0');
+    const auto decimals = static_cast<std::size_t>(-x.unit);
+    if (digits.all.size() <= decimals) digits.all.insert(0, decimals + 1 - digits.all.size(), '0');
+    return sign + digits.all.insert(digits.all.size() - decimals, ".");
+}
+
+// Without the zeros at its end.
+std::string shortened(Decimal x) {
+    while (x.number != 0 && x.number % 10 == 0) x.number /= 10, ++x.unit;
+    return x.number == 0 ? "0" : to_text(x);
+}
+
+// A decimal of the fewest digits in [low, high]; of a single double with very many digits, all of them.
+std::string shortest_in(double low, double high) {
+    if (low <= 0.0 && high >= 0.0) return "0";
+    const double large = std::max(std::abs(low), std::abs(high));
+    for (int unit = leading(large) + 1; unit > leading(large) - most_digits; --unit) {
+        const Decimal inside = ceil_of(low, unit);
+        if (!is_less({-inside.number, unit}, -high)) return shortened(inside);
+    }
+    Digits digits = digits_of(low);
+    digits.all.erase(digits.all.find_last_not_of('0') + 1);
+    return fmt::format("{}{}.{}e{}", low < 0.0 ? "-" : "", digits.all.substr(0, 1), digits.all.substr(1),
+                       digits.exponent);
+}
+
+// A center, to digits that mean something, and how many units of its last digit reach both ends of an interval.
+struct Centered {
+    Decimal center;
+    std::int64_t off = 0;
+};
+
+Centered centered(const Interval& x, int least_unit, int most_unit) {
+    const double middle = mid(x), half = std::max(x.hi() - middle, middle - x.lo()), large = mag(x);
+    int unit = std::clamp(half > 0.0 ? leading(half) - 1 : least_unit, least_unit, most_unit);
+    if (large > 0.0) unit = std::max(unit, leading(large) + 1 - most_digits);
+    const Decimal below = floor_of(middle, unit), low = floor_of(x.lo(), unit), high = ceil_of(x.hi(), unit);
+    Centered result{below, 0};
+    // The nearer one of two.
+    const std::int64_t up = std::max(below.number + 1 - low.number, high.number - below.number - 1);
+    result.off = std::max(below.number - low.number, high.number - below.number);
+    if (up < result.off) result = {{below.number + 1, unit}, up};
+    return result;
+}
+
+bool is_finite(const Interval& x) { return std::isfinite(x.lo()) && std::isfinite(x.hi()); }
+
+// The double that a person wrote where as_written() made this of it.
+std::optional<double> written(const Interval& x) {
+    const double middle = mid(x);
+    for (const double near : {middle, std::nextafter(middle, -HUGE_VAL), std::nextafter(middle, HUGE_VAL)}) {
+        const Interval made = as_written(near);
+        if (made.lo() == x.lo() && made.hi() == x.hi()) return near;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string rounded_up(double x, int digits) {
+    if (!std::isfinite(x)) return fmt::format("{}", x);
+    return x == 0.0 ? "0" : shortened(ceil_of(x, leading(x) + 1 - digits));
+}
+
+std::string rounded_down(double x, int digits) {
+    if (!std::isfinite(x)) return fmt::format("{}", x);
+    return x == 0.0 ? "0" : shortened(floor_of(x, leading(x) + 1 - digits));
+}
+
+std::string estimate_text(double estimate) {
+    std::string text = fmt::format("{:.1g}", estimate);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
+std::string bound_text(double bound) {
+    constexpr double rounding = 1e-16;
+    return rounded_up(std::max(bound, rounding));
+}
+
+std::string interval_text(double low, double high) {
+    if (!std::isfinite(low) || !std::isfinite(high)) return fmt::format("[{}, {}]", low, high);
+    const double large = std::max(std::abs(low), std::abs(high));
+    if (large == 0.0) return "[0, 0]";
+    constexpr int few = 8, more = 2;
+    int unit = leading(large) + 1 - few;
+    unit = std::min(unit, high > low ? leading(high - low) - more : leading(large) - most_digits);
+    unit = std::max(unit, leading(large) + 1 - most_digits);
+    return fmt::format("[{}, {}]", shortened(floor_of(low, unit)), shortened(ceil_of(high, unit)));
+}
+
+std::string short_text(const Interval& x) {
+    if (!is_finite(x)) return fmt::format("[{}, {}]", x.lo(), x.hi());
+    constexpr int least_unit = -15;  // of which a double of a few seconds has no less
+    const Centered value = centered(x, least_unit, 0);
+    return value.off == 0 ? shortened(value.center) : fmt::format("{}({})", to_text(value.center), value.off);
+}
+
+std::string outer_text(const Interval& x) {
+    if (!is_finite(x)) return fmt::format("in [{}, {}]", x.lo(), x.hi());
+    constexpr int tiny = -300, huge = 300;
+    Centered value = centered(x, tiny, huge);
+    if (value.off == 0) return "= " + shortened(value.center);
+    if (value.off >= 100) value.off = (value.off + 9) / 10 * 10;  // two digits
+    const double radius = std::strtod(fmt::format("{}e{}", value.off, value.center.unit).c_str(), nullptr);
+    return fmt::format("= {} +- {:.1e}", value.center.number == 0 ? "0" : to_text(value.center), radius);
+}
+
+std::string inner_text(const Interval& x) {
+    if (!is_finite(x)) return fmt::format("in [{}, {}]", x.lo(), x.hi());
+    constexpr double rounded = 0x1p-47;  // as much as writing down may have added
+    const double slack = rounded * mag(x);
+    if (width(x) <= slack) {
+        const std::optional<double> typed = written(x);
+        return "= " + (typed ? fmt::format("{}", *typed + 0.0) : shortest_in(x.lo(), x.hi()));
+    }
+    return fmt::format("in [{}, {}]", shortest_in(x.lo(), x.lo() + 0.5 * slack),
+                       shortest_in(x.hi() - 0.5 * slack, x.hi()));
+}
 
 namespace {
 

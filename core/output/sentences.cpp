@@ -7,9 +7,9 @@
 
 #include "model/model.hpp"
 #include "number/angle.hpp"
-#include "output/bounds.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
+#include "output/precision.hpp"
 #include "system/units.hpp"
 
 namespace achilles {

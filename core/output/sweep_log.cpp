@@ -1,4 +1,5 @@
-#include "output/sweep_log.hpp"
+// The log of a sweep that is not done yet.
+#include "output/sweep_files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
-#include "study/branch.hpp"
+// The branch of a periodic run in a parameter.
+#include "study/orbit.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,7 @@
 #include <functional>
 
 #include "model/model.hpp"
-#include "study/orbit_start.hpp"
+#include "study/return_map.hpp"
 
 namespace achilles {
 

@@ -7,8 +7,6 @@
 #include <system_error>
 #include <thread>
 
-#include "study/chunk_queue.hpp"
-
 namespace achilles {
 
 int threads_for(int asked) { return asked > 0 ? asked : std::max(1, tbb::info::default_concurrency()); }

@@ -7,7 +7,7 @@
 
 #include "number/dense.hpp"
 #include "simulate/surfaces.hpp"
-#include "study/orbit_start.hpp"
+#include "study/return_map.hpp"
 
 namespace achilles {
 

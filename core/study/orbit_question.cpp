@@ -1,4 +1,5 @@
-#include "study/orbit_question.hpp"
+// A question about a periodic run: read, and answered.
+#include "study/orbit.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,8 +11,8 @@
 #include "expression/read_number.hpp"
 #include "model/behind.hpp"
 #include "simulate/simulate.hpp"
-#include "study/flags.hpp"
 #include "study/return_map.hpp"
+#include "study/sweep.hpp"
 
 namespace achilles {
 

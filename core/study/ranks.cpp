@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "study/chunk_queue.hpp"
+#include "study/chunks.hpp"
 
 namespace achilles {
 

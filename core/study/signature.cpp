@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "number/mixed.hpp"
-
 namespace achilles {
 
 RunEnd RunEnd::from(std::uint8_t code) {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "number/mixed.hpp"
+#include "study/signature.hpp"
 
 namespace achilles {
 

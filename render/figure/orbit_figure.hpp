@@ -3,7 +3,7 @@
 
 #include "figure/palette.hpp"
 #include "figure/publication.hpp"
-#include "study/branch.hpp"
+#include "study/orbit.hpp"
 
 namespace achilles {
 

@@ -8,7 +8,7 @@
 
 #include "figure/figure.hpp"
 #include "figure/shown_unit.hpp"
-#include "study/sweep_data.hpp"
+#include "study/table.hpp"
 
 namespace achilles {
 

@@ -8,7 +8,7 @@
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "journal/journal.hpp"
-#include "output/bounds.hpp"
+#include "output/precision.hpp"
 #include "output/proof.hpp"
 #include "pictures/take_away.hpp"
 #include "session/open_session.hpp"

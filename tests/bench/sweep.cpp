@@ -17,7 +17,6 @@
 #include "bench/measure.hpp"
 #include "model/read_system.hpp"
 #include "output/sweep_files.hpp"
-#include "output/sweep_log.hpp"
 #include "study/chunks.hpp"
 
 namespace achilles::bench {

@@ -1,5 +1,5 @@
 // orbit: a periodic run, its multipliers, its branch.
-#include "study/orbit_question.hpp"
+#include "study/orbit.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "figure/orbit_figure.hpp"
-#include "output/orbit.hpp"
 #include "output/output.hpp"
 #include "pictures/pdf.hpp"
 #include "pictures/picture_ending.hpp"

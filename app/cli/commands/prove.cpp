@@ -12,8 +12,8 @@
 #include "enclose/spread.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "output/output.hpp"
 #include "output/proof.hpp"
-#include "output/sampling.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {

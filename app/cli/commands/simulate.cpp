@@ -16,7 +16,6 @@
 #include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
-#include "output/answer.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
 

@@ -7,7 +7,6 @@
 #include <regex>
 
 #include "algebra/writer.hpp"
-#include "check/equation_sheet.hpp"
 #include "check/simplified.hpp"
 #include "core/several.hpp"
 #include "model/read_system.hpp"

@@ -1,5 +1,5 @@
 // Decimals claim no more than the numbers that they print.
-#include "output/bounds.hpp"
+#include "output/precision.hpp"
 
 #include <gtest/gtest.h>
 

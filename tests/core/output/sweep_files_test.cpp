@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "core/systems.hpp"
-#include "output/sweep_log.hpp"
 
 namespace achilles {
 namespace {

@@ -1,5 +1,5 @@
 // Tables for a terminal.
-#include "output/text_table.hpp"
+#include "output/page.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/systems.hpp"
-#include "study/branch.hpp"
 
 namespace achilles::test {
 namespace {

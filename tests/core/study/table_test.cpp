@@ -1,5 +1,5 @@
 // The rows of a sweep: what single runs give, by closed forms, at sections, whatever the chunks and threads.
-#include "study/sweep_data.hpp"
+#include "study/table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "core/systems.hpp"
 #include "simulate/least_gap.hpp"
 #include "study/chunks.hpp"
-#include "study/sweep_data.hpp"
 
 namespace achilles {
 namespace {
