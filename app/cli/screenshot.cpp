@@ -6,7 +6,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/explore.hpp"
 #include "cli/explorer_setup.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "journal/journal.hpp"
 #include "pictures/picture_ending.hpp"
 #include "pictures/picture_job.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "figure/label.hpp"
-#include "figure/sides.hpp"
+#include "figure/stage.hpp"
 #include "paint/label.hpp"
 
 namespace achilles {

@@ -9,7 +9,6 @@
 #include <cmath>
 
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
 #include "panels/print.hpp"
 #include "panels/sweep.hpp"
 #include "panels/widgets.hpp"

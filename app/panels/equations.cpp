@@ -10,7 +10,6 @@
 #include "model/derived_values.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
-#include "paint/formula.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
 #include "number/angle.hpp"
 #include "output/bounds.hpp"
 #include "output/contacts.hpp"
@@ -14,7 +13,7 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/label.hpp"
-#include "paint/marker.hpp"
+#include "paint/paint.hpp"
 #include "panels/event_columns.hpp"
 #include "panels/event_rows.hpp"
 #include "panels/widgets.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "figure/sides.hpp"
+#include "figure/stage.hpp"
 #include "paint/mechanism.hpp"
 #include "panels/camera.hpp"
 #include "panels/widgets.hpp"

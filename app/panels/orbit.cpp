@@ -8,7 +8,7 @@
 
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "output/orbit.hpp"
 #include "paint/paint.hpp"
 #include "panels/panels.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "figure/axes.hpp"
-#include "figure/boundary.hpp"
-#include "figure/values.hpp"
+#include "figure/compose.hpp"
+#include "figure/plane.hpp"
 #include "panels/plane.hpp"
 #include "panels/print.hpp"
 #include "panels/widgets.hpp"

@@ -10,7 +10,6 @@
 #include "figure/axes.hpp"
 #include "figure/difference.hpp"
 #include "figure/label.hpp"
-#include "figure/ticks.hpp"
 #include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/print.hpp"

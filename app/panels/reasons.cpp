@@ -5,10 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "figure/axes.hpp"
 #include "figure/compose.hpp"
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
-#include "figure/ticks.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"

@@ -12,7 +12,7 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "output/sentences.hpp"
-#include "paint/marker.hpp"
+#include "paint/paint.hpp"
 #include "panels/turns.hpp"
 #include "panels/widgets.hpp"
 

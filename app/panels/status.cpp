@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "output/proof.hpp"
-#include "paint/marker.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 

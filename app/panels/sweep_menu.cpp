@@ -8,7 +8,6 @@
 
 #include "expression/parse.hpp"
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
 #include "paint/label.hpp"
 #include "panels/slider.hpp"
 #include "panels/sweep.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "figure/ticks.hpp"
-#include "paint/marker.hpp"
+#include "figure/axes.hpp"
+#include "paint/paint.hpp"
 #include "panels/turns.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"

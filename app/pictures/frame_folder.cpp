@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "cli/write_files.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "pictures/origin.hpp"
 #include "system/description.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "image/note.hpp"
+#include "image/notes.hpp"
 #include "pictures/output_folder.hpp"
 
 namespace achilles {

@@ -4,8 +4,7 @@
 #include <imgui.h>
 
 #include "cli/assets.hpp"
-#include "image/pdf_notes.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "output/output.hpp"
 #include "paint/mechanism.hpp"
 #include "paint/paint.hpp"

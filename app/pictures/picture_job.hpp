@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "cli/write_files.hpp"
-#include "figure/drawing.hpp"
 #include "figure/figure.hpp"
 #include "pictures/origin.hpp"
 #include "surface/offscreen.hpp"

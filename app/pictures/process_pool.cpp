@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "surface/room.hpp"
+#include "surface/offscreen.hpp"
 #include "system/description.hpp"
 
 namespace achilles {

@@ -1,6 +1,6 @@
 #include <pybind11/stl.h>
 
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "module.hpp"
 #include "output/orbit.hpp"
 #include "pictures/views.hpp"

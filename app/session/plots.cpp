@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/ticks.hpp"
+#include "figure/axes.hpp"
 #include "session/refusal.hpp"
 #include "simulate/sampler.hpp"
 

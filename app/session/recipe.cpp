@@ -10,7 +10,6 @@
 #include "cli/assets.hpp"
 #include "cli/overrides.hpp"
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
 #include "model/model.hpp"
 #include "number/angle.hpp"
 

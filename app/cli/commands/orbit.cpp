@@ -8,7 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "output/orbit.hpp"
 #include "output/output.hpp"
 #include "pictures/pdf.hpp"

@@ -1,11 +1,23 @@
+#include "surface/memory_context.hpp"
+
+#include <dlfcn.h>
 #include <sys/mman.h>
 
 #include <cstddef>
 #include <cstdlib>
-
-#include "surface/memory_context.hpp"
+#include <stdexcept>
 
 namespace achilles {
+
+LoadedLibrary::LoadedLibrary(const char* name) : name_(name), library_(dlopen(name, RTLD_NOW | RTLD_LOCAL)) {
+    if (library_ == nullptr) throw std::runtime_error(name_ + " is missing");
+}
+
+void* LoadedLibrary::address(const char* name) const {
+    void* found = dlsym(library_, name);
+    if (found == nullptr) throw std::runtime_error(name_ + " lacks " + name);
+    return found;
+}
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "surface/events.hpp"
+#include "surface/frame.hpp"
 
 #include <algorithm>
 
