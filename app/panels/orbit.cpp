@@ -12,7 +12,6 @@
 #include "output/orbit.hpp"
 #include "paint/paint.hpp"
 #include "panels/panels.hpp"
-#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "session/orbit_job.hpp"
 #include "surface/imgui_version.hpp"

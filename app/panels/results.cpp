@@ -13,7 +13,7 @@
 #include "output/precision.hpp"
 #include "output/sentences.hpp"
 #include "paint/paint.hpp"
-#include "panels/turns.hpp"
+#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

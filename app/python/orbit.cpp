@@ -3,7 +3,7 @@
 #include "figure/publication.hpp"
 #include "module.hpp"
 #include "output/orbit.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 
 namespace py = pybind11;

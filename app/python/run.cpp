@@ -12,7 +12,7 @@
 #include "output/answer.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/simulate.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "figure/axes.hpp"
-#include "session/refusal.hpp"
+#include "session/command.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -11,11 +11,9 @@
 #include "figure/publication.hpp"
 #include "output/orbit.hpp"
 #include "output/output.hpp"
-#include "pictures/pdf.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
-#include "pictures/views.hpp"
 
 namespace achilles {
 

@@ -1,4 +1,4 @@
-#include "pictures/pdf.hpp"
+#include "pictures/picture_format.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -6,20 +6,80 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "pictures/find_program.hpp"
 #include "system/description.hpp"
+#include "system/input_error.hpp"
 
 extern char** environ;  // NOLINT: POSIX has it here
 
 namespace achilles {
+
+namespace {
+
+constexpr std::string_view written_formats[] = {"png", "svg", "pdf"};
+// What a person may hope for: bytes of another kind in such a file would be a trap.
+constexpr std::string_view other_formats[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
+
+template <std::size_t count>
+bool is_among(const std::string& ending, const std::string_view (&endings)[count]) {
+    return std::find(std::begin(endings), std::end(endings), ending) != std::end(endings);
+}
+
+template <class Change>
+std::string each(std::string text, Change change) {
+    for (char& c : text) c = static_cast<char>(change(static_cast<unsigned char>(c)));
+    return text;
+}
+std::string large(const std::string& text) {
+    return each(text, [](int c) { return std::toupper(c); });
+}
+
+}  // namespace
+
+std::string ending_of(const std::string& file) {
+    const std::string ending = std::filesystem::path(file).extension().string();
+    return each(ending.substr(std::min<std::size_t>(1, ending.size())), [](int c) { return std::tolower(c); });
+}
+
+std::string ending_of_picture(const std::string& file) {
+    const std::string ending = ending_of(file);
+    return is_among(ending, written_formats) ? ending : "";
+}
+
+std::string format_for(const std::string& out, const std::string& wanted, const std::string& advice) {
+    const std::string ending = ending_of(out), said = ending_of_picture(out), option = "--out " + shown(out);
+    if (wanted.empty() && out == "-") return "png";
+    if (wanted.empty() && said.empty())
+        throw InputError(option, {}, "this name does not give the format of the picture",
+                         "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
+    if (wanted.empty()) return said;
+    if (said != wanted && (!said.empty() || is_among(ending, other_formats)))
+        throw InputError(option, {},
+                         fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
+                         fmt::format("end it in .{}{}", wanted, advice));
+    return wanted;
+}
+
+std::string find_program(const std::string& name) {
+    const char* const path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (const std::string file = folder + "/" + name; !folder.empty() && ::access(file.c_str(), X_OK) == 0)
+            return file;
+    return {};
+}
 
 namespace {
 

@@ -1,15 +1,39 @@
-// Which lines the list of events has.
+// The list of events: which lines it has, and its columns.
 #pragma once
+
+#include <imgui.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "output/contacts.hpp"
 #include "panels/panels.hpp"
-#include "panels/turns.hpp"
+#include "run/trajectory.hpp"
 
 namespace achilles {
+
+// The events of a run at which what is held changes. A run may have a hundred thousand impacts, and a frame has no time to
+// look at each: phases begin and end where these events are.
+
+// The indices of Zeno points and releases, in order; with openings, of impacts that open a contact, too.
+inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_openings = false) {
+    std::vector<std::size_t> result;
+    const auto& events = trajectory.events;
+    for (const Phase& phase : trajectory.phases) {
+        auto event = std::lower_bound(events.begin(), events.end(), phase.start,
+                                      [](const Event& e, double t) { return e.t < t; });
+        for (; event != events.end() && event->t == phase.start; ++event) {
+            const auto index = static_cast<std::size_t>(event - events.begin());
+            const bool turns_here = event->kind != Event::Kind::impact || (with_openings && !event->opened.empty());
+            if (turns_here && (result.empty() || result.back() < index)) result.push_back(index);
+        }
+    }
+    return result;
+}
+
+// Which lines the list of events has.
 
 // The lines of the list: each event, but impacts one after the other as one line, until it is opened; so, too, where contacts
 // come to rest and are opened again and again. A run may have a
@@ -81,6 +105,51 @@ class EventRows {
     std::vector<Part> parts_;
     std::size_t count_ = 0;
     bool folds_ = true;
+};
+
+// The columns of the list of events: a sign, a number, the time and a sentence, and behind it numbers below one another.
+
+// Where they are, at scale 1, from the left edge of the list: signs and words begin there, numbers end there. The sentence has
+// what the numbers behind it leave, and these stand back before it has less than a sentence needs.
+constexpr float sign_at = 14.0F, number_at = 62.0F, time_at = 164.0F, words_at = 180.0F, words_width = 600.0F,
+                state_width = 112.0F;
+
+// A column of the state after an event: a coordinate or its rate.
+struct StateColumn {
+    std::string name, title;
+    Eigen::Index coordinate = 0;
+    bool is_rate = false;
+    double factor = 1.0;
+    double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
+    double size(const State& scale) const { return (is_rate ? scale.v : scale.q)[coordinate] * factor; }
+    double error(const State& errors) const { return (is_rate ? errors.v : errors.q)[coordinate] * factor; }
+};
+
+std::vector<StateColumn> state_columns(const Session& session);
+
+// A number, or a word over numbers, that ends at x; a long word is cut.
+void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
+
+// The numbers at the right end of the list: the energy that is lost, where there are several contacts what is held, and as much
+// of the state as has room. Beside a card the list has no numbers but the time.
+class EventColumns {
+ public:
+    EventColumns(const Session& session, float width, bool is_alone);
+    float words() const;  // how wide the words are, pixels
+    void put_words(ImVec2 at, const std::string& text, const Color& color) const;
+    void titles(const Session& session, ImVec2 at) const;
+    // Of an event, or of impacts in a row what they have lost.
+    void row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const;
+
+ private:
+    bool is_held(std::size_t i) const { return is_of_several_ && i == 1; }
+    const StateColumn& state(std::size_t i) const { return states_[i - (is_of_several_ ? 2 : 1)]; }
+    void put(ImVec2 at, std::size_t i, const std::string& text, const Color& color) const;
+
+    std::vector<StateColumn> states_;
+    float width_;
+    bool is_of_several_;
+    std::size_t shown_ = 0;
 };
 
 }  // namespace achilles

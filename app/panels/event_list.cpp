@@ -1,4 +1,4 @@
-#include "panels/event_columns.hpp"
+#include "panels/event_list.hpp"
 
 #include <algorithm>
 #include <cmath>
